@@ -1,0 +1,198 @@
+"""Second-order jets: a value with its first and second derivative along one direction.
+
+``f(x + h d) = v + h v' + h²/2 v'' + …`` — arithmetic on the triple gives exact derivatives of any
+formula without symbolic differentiation. Entries are arrays of one common shape.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.expression.grammar import CONSTANTS
+from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
+from linkwork.foundation.angles import AngleUnit
+
+__all__ = ["Jet", "evaluate"]
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Jet:
+    """A value and its first two derivatives along a direction; arrays of equal shape (…,)."""
+
+    v: Array
+    d1: Array
+    d2: Array
+
+    @classmethod
+    def constant(cls, value: float) -> Jet:
+        """A value that does not change."""
+        zero = np.zeros(())
+        return cls(np.asarray(value, dtype=float), zero, zero)
+
+    def chain(self, f: Array, f1: Array, f2: Array) -> Jet:
+        """The jet of f(self), given f, f' and f'' at the value (Faà di Bruno to order two)."""
+        return Jet(f, f1 * self.d1, f1 * self.d2 + f2 * self.d1**2)
+
+    def __add__(self, other: Jet) -> Jet:
+        return Jet(self.v + other.v, self.d1 + other.d1, self.d2 + other.d2)
+
+    def __sub__(self, other: Jet) -> Jet:
+        return Jet(self.v - other.v, self.d1 - other.d1, self.d2 - other.d2)
+
+    def __neg__(self) -> Jet:
+        return Jet(-self.v, -self.d1, -self.d2)
+
+    def __mul__(self, other: Jet) -> Jet:
+        return Jet(
+            self.v * other.v,
+            self.d1 * other.v + self.v * other.d1,
+            self.d2 * other.v + 2.0 * self.d1 * other.d1 + self.v * other.d2,
+        )
+
+    def __truediv__(self, other: Jet) -> Jet:
+        r = 1.0 / other.v
+        return self * other.chain(r, -(r**2), 2.0 * r**3)
+
+    def __pow__(self, other: Jet) -> Jet:
+        if not np.any(other.d1) and not np.any(other.d2):
+            return self._fixed_power(other.v)
+        return _exp(other * _ln(self))
+
+    def _fixed_power(self, p: Array) -> Jet:
+        first = np.where(p == 0, 0.0, p * self.v ** np.where(p == 0, 1.0, p - 1.0))
+        flat = (p == 0) | (p == 1)
+        second = np.where(flat, 0.0, p * (p - 1.0) * self.v ** np.where(flat, 1.0, p - 2.0))
+        return self.chain(self.v**p, first, second)
+
+
+def _exp(x: Jet) -> Jet:
+    e = np.exp(x.v)
+    return x.chain(e, e, e)
+
+
+def _ln(x: Jet) -> Jet:
+    return x.chain(np.log(x.v), 1.0 / x.v, -1.0 / x.v**2)
+
+
+def _log10(x: Jet) -> Jet:
+    return _ln(x) * Jet.constant(1.0 / np.log(10.0))
+
+
+def _sqrt(x: Jet) -> Jet:
+    r = np.sqrt(x.v)
+    return x.chain(r, 0.5 / r, -0.25 / (r * x.v))
+
+
+def _sin(x: Jet) -> Jet:
+    s, c = np.sin(x.v), np.cos(x.v)
+    return x.chain(s, c, -s)
+
+
+def _cos(x: Jet) -> Jet:
+    s, c = np.sin(x.v), np.cos(x.v)
+    return x.chain(c, -s, -c)
+
+
+def _tan(x: Jet) -> Jet:
+    t = np.tan(x.v)
+    return x.chain(t, 1.0 + t**2, 2.0 * t * (1.0 + t**2))
+
+
+def _asin(x: Jet) -> Jet:
+    r = 1.0 / np.sqrt(1.0 - x.v**2)
+    return x.chain(np.arcsin(x.v), r, x.v * r**3)
+
+
+def _acos(x: Jet) -> Jet:
+    r = 1.0 / np.sqrt(1.0 - x.v**2)
+    return x.chain(np.arccos(x.v), -r, -x.v * r**3)
+
+
+def _atan(x: Jet) -> Jet:
+    r = 1.0 / (1.0 + x.v**2)
+    return x.chain(np.arctan(x.v), r, -2.0 * x.v * r**2)
+
+
+def _atan2(y: Jet, x: Jet) -> Jet:
+    # d atan2 = (x dy - y dx)/r²; differentiated once more along the same direction.
+    square = x * x + y * y
+    first = (x.v * y.d1 - y.v * x.d1) / square.v
+    second = (x.v * y.d2 - y.v * x.d2) / square.v - first * square.d1 / square.v
+    return Jet(np.arctan2(y.v, x.v), first, second)
+
+
+def _abs(x: Jet) -> Jet:
+    return x.chain(np.abs(x.v), np.sign(x.v), np.zeros_like(x.v))
+
+
+def _hypot(x: Jet, y: Jet) -> Jet:
+    return _sqrt(x * x + y * y)
+
+
+def _chosen(least: bool) -> Callable[..., Jet]:
+    def choose(*jets: Jet) -> Jet:
+        best = jets[0]
+        for jet in jets[1:]:
+            take = jet.v < best.v if least else jet.v > best.v
+            best = Jet(
+                np.where(take, jet.v, best.v),
+                np.where(take, jet.d1, best.d1),
+                np.where(take, jet.d2, best.d2),
+            )
+        return best
+
+    return choose
+
+
+_PLAIN: dict[str, Callable[..., Jet]] = {
+    "sqrt": _sqrt, "exp": _exp, "ln": _ln, "log10": _log10, "abs": _abs, "hypot": _hypot,
+    "min": _chosen(least=True), "max": _chosen(least=False),
+}  # fmt: skip
+_OF_ANGLE: dict[str, Callable[[Jet], Jet]] = {"sin": _sin, "cos": _cos, "tan": _tan}
+_TO_ANGLE: dict[str, Callable[..., Jet]] = {
+    "asin": _asin, "acos": _acos, "atan": _atan, "atan2": _atan2,
+}  # fmt: skip
+
+
+def evaluate(node: Node, names: Mapping[str, Jet], unit: AngleUnit) -> Jet:
+    """The jet of a formula; every name in it must be in ``names`` (checked when it was read).
+
+    Outside a function's domain the entries are NaN: a solver turns that into a status.
+    """
+    match node:
+        case Number():
+            return Jet.constant(node.value)
+        case Name():
+            if node.name in names:
+                return names[node.name]
+            return Jet.constant(CONSTANTS[node.name])
+        case Negative():
+            return -evaluate(node.operand, names, unit)
+        case Binary():
+            left = evaluate(node.left, names, unit)
+            right = evaluate(node.right, names, unit)
+            match node.operator:
+                case "+":
+                    return left + right
+                case "-":
+                    return left - right
+                case "*":
+                    return left * right
+                case "/":
+                    return left / right
+                case _:
+                    return left**right
+        case Call():
+            arguments = [evaluate(a, names, unit) for a in node.arguments]
+            scale = Jet.constant(unit.radians)
+            if node.function in _OF_ANGLE:
+                return _OF_ANGLE[node.function](arguments[0] * scale)
+            if node.function in _TO_ANGLE:
+                return _TO_ANGLE[node.function](*arguments) / scale
+            return _PLAIN[node.function](*arguments)

@@ -1,0 +1,1 @@
+"""Ground layer: errors, statuses, angles, names, immutable containers."""

@@ -1,0 +1,32 @@
+"""Angle units. Radians inside; the file's unit in files, tables and everyday objects."""
+
+from __future__ import annotations
+
+import math
+from enum import Enum
+
+__all__ = ["FULL_TURN", "AngleUnit"]
+
+FULL_TURN = 2.0 * math.pi
+
+
+class AngleUnit(Enum):
+    """The unit of every angle a person reads or writes; the value is its name in files."""
+
+    DEGREE = "deg"
+    RADIAN = "rad"
+
+    @property
+    def radians(self) -> float:
+        """Radians per unit."""
+        return math.pi / 180.0 if self is AngleUnit.DEGREE else 1.0
+
+    @property
+    def turn(self) -> float:
+        """One full turn in this unit."""
+        return 360.0 if self is AngleUnit.DEGREE else FULL_TURN
+
+    @property
+    def sign(self) -> str:
+        """What follows a printed number: ``°`` or `` rad``."""
+        return "°" if self is AngleUnit.DEGREE else " rad"

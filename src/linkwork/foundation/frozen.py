@@ -1,0 +1,44 @@
+"""Immutable containers: a dictionary and arrays that cannot be changed by accident."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NoReturn, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["FrozenDict", "read_only"]
+
+K = TypeVar("K")
+V = TypeVar("V")
+T = TypeVar("T", bound=np.generic)
+
+
+class FrozenDict(dict[K, V]):
+    """A dictionary that keeps its order, compares like a dictionary and refuses changes."""
+
+    def _refuse(self, *_: object, **__: object) -> NoReturn:
+        raise TypeError("a mechanism is immutable: build a changed copy instead")
+
+    __setitem__ = __delitem__ = _refuse
+    clear = pop = popitem = setdefault = update = _refuse  # type: ignore[assignment]
+    __ior__ = _refuse  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[type[FrozenDict[K, V]], tuple[dict[K, V]]]:
+        return type(self), (dict(self),)
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        return hash(tuple(self.items()))
+
+    @classmethod
+    def of(cls, mapping: Mapping[Any, Any] | None) -> FrozenDict[Any, Any]:
+        """A frozen copy; ``None`` gives an empty one."""
+        return cls(mapping or {})
+
+
+def read_only(array: npt.NDArray[T]) -> npt.NDArray[T]:
+    """A copy that refuses writes."""
+    frozen = np.array(array)
+    frozen.flags.writeable = False
+    return frozen

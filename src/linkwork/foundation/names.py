@@ -1,0 +1,54 @@
+"""Names as people write them: ``θ₁₂``, ``ϑ12``, ``θ12`` and ``theta12`` are one name."""
+
+from __future__ import annotations
+
+import unicodedata
+
+__all__ = ["GREEK", "canonical", "is_name", "latex_name", "pretty"]
+
+GREEK = {
+    "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta",
+    "η": "eta", "θ": "theta", "ι": "iota", "κ": "kappa", "λ": "lambda", "μ": "mu",
+    "ν": "nu", "ξ": "xi", "ο": "omicron", "π": "pi", "ρ": "rho", "σ": "sigma",
+    "ς": "sigma", "τ": "tau", "υ": "upsilon", "φ": "phi", "χ": "chi", "ψ": "psi",
+    "ω": "omega", "Γ": "Gamma", "Δ": "Delta", "Θ": "Theta", "Λ": "Lambda", "Ξ": "Xi",
+    "Π": "Pi", "Σ": "Sigma", "Φ": "Phi", "Ψ": "Psi", "Ω": "Omega",
+}  # fmt: skip
+_LETTER = {spelled: letter for letter, spelled in GREEK.items() if letter != "ς"}
+
+
+def canonical(name: str) -> str:
+    """The one form under which a name is looked up: NFKC, Greek letters spelled out."""
+    folded = unicodedata.normalize("NFKC", name)
+    return "".join(GREEK.get(letter, letter) for letter in folded)
+
+
+def is_name(text: str) -> bool:
+    """Whether ``text`` can name something: a letter or ``_``, then letters, digits, ``_``, ``'``."""
+    folded = unicodedata.normalize("NFKC", text)
+    body = folded.rstrip("'")
+    return body.isidentifier() and len(folded) <= 80
+
+
+def _stem_and_index(name: str) -> tuple[str, str]:
+    stem = name.rstrip("0123456789'")
+    return stem, name[len(stem) :]
+
+
+def pretty(name: str) -> str:
+    """The name with a Greek letter where it starts with a spelled one: ``theta12`` → ``θ12``."""
+    stem, index = _stem_and_index(name)
+    head, _, tail = stem.partition("_")
+    return _LETTER.get(head, head) + (f"_{tail}" if tail else "") + index
+
+
+def latex_name(name: str) -> str:
+    r"""The name for LaTeX: ``theta12`` → ``\theta_{12}``, ``crank`` → ``\mathrm{crank}``."""
+    stem, index = _stem_and_index(canonical(name))
+    head, _, tail = stem.rstrip("_").partition("_")
+    primes = index.count("'") * "'"
+    subscript = ",".join(part for part in (tail.replace("_", r"\_"), index.rstrip("'")) if part)
+    base = rf"\{head}" if head in _LETTER else head if len(head) == 1 else rf"\mathrm{{{head}}}"
+    if len(subscript) > 1 or not subscript.isalnum():
+        subscript = f"{{{subscript}}}" if subscript else ""
+    return base + primes + (f"_{subscript}" if subscript else "")

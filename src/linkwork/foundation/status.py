@@ -1,0 +1,40 @@
+"""How a computation ended: one enumeration whose values are sentences with a next step."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+__all__ = ["Status"]
+
+
+class Status(Enum):
+    """The exit of a solver is its status; it is never re-derived afterwards."""
+
+    CONVERGED = "position found"
+    SINGULAR_JACOBIAN = (
+        "the Jacobian became singular during the iteration: start from another guess, "
+        "or the mechanism is at a dead point or change point"
+    )
+    DIVERGED = "the iteration ran away to infinity: start from a guess nearer to the position"
+    STEP_LIMIT = (
+        "no position after the largest allowed number of iterations: "
+        "start from a nearer guess or allow more iterations"
+    )
+    CANNOT_CLOSE = (
+        "the loops cannot be closed near the guess: "
+        "change a length, or start from another guess or input value"
+    )
+    OUT_OF_REACH = (
+        "this branch does not reach the input value: "
+        "the motion ends at the limit reported, ask for values before it"
+    )
+    LOST = (
+        "the branch could not be followed with safety up to this input value: "
+        "ask for a value before the last one reached, or start from a guess beyond it"
+    )
+    NO_START = "no position was found at the guess, so there is no motion to follow: see the start"
+
+    @property
+    def ok(self) -> bool:
+        """Whether a position was found."""
+        return self is Status.CONVERGED

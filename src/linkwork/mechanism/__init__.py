@@ -1,0 +1,1 @@
+"""What is asked: a mechanism as plain immutable data, in one of three forms."""

@@ -1,0 +1,204 @@
+"""What every form of a mechanism has in common."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.expression.grammar import RESERVED
+from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.errors import (
+    MechanismError,
+    Problem,
+    UnknownNameError,
+    choices,
+)
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.names import canonical, is_name
+from linkwork.mechanism.dimensions import Numbers
+from linkwork.mechanism.parts import Input, Number
+
+__all__ = ["Description", "Problems"]
+
+_MOST_ROWS = 10_000_000
+
+
+class Problems(list[Problem]):
+    """The problems found so far."""
+
+    def add(self, key: Iterable[str | int], message: str) -> None:
+        """Note a problem under a key path."""
+        self.append(Problem(key=tuple(key), message=message))
+
+    def raise_any(self, where: str) -> None:
+        """Raise all problems together, if there are any."""
+        if self:
+            raise MechanismError(self, where)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Description:
+    """A mechanism as it was described: immutable, comparable, in the file's own units.
+
+    Parameters
+    ----------
+    name : str
+        What the mechanism is called.
+    length : str
+        Unit of every length; nothing is converted.
+    angle : AngleUnit
+        Unit of every angle.
+    dimensions : Mapping[str, number or formula]
+        Named numbers, usable wherever a number is.
+    inputs : tuple of Input
+        What is driven; several move in lock-step.
+    trace : tuple of str
+        Points whose path is drawn.
+    outputs : Mapping[str, str]
+        Named formulas of unknowns, dimensions and point coordinates (``A.x``).
+    source : str
+        Where the mechanism comes from.
+
+    Raises
+    ------
+    MechanismError
+        With every problem found.
+    """
+
+    name: str = "mechanism"
+    length: str = "mm"
+    angle: AngleUnit = AngleUnit.DEGREE
+    dimensions: Mapping[str, Number] = FrozenDict()
+    inputs: tuple[Input, ...] = ()
+    trace: tuple[str, ...] = ()
+    outputs: Mapping[str, str] = FrozenDict()
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        set_ = object.__setattr__
+        if isinstance(self.angle, str):
+            set_(self, "angle", AngleUnit(self.angle))
+        if isinstance(self.inputs, Input):
+            set_(self, "inputs", (self.inputs,))
+        set_(self, "inputs", tuple(self.inputs))
+        set_(self, "trace", tuple(self.trace))
+        for field in ("dimensions", "outputs"):
+            set_(self, field, FrozenDict.of(getattr(self, field)))
+
+    @cached_property
+    def numbers(self) -> Numbers:
+        """Every named dimension as a number, and the evaluation of further formulas."""
+        return Numbers(self.dimensions, self.angle)
+
+    def with_dimensions(self, changes: Mapping[str, Number]) -> Self:
+        """A copy with some dimensions replaced.
+
+        Raises
+        ------
+        UnknownNameError
+            If a name is not among the dimensions.
+        """
+        known = {canonical(name): name for name in self.dimensions}
+        dimensions = dict(self.dimensions)
+        for name, number in changes.items():
+            if canonical(name) not in known:
+                raise UnknownNameError(
+                    f'"{name}" is not a dimension of {self.name} '
+                    f"{choices('dimensions', self.dimensions, name)}"
+                )
+            dimensions[known[canonical(name)]] = number
+        return replace(self, dimensions=dimensions)
+
+    def unit_of_input(self, which: Input) -> str:
+        """``deg``, ``rad`` or the length unit."""
+        return self.length if which.drives[0] in ("slider", "cylinder") else self.angle.value
+
+    def check_common(self, problems: Problems, named: Mapping[str, Iterable[str]]) -> None:
+        """Checks shared by all forms: names, dimensions, inputs.
+
+        ``named`` maps each table that declares names to those names.
+        """
+        taken: dict[str, str] = {}
+        for table, names in {**named, "dimensions": self.dimensions}.items():
+            for name in names:
+                _check_name(problems, table, name, taken)
+        self.numbers.check(problems.add)
+        for output in self.outputs:
+            _check_name(problems, "outputs", output, taken)
+        for k, which in enumerate(self.inputs):
+            _check_rows(self, which, self.input_key(k), problems)
+        self._check_lock_step(problems)
+
+    def input_key(self, k: int) -> tuple[str | int, ...]:
+        """Key path of the k-th input in a file."""
+        return ("input",) if len(self.inputs) == 1 else ("input", k)
+
+    def rows(self, which: Input) -> npt.NDArray[np.float64]:
+        """The table's values of one input, in the file's unit, shape (rows,)."""
+        start, stop, step = self._range(which)
+        count = math.floor((stop - start) / step + 1e-9) + 1
+        return start + step * np.arange(count)
+
+    def _range(self, which: Input) -> tuple[float, float, float]:
+        turn = self.angle.turn
+        whole = (0.0, turn, turn / 360.0)
+        given = (which.start, which.stop, which.step)
+        start, stop, step = (
+            default if number is None else self.numbers(number)
+            for number, default in zip(given, whole, strict=True)
+        )
+        if which.step is None and stop < start:
+            step = -step
+        return start, stop, step
+
+    def _check_lock_step(self, problems: Problems) -> None:
+        if problems or len(self.inputs) < 2:
+            return
+        counts = [len(self.rows(which)) for which in self.inputs]
+        for k, count in enumerate(counts):
+            if count != counts[0]:
+                problems.add(
+                    self.input_key(k),
+                    f"has {count} rows, the first input has {counts[0]}: "
+                    "inputs move in lock-step and need equal row counts",
+                )
+
+
+def _check_name(problems: Problems, table: str, name: str, taken: dict[str, str]) -> None:
+    key = (table, name)
+    folded = canonical(name)
+    if not is_name(name):
+        problems.add(key, f'"{name}" cannot be a name: letters first, then letters, digits, _ or \'')
+    elif folded in RESERVED:
+        problems.add(key, f'"{name}" is reserved in formulas: call it "{name}1"')
+    elif folded in taken:
+        problems.add(key, f'"{name}" is already a name in {taken[folded]}')
+    else:
+        taken[folded] = f"[{table}]"
+
+
+def _check_rows(
+    description: Description, which: Input, key: tuple[str | int, ...], problems: Problems
+) -> None:
+    before = len(problems)
+    fields = (("from", which.start), ("to", which.stop), ("step", which.step))
+    for field, number in fields:
+        if number is not None:
+            description.numbers.check_number(problems.add, (*key, field), number)
+    lengthy = which.drives[0] in ("slider", "cylinder")
+    missing = [field for field, number in fields if number is None]
+    if lengthy and missing:
+        problems.add((*key, missing[0]), "is missing: a length has no natural range")
+    if len(problems) > before:
+        return
+    start, stop, step = description._range(which)
+    if step == 0 or (stop - start) * step < 0:
+        problems.add((*key, "step"), f"a step of {step:g} does not lead from {start:g} to {stop:g}")
+    elif (stop - start) / step > _MOST_ROWS:
+        problems.add((*key, "step"), f"gives more than {_MOST_ROWS} rows")

@@ -1,0 +1,100 @@
+"""Named dimensions: numbers and formulas of each other, resolved in the right order."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+
+from linkwork.expression.grammar import CONSTANTS, parse
+from linkwork.expression.tree import names_in
+from linkwork.expression.values import value
+from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.errors import ExpressionError
+from linkwork.foundation.names import canonical
+
+__all__ = ["Numbers"]
+
+Number = float | int | str
+_LONGEST_CHAIN = 200
+Report = Callable[[Iterable[str | int], str], None]
+
+
+class Numbers:
+    """The dimensions of a mechanism as numbers; call it to evaluate any further number.
+
+    Parameters
+    ----------
+    dimensions : Mapping[str, number or formula]
+    unit : AngleUnit
+        Unit of angles in formulas.
+    """
+
+    def __init__(self, dimensions: Mapping[str, Number], unit: AngleUnit) -> None:
+        self.unit = unit
+        self.spelling = {canonical(name): name for name in dimensions}
+        self.known: dict[str, float] = {}
+        self.wrong: dict[str, str] = {}
+        given = {canonical(name): number for name, number in dimensions.items()}
+        for name in given:
+            self._resolve(name, given, [])
+
+    def __call__(self, number: Number) -> float:
+        """The number meant by a number or formula.
+
+        Raises
+        ------
+        ExpressionError
+            If the formula cannot be read or has no finite real value.
+        """
+        if not isinstance(number, str):
+            if not math.isfinite(number):
+                raise ExpressionError(f"must be a finite number, got {number}", str(number), 1)
+            return float(number)
+        return value(parse(number), self.known, self.unit, number)
+
+    def check(self, report: Report) -> None:
+        """Report every dimension that has no value."""
+        for name, message in self.wrong.items():
+            report(("dimensions", self.spelling[name]), message)
+
+    def check_number(self, report: Report, key: Iterable[str | int], number: Number) -> float:
+        """The number, or NaN after reporting why there is none."""
+        try:
+            return self(number)
+        except ExpressionError as error:
+            if not self._depends_on_wrong(number):
+                report(key, str(error) if isinstance(number, str) else error.message)
+            return math.nan
+
+    def _depends_on_wrong(self, number: Number) -> bool:
+        """Whether the cause is a dimension that was reported already."""
+        try:
+            used = {node.name for node in names_in(parse(str(number)))}
+        except ExpressionError:
+            return False
+        return bool(used & set(self.wrong))
+
+    def _resolve(self, name: str, given: Mapping[str, Number], chain: list[str]) -> None:
+        if name in self.known or name in self.wrong:
+            return
+        if name in chain:
+            cycle = [self.spelling[n] for n in [*chain[chain.index(name) :], name]]
+            self.wrong[name] = "is defined by itself: " + " → ".join(cycle)
+            return
+        if len(chain) > _LONGEST_CHAIN:
+            self.wrong[name] = f"depends on a chain of more than {_LONGEST_CHAIN} dimensions"
+            return
+        number = given[name]
+        try:
+            if isinstance(number, str):
+                for node in names_in(parse(number)):
+                    if node.name in given and node.name not in CONSTANTS:
+                        self._resolve(node.name, given, [*chain, name])
+                if name in self.wrong:
+                    return
+            self.known[name] = self(number)
+        except ExpressionError as error:
+            if not self._depends_on_wrong(number):
+                self.wrong[name] = str(error) if isinstance(number, str) else error.message
+            else:
+                self.wrong.setdefault(name, "depends on a dimension that has no value")

@@ -1,0 +1,321 @@
+"""Placing the points of one rigid link from distances and angles between them."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["Distance", "LinkShape", "ShapeError", "VertexAngle", "place"]
+
+_AGREE = 1e-9
+
+
+class ShapeError(Exception):
+    """Dimensions of one link that contradict each other."""
+
+    def __init__(self, message: str, table: str = "", key: str = "") -> None:
+        super().__init__(message)
+        self.message = message
+        self.table = table
+        self.key = key
+
+
+@dataclass(frozen=True)
+class Distance:
+    """|ab| = length."""
+
+    a: str
+    b: str
+    length: float
+    table = "lengths"
+
+    @property
+    def key(self) -> str:
+        return f"{self.a} {self.b}"
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        return (self.a, self.b)
+
+    @property
+    def amount_text(self) -> str:
+        return f"{self.length:.12g}"
+
+    def error(self, z: Mapping[str, complex]) -> float:
+        """Relative disagreement with placed points."""
+        return (abs(z[self.b] - z[self.a]) - self.length) / self.length
+
+    def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
+        return abs(self.error(z)) <= tolerance
+
+    def shown(self, z: Mapping[str, complex]) -> str:
+        return f"|{self.a}{self.b}| = {abs(z[self.b] - z[self.a]):.12g}"
+
+
+@dataclass(frozen=True)
+class VertexAngle:
+    """The angle at ``vertex`` from the ray to ``a`` to the ray to ``b``, counter-clockwise [rad]."""
+
+    a: str
+    vertex: str
+    b: str
+    angle: float
+    table = "angles"
+
+    @property
+    def key(self) -> str:
+        return f"{self.a} {self.vertex} {self.b}"
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        return (self.a, self.vertex, self.b)
+
+    @property
+    def amount_text(self) -> str:
+        return f"{math.degrees(self.angle):.12g}°"
+
+    def error(self, z: Mapping[str, complex]) -> float:
+        """Disagreement with placed points [rad], within half a turn."""
+        rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
+        return cmath.phase(rays * cmath.exp(-1j * self.angle)) if rays else math.inf
+
+    def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
+        return abs(self.error(z)) <= tolerance
+
+    def shown(self, z: Mapping[str, complex]) -> str:
+        rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
+        return f"an angle of {math.degrees(cmath.phase(rays)):.12g}° at {self.vertex}"
+
+
+Given = Distance | VertexAngle
+
+
+@dataclass(frozen=True)
+class LinkShape:
+    """Local coordinates, real axis from the first to the second point, and what was measured."""
+
+    local: Mapping[str, complex]
+    measured: tuple[Distance, ...] = ()
+
+
+@dataclass
+class _Placing:
+    """The state while points are placed one by one."""
+
+    points: tuple[str, ...]
+    sketch: Mapping[str, complex]
+    distances: dict[frozenset[str], float]
+    vertices: Sequence[VertexAngle]
+    z: dict[str, complex] = field(default_factory=dict)
+    measured: list[Distance] = field(default_factory=list)
+
+    def distance(self, a: str, b: str, measure: bool) -> float | None:
+        """The given distance, or the sketched one (noted as measured) if asked to measure."""
+        given = self.distances.get(frozenset((a, b)))
+        if given is not None or not measure:
+            return given
+        length = abs(self.sketch[b] - self.sketch[a])
+        if length == 0.0:
+            raise ShapeError(f"{a} and {b} are sketched at the same place: give {a} {b} a length")
+        self.measured.append(Distance(a, b, length))
+        self.distances[frozenset((a, b))] = length
+        return length
+
+    def direction(self, point: str) -> tuple[str, float] | None:
+        """A placed vertex and the given direction in which it sees ``point``."""
+        for v in self.vertices:
+            if v.vertex not in self.z:
+                continue
+            if v.b == point and v.a in self.z:
+                return v.vertex, cmath.phase(self.z[v.a] - self.z[v.vertex]) + v.angle
+            if v.a == point and v.b in self.z:
+                return v.vertex, cmath.phase(self.z[v.b] - self.z[v.vertex]) - v.angle
+        return None
+
+    def place_next(self, measure: int) -> bool:
+        """Place one more point from given dimensions and at most ``measure`` measured ones."""
+        for point in self.points:
+            if point in self.z:
+                continue
+            seen = self.direction(point)
+            if seen is not None:
+                vertex, direction = seen
+                length = self.distance(vertex, point, measure >= 1)
+                if length is not None:
+                    self.z[point] = self.z[vertex] + cmath.rect(length, direction)
+                    return True
+            centres = [q for q in self.z if frozenset((q, point)) in self.distances]
+            if len(centres) + measure < 2:
+                continue
+            others = [q for q in self.points if q in self.z and q not in centres]
+            first, second = (centres + others)[:2]
+            self.z[point] = self.trilaterated(point, first, second)
+            return True
+        return False
+
+    def trilaterated(self, point: str, first: str, second: str) -> complex:
+        """The meeting of two circles, on the side of the sketch."""
+        r1 = self.distance(first, point, measure=True)
+        r2 = self.distance(second, point, measure=True)
+        assert r1 is not None and r2 is not None
+        base = self.z[second] - self.z[first]
+        d = abs(base)
+        x = (r1 * r1 - r2 * r2 + d * d) / (2.0 * d)
+        square = r1 * r1 - x * x
+        tolerance = _AGREE * max(r1, r2, d) ** 2
+        if square < -tolerance:
+            raise ShapeError(
+                f"no triangle has |{first}{second}| = {d:.12g}, |{first}{point}| = {r1:.12g} "
+                f"and |{second}{point}| = {r2:.12g}"
+            )
+        y = math.sqrt(square) if square > 1e-14 * max(r1, r2, d) ** 2 else 0.0
+        sketched = (self.sketch[point] - self.sketch[first]) * (
+            self.sketch[second] - self.sketch[first]
+        ).conjugate()
+        if sketched.imag < 0:
+            y = -y
+        return self.z[first] + complex(x, y) * base / d
+
+
+def place(
+    points: tuple[str, ...],
+    sketch: Mapping[str, complex],
+    distances: Sequence[Distance],
+    vertices: Sequence[VertexAngle],
+) -> LinkShape:
+    """Local coordinates of the points of one link.
+
+    Parameters
+    ----------
+    points : tuple of str
+        In the link's order; one point gives the trivial shape.
+    sketch : Mapping[str, complex]
+        Sketched coordinates: choose between mirror images and supply what is not given.
+    distances, vertices : sequences
+        Given dimensions, all inside this link.
+
+    Raises
+    ------
+    ShapeError
+        If dimensions contradict each other.
+
+    Notes
+    -----
+    Points are placed one by one where dimensions allow; otherwise all given dimensions and the
+    sketched distances that complete them are solved together by Gauss-Newton.
+    """
+    if len(points) == 1:
+        return LinkShape({points[0]: 0j})
+    known = {frozenset(d.points): d.length for d in distances}
+    state = _Placing(points, sketch, known, vertices)
+    a, b = _base(points, distances, vertices)
+    length = state.distance(a, b, measure=True)
+    assert length is not None
+    state.z = {a: 0j, b: complex(length)}
+    while len(state.z) < len(points):
+        if not (state.place_next(0) or state.place_next(1)):
+            state.place_next(2)
+    given: list[Given] = [*distances, *vertices]
+    measured = state.measured
+    z = state.z
+    if not all(g.agrees(z, _AGREE) for g in given):
+        if len(given) > 2 * len(points) - 3:
+            raise _contradiction(given, z, points)
+        z, measured = _together(points, sketch, given)
+    return LinkShape(_upright(z, points), tuple(measured))
+
+
+def _base(
+    points: tuple[str, ...], distances: Sequence[Distance], vertices: Sequence[VertexAngle]
+) -> tuple[str, str]:
+    """The pair placed first: the link's own first two points unless others are better known."""
+    given = {frozenset(d.points) for d in distances}
+    first = (points[0], points[1])
+    if frozenset(first) in given or not given:
+        return first
+    pairs = [d.points for d in distances]
+    with_angle = [
+        (v.vertex, ray) for v in vertices for ray in (v.a, v.b) if frozenset((v.vertex, ray)) in given
+    ]
+    a, b = (with_angle or pairs)[0]
+    return a, b
+
+
+def _contradiction(
+    given: Sequence[Given], z: Mapping[str, complex], points: tuple[str, ...]
+) -> ShapeError:
+    worst = max(given, key=lambda g: abs(g.error(z)))
+    return ShapeError(
+        f"a link of {len(points)} points has {2 * len(points) - 3} dimensions, {len(given)} are given "
+        f"and disagree: the others give {worst.shown(z)}, not {worst.amount_text}",
+        worst.table,
+        worst.key,
+    )
+
+
+def _together(
+    points: tuple[str, ...], sketch: Mapping[str, complex], given: Sequence[Given]
+) -> tuple[dict[str, complex], list[Distance]]:
+    """All dimensions at once, from the sketch, completed by measured distances."""
+    rows: list[Given] = list(given)
+    measured: list[Distance] = []
+    start = np.array([sketch[p] for p in points])
+    for i in range(len(points)):
+        for j in range(i + 1, len(points)):
+            if len(rows) >= 2 * len(points) - 3:
+                break
+            length = abs(sketch[points[j]] - sketch[points[i]])
+            candidate = Distance(points[i], points[j], length)
+            extended = _slopes(points, start, [*rows, candidate])
+            if length and np.linalg.matrix_rank(extended, 1e-9) == len(rows) + 1:
+                rows.append(candidate)
+                measured.append(candidate)
+    flat = np.concatenate([start.real, start.imag])
+    n = len(points)
+    for _ in range(60):
+        z = flat[:n] + 1j * flat[n:]
+        errors = np.array([row.error(dict(zip(points, z, strict=True))) for row in rows])
+        if np.max(np.abs(errors)) <= 1e-14:
+            break
+        flat = flat - np.linalg.lstsq(_slopes(points, z, rows), errors, rcond=1e-12)[0]
+    placed = dict(zip(points, (complex(p) for p in flat[:n] + 1j * flat[n:]), strict=True))
+    wrong = [row for row in given if not row.agrees(placed, _AGREE)]
+    if wrong:
+        raise ShapeError(
+            f"no link has these dimensions near the sketch; nearest has {wrong[0].shown(placed)}, "
+            f"not {wrong[0].amount_text}",
+            wrong[0].table,
+            wrong[0].key,
+        )
+    return placed, measured
+
+
+def _slopes(
+    points: tuple[str, ...], z: npt.NDArray[np.complex128], rows: Sequence[Given]
+) -> npt.NDArray[np.float64]:
+    """Derivatives of the rows' errors by all coordinates (x first, then y), shape (rows, 2n)."""
+    scale = float(np.max(np.abs(z - z[0]))) or 1.0
+    h = 1e-7 * scale
+    n = len(points)
+    columns = []
+    for k in range(2 * n):
+        shift = np.zeros(n, dtype=complex)
+        shift[k % n] = h if k < n else 1j * h
+        plus = dict(zip(points, z + shift, strict=True))
+        minus = dict(zip(points, z - shift, strict=True))
+        columns.append([(row.error(plus) - row.error(minus)) / (2 * h) for row in rows])
+    return np.array(columns).T
+
+
+def _upright(z: Mapping[str, complex], points: tuple[str, ...]) -> dict[str, complex]:
+    """Move the first point to the origin and the second onto the positive real axis."""
+    axis = z[points[1]] - z[points[0]]
+    if axis == 0:
+        raise ShapeError(f"{points[0]} and {points[1]} coincide: a link's angle needs two places")
+    turned = {p: (z[p] - z[points[0]]) * axis.conjugate() / abs(axis) for p in points}
+    return {**turned, points[0]: 0j, points[1]: complex(abs(axis))}

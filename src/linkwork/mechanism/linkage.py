@@ -1,0 +1,119 @@
+"""Form A: a mechanism described by its points and links."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.names import canonical
+from linkwork.mechanism.description import Description, Problems
+from linkwork.mechanism.linkage_checks import check_linkage
+from linkwork.mechanism.parts import Cylinder, Input, Number, Slider, Slot, replaced_names
+from linkwork.mechanism.shape import Shapes
+
+__all__ = ["GROUND", "Linkage"]
+
+GROUND = "ground"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Linkage(Description):
+    """Points, the links that carry them, and what is driven.
+
+    A pin joint is wherever links share a point. One link is called ``ground`` and stands still.
+
+    Parameters
+    ----------
+    points : Mapping[str, (x, y)]
+        One assembled position: exact for ground, elsewhere exact or a sketch. Decides sides.
+    links : Mapping[str, sequence of str]
+        The points each link carries; its angle runs from the first to the second.
+    lengths : Mapping[str, number]
+        Exact distances, ``"A B"``, between two points of one link.
+    angles : Mapping[str, number]
+        Exact angles in a link: ``"B A P"`` at A, from AB to AP, counter-clockwise.
+    sketch : bool
+        If true, dimensions are never measured from ``points``.
+    """
+
+    points: Mapping[str, tuple[Number, Number]] = FrozenDict()
+    links: Mapping[str, tuple[str, ...]] = FrozenDict()
+    lengths: Mapping[str, Number] = FrozenDict()
+    angles: Mapping[str, Number] = FrozenDict()
+    slots: tuple[Slot, ...] = ()
+    sliders: tuple[Slider, ...] = ()
+    cylinders: tuple[Cylinder, ...] = ()
+    sketch: bool = False
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        set_ = object.__setattr__
+        spelled = {
+            canonical(name): name
+            for names in (
+                self.points,
+                self.links,
+                *[[part.name] for part in (*self.slots, *self.sliders, *self.cylinders)],
+            )
+            for name in names
+        }
+
+        def same(name: str) -> str:
+            return spelled.get(canonical(name), name)
+
+        set_(self, "points", FrozenDict({n: tuple(p) for n, p in self.points.items()}))
+        links = {name: tuple(map(same, points)) for name, points in self.links.items()}
+        set_(self, "links", FrozenDict(links))
+        for field in ("lengths", "angles"):
+            table = getattr(self, field)
+            folded = {" ".join(map(same, key.split())): number for key, number in table.items()}
+            set_(self, field, FrozenDict(folded if len(folded) == len(table) else table))
+        for field in ("slots", "sliders", "cylinders"):
+            parts = getattr(self, field)
+            set_(self, field, tuple(replaced_names(p, spelled, canonical) for p in parts))
+        inputs = tuple(_spelled_input(which, same) for which in self.inputs)
+        set_(self, "inputs", inputs)
+        set_(self, "trace", tuple(map(same, self.trace)))
+        problems = Problems()
+        check_linkage(self, problems)
+        problems.raise_any(f'mechanism "{self.name}"')
+
+    @cached_property
+    def shapes(self) -> Shapes:
+        """The exact shape of every link, as local coordinates, and what was measured."""
+        problems = Problems()
+        return Shapes.of(self, problems)
+
+    def sketched(self, point: str) -> complex:
+        """The point's coordinates in ``points`` as x + iy."""
+        x, y = self.points[point]
+        return complex(self.numbers(x), self.numbers(y))
+
+    def bodies_at(self, point: str) -> Iterator[str]:
+        """The links that carry a point, in the file's order."""
+        for link, points in self.links.items():
+            if point in points:
+                yield link
+
+    def carriers(self) -> dict[str, list[str]]:
+        """For every point the links and cylinders that carry it, in the file's order."""
+        found: dict[str, list[str]] = {point: [] for point in self.points}
+        for link, points in self.links.items():
+            for point in points:
+                found[point].append(link)
+        for cylinder in self.cylinders:
+            for point in cylinder.between:
+                found[point].append(cylinder.name)
+        return found
+
+
+def _spelled_input(which: Input, same: object) -> Input:
+    assert callable(same)
+    changes = {
+        field: same(name)
+        for field in ("link", "joint", "slider", "cylinder", "relative_to")
+        if (name := getattr(which, field)) is not None
+    }
+    return Input(**{**vars(which), **changes})

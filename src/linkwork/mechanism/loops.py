@@ -1,0 +1,126 @@
+"""Forms B and C: a mechanism described by its loop equations, or by plain equations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from linkwork.foundation.errors import choices
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.names import canonical
+from linkwork.mechanism.description import Description, Problems
+from linkwork.mechanism.parts import Number
+
+__all__ = ["Loops", "PlainEquations"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Equations(Description):
+    """What both forms share: unknowns with a guess, one or several input variables."""
+
+    guess: Mapping[str, Number] = FrozenDict()
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        object.__setattr__(self, "guess", FrozenDict.of(self.guess))
+
+    def _check_guess(self, problems: Problems) -> None:
+        for name, number in self.guess.items():
+            self.numbers.check_number(problems.add, ("guess", name), number)
+        known = {canonical(name) for name in self.guess}
+        driven: set[str] = set()
+        for k, which in enumerate(self.inputs):
+            key = self.input_key(k)
+            kind, name = which.drives
+            if kind != "variable":
+                problems.add(key, 'must name a variable of the equations: variable = "…"')
+            elif canonical(name) not in known:
+                problems.add(
+                    ("guess",),
+                    f'has no value for the input "{name}" {choices("guesses", self.guess, name)}',
+                )
+            elif canonical(name) in driven:
+                problems.add((*key, "variable"), f'drives "{name}" a second time')
+            driven.add(canonical(name))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Loops(_Equations):
+    """Vector loop-closure equations in textbook notation.
+
+    Parameters
+    ----------
+    loops : Mapping[str, str]
+        Complex equations by label: ``"a2*e^(i*θ12) + a3*e^(i*θ13) = d + a4*e^(i*θ14)"``.
+        An angle stands in an exponent, a variable length as a factor; the rest are dimensions.
+    guess : Mapping[str, number]
+        Estimates of all unknowns and the input value they belong to.
+    points : Mapping[str, str], optional
+        Points as formulas of the same kind; they make the mechanism drawable.
+    links : Mapping[str, sequence of str], optional
+        Which points to draw as one link; ``ground`` stands still.
+    """
+
+    loops: Mapping[str, str] = FrozenDict()
+    points: Mapping[str, str] = FrozenDict()
+    links: Mapping[str, tuple[str, ...]] = FrozenDict()
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        set_ = object.__setattr__
+        set_(self, "loops", FrozenDict.of(self.loops))
+        set_(self, "points", FrozenDict.of(self.points))
+        spelled = {canonical(name): name for name in self.points}
+
+        def same(name: str) -> str:
+            return spelled.get(canonical(name), name)
+
+        links = {name: tuple(map(same, points)) for name, points in self.links.items()}
+        set_(self, "links", FrozenDict(links))
+        set_(self, "trace", tuple(map(same, self.trace)))
+        problems = Problems()
+        self.check_common(
+            problems, {"points": self.points, "links": self.links, "guess": self.guess}
+        )
+        self._check_guess(problems)
+        if not self.loops:
+            problems.add(("loops",), "is empty: write at least one loop equation")
+        if not self.inputs:
+            problems.add(("input",), "is missing: name the variable that is driven")
+        for link, points in self.links.items():
+            for point in points:
+                if point not in self.points:
+                    known = choices("points", self.points, point)
+                    problems.add(("links", link), f'point "{point}" is not defined {known}')
+        for k, point in enumerate(self.trace):
+            if point not in self.points:
+                known = choices("points", self.points, point)
+                problems.add(("trace", "points", k), f'point "{point}" is not defined {known}')
+        problems.raise_any(f'mechanism "{self.name}"')
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlainEquations(_Equations):
+    """Plain real equations in named unknowns: Newton-Raphson for any small system.
+
+    Parameters
+    ----------
+    equations : Mapping[str, str]
+        Real equations by label: ``"x^3 - 2*x + 2 = 0"``.
+    guess : Mapping[str, number]
+        Estimates of all unknowns, and the value of each input.
+    """
+
+    equations: Mapping[str, str] = FrozenDict()
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        object.__setattr__(self, "equations", FrozenDict.of(self.equations))
+        problems = Problems()
+        self.check_common(problems, {"guess": self.guess})
+        self._check_guess(problems)
+        if not self.equations:
+            problems.add(("equations",), "is empty: write at least one equation")
+        if self.trace:
+            problems.add(("trace",), "plain equations have no points to trace")
+        problems.raise_any(f'mechanism "{self.name}"')

@@ -1,0 +1,125 @@
+"""The exact shape of every link from its lengths and angles; the sketch decides sides.
+
+A link of n points has 2n - 3 dimensions. Those not given are measured between the sketched points
+and reported; more than 2n - 3 must agree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+from linkwork.mechanism.link_shape import Distance, LinkShape, ShapeError, VertexAngle, place
+
+if TYPE_CHECKING:
+    from linkwork.mechanism.description import Problems
+    from linkwork.mechanism.linkage import Linkage
+
+__all__ = ["Measured", "Shapes"]
+
+GROUND = "ground"
+_AGREE = 1e-9  # relative; given dimensions that say the same thing must agree to this
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measured:
+    """A dimension that was not given and was measured between sketched points."""
+
+    link: str
+    points: tuple[str, str]
+    length: float
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """Local coordinates of every link's points; real axis from the first to the second point.
+
+    ``local[link][point]`` is complex, in the mechanism's length unit; ground is in absolute
+    coordinates.
+    """
+
+    local: Mapping[str, Mapping[str, complex]] = field(default_factory=dict)
+    measured: tuple[Measured, ...] = ()
+
+    @classmethod
+    def of(cls, linkage: Linkage, problems: Problems) -> Shapes:
+        """Shapes of all links; what contradicts itself is added to ``problems``."""
+        local: dict[str, Mapping[str, complex]] = {}
+        measured: list[Measured] = []
+        lengths = {tuple(key.split()): number for key, number in linkage.lengths.items()}
+        angles = {tuple(key.split()): number for key, number in linkage.angles.items()}
+        lengths_at = _by_point(lengths)
+        angles_at = _by_point(angles)
+        for link, points in linkage.links.items():
+            sketch = {point: linkage.sketched(point) for point in points}
+            own = set(points)
+            distances = [
+                Distance(pair[0], pair[1], linkage.numbers(lengths[pair]))
+                for pair in _inside(lengths_at, own)
+            ]
+            vertices = [
+                VertexAngle(*key, linkage.numbers(angles[key]) * linkage.angle.radians)
+                for key in _inside(angles_at, own)
+            ]
+            try:
+                if link == GROUND:
+                    _check_ground(sketch, distances, vertices)
+                    local[link] = sketch
+                    continue
+                shape = place(tuple(points), sketch, distances, vertices)
+            except ShapeError as error:
+                problems.add(_key_of(error, link), error.message)
+                continue
+            local[link] = shape.local
+            measured += _measured(link, shape, linkage, problems)
+        return cls(local, tuple(measured))
+
+
+def _by_point(table: Mapping[tuple[str, ...], object]) -> dict[str, list[tuple[str, ...]]]:
+    found: dict[str, list[tuple[str, ...]]] = {}
+    for key in table:
+        found.setdefault(key[0], []).append(key)
+    return found
+
+
+def _inside(by_point: Mapping[str, list[tuple[str, ...]]], own: set[str]) -> list[tuple[str, ...]]:
+    """The keys whose points all lie on one link."""
+    return [key for point in own for key in by_point.get(point, ()) if own.issuperset(key)]
+
+
+def _key_of(error: ShapeError, link: str) -> tuple[str, ...]:
+    return (error.table, error.key) if error.key else ("links", link)
+
+
+def _check_ground(
+    sketch: Mapping[str, complex], distances: list[Distance], vertices: list[VertexAngle]
+) -> None:
+    """Ground coordinates are exact: a dimension that disagrees is an error."""
+    for a, b in combinations(sketch, 2):
+        if sketch[a] == sketch[b]:
+            raise ShapeError(f"{a} and {b} of ground are the same point: give it one name")
+    for given in (*distances, *vertices):
+        if not given.agrees(sketch, _AGREE):
+            raise ShapeError(
+                f"ground coordinates are exact and give {given.shown(sketch)}, "
+                f"not {given.amount_text}",
+                given.table,
+                given.key,
+            )
+
+
+def _measured(
+    link: str, shape: LinkShape, linkage: Linkage, problems: Problems
+) -> list[Measured]:
+    found = [
+        Measured(link=link, points=(d.a, d.b), length=d.length) for d in shape.measured
+    ]
+    if linkage.sketch and found:
+        wanted = ", ".join(f'"{m.points[0]} {m.points[1]}"' for m in found)
+        problems.add(
+            ("links", link),
+            f"needs {wanted} in [lengths]: with sketch = true nothing is measured from [points]",
+        )
+    return found

@@ -1,0 +1,136 @@
+"""What a mechanism looks like, without numbers: which points to join, hatch, slide and trace."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from linkwork.mechanism.linkage import GROUND, Linkage
+
+__all__ = ["Bar", "DrivenPart", "Guide", "Skeleton", "Strut"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bar:
+    """A rigid link and the points it carries; three or more make a filled polygon."""
+
+    name: str
+    points: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Guide:
+    """A slider or slot: ``point`` runs along the line through two points of the body ``on``.
+
+    ``offset`` is the distance of ``point`` to the left of the line. ``block`` tells a sliding
+    block (prismatic joint) from a pin in a slot.
+    """
+
+    name: str
+    point: str
+    on: str
+    line: tuple[str, str]
+    offset: float = 0.0
+    block: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Strut:
+    """A cylinder: a link of variable length between two points."""
+
+    name: str
+    between: tuple[str, str]
+
+
+@dataclass(frozen=True, kw_only=True)
+class DrivenPart:
+    """What an input drives: ``kind`` is link, slider or cylinder; ``pivot`` a pin of the link."""
+
+    kind: str
+    name: str
+    pivot: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Skeleton:
+    """Everything a picture needs to know besides coordinates.
+
+    ``fixed`` are the points that stand still, ``pins`` the points where bodies are joined.
+    """
+
+    fixed: tuple[str, ...] = ()
+    bars: tuple[Bar, ...] = ()
+    pins: tuple[str, ...] = ()
+    guides: tuple[Guide, ...] = ()
+    struts: tuple[Strut, ...] = ()
+    driven: tuple[DrivenPart, ...] = ()
+    traced: tuple[str, ...] = ()
+
+    @classmethod
+    def of_linkage(cls, linkage: Linkage) -> Skeleton:
+        """The skeleton of a points-and-links mechanism."""
+        carriers = linkage.carriers()
+        guided = {slot.point for slot in linkage.slots}
+        return cls(
+            fixed=linkage.links[GROUND],
+            bars=tuple(
+                Bar(name=name, points=points)
+                for name, points in linkage.links.items()
+                if name != GROUND
+            ),
+            pins=tuple(p for p, links in carriers.items() if len(links) > 1 or p in guided),
+            guides=tuple(
+                [
+                    Guide(name=s.name, point=s.point, on=s.on, line=s.line)
+                    for s in linkage.slots
+                ]
+                + [
+                    Guide(
+                        name=s.name,
+                        point=point,
+                        on=s.on,
+                        line=s.line,
+                        offset=linkage.numbers(s.offset),
+                        block=True,
+                    )
+                    for s in linkage.sliders
+                    for point in s.points
+                ]
+            ),
+            struts=tuple(Strut(name=c.name, between=c.between) for c in linkage.cylinders),
+            driven=tuple(_driven_parts(linkage, carriers)),
+            traced=linkage.trace,
+        )
+
+    @classmethod
+    def of_points(
+        cls,
+        links: Mapping[str, tuple[str, ...]],
+        fixed: tuple[str, ...],
+        traced: tuple[str, ...],
+        driven: tuple[DrivenPart, ...],
+    ) -> Skeleton:
+        """The skeleton of a mechanism given by equations: its drawable points and links."""
+        bars = tuple(
+            Bar(name=name, points=points) for name, points in links.items() if name != GROUND
+        )
+        joined = [p for points in links.values() for p in points]
+        pins = tuple(
+            p for p in dict.fromkeys(joined) if joined.count(p) + (p in fixed) > 1
+        )
+        return cls(fixed=fixed, bars=bars, pins=pins, driven=driven, traced=traced)
+
+
+def _driven_parts(linkage: Linkage, carriers: Mapping[str, list[str]]) -> list[DrivenPart]:
+    found = []
+    for which in linkage.inputs:
+        kind, name = which.drives
+        if kind == "joint":
+            found.append(DrivenPart(kind="link", name=carriers[name][-1], pivot=name))
+        elif kind == "link":
+            base = linkage.links[which.relative_to or GROUND]
+            shared = [p for p in linkage.links[name] if p in base]
+            found.append(DrivenPart(kind="link", name=name, pivot=(shared or [None])[0]))
+        else:
+            found.append(DrivenPart(kind=kind, name=name))
+    return found

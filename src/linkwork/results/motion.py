@@ -1,0 +1,123 @@
+"""A motion: the positions of one table of input values, as arrays."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.foundation.frozen import FrozenDict, read_only
+from linkwork.foundation.status import Status
+from linkwork.mechanism.skeleton import Skeleton
+from linkwork.results.quantity import Quantity, Units
+
+__all__ = ["Limit", "Motion", "Series"]
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Series:
+    """One quantity over all rows: values in everyday units, derivatives in radians and lengths."""
+
+    quantity: Quantity
+    value: Array
+    first: Array
+    second: Array
+
+    def __post_init__(self) -> None:
+        for field in ("value", "first", "second"):
+            object.__setattr__(self, field, read_only(getattr(self, field)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limit:
+    """Where a branch ends: an input value, known to lie within ``bracket``."""
+
+    input: float
+    bracket: tuple[float, float]
+    status: Status
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motion:
+    """The positions of a mechanism over a table of N input values.
+
+    Parameters
+    ----------
+    inputs : Mapping[str, array (N,)]
+        Input values in everyday units; the first one is the parameter of derivatives.
+    unknowns, links, sliders, outputs : Mapping[str, Series]
+        As in :class:`~linkwork.results.position.Position`.
+    points : Mapping[str, (Series, Series)]
+        x and y of every point.
+    status : tuple of Status
+        One per row; rows that failed hold NaN and are kept.
+    residual, condition : array (N,)
+    iterations : array (N,), int
+    certified : array (N,), bool
+    branch : tuple of str
+    speed : float, optional
+        Rate of the first input [rad/s or length/s], if given.
+    limits : tuple of Limit
+        Where the branch ends before the table does.
+    q : array (N, n)
+        The unknowns with angles in radians.
+    """
+
+    mechanism: str
+    units: Units
+    skeleton: Skeleton
+    inputs: Mapping[str, Array]
+    unknowns: Mapping[str, Series]
+    links: Mapping[str, Series] = FrozenDict()
+    sliders: Mapping[str, Series] = FrozenDict()
+    points: Mapping[str, tuple[Series, Series]] = FrozenDict()
+    outputs: Mapping[str, Series] = FrozenDict()
+    status: tuple[Status, ...]
+    message: str = ""
+    residual: Array
+    iterations: npt.NDArray[np.int64]
+    condition: Array
+    certified: npt.NDArray[np.bool_]
+    branch: tuple[str, ...]
+    speed: float | None = None
+    limits: tuple[Limit, ...] = ()
+    q: Array
+
+    def __len__(self) -> int:
+        return len(self.status)
+
+    def __getitem__(self, name: str) -> Array:
+        """Values of one column by name, shape (N,): ``motion["s16"]``, ``motion["A.x"]``."""
+        if name in self.inputs:
+            return self.inputs[name]
+        return self.series(name).value
+
+    def series(self, name: str) -> Series:
+        """The series of a name: unknown, link, slider, output or ``<point>.x``."""
+        for table in (self.unknowns, self.links, self.sliders, self.outputs):
+            if name in table:
+                return table[name]
+        point, _, axis = name.rpartition(".")
+        if point in self.points and axis in ("x", "y"):
+            return self.points[point][axis == "y"]
+        raise KeyError(name)
+
+    @property
+    def found(self) -> npt.NDArray[np.bool_]:
+        """Which rows hold a position, shape (N,)."""
+        return np.array([status.ok for status in self.status], dtype=bool)
+
+    @property
+    def counts(self) -> Counter[Status]:
+        """How many rows ended in which status."""
+        return Counter(self.status)
+
+    def trace(self, point: str) -> npt.NDArray[np.complex128]:
+        """The path of a point as x + iy, shape (N,), NaN where there is no position."""
+        x, y = self.points[point]
+        return x.value + 1j * y.value

@@ -1,0 +1,175 @@
+"""One solved position, with its evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.foundation.frozen import FrozenDict, read_only
+from linkwork.foundation.status import Status
+from linkwork.mechanism.skeleton import Skeleton
+from linkwork.results.quantity import Units
+
+__all__ = ["Certificate", "NewtonStep", "NewtonTrail", "Position"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Certificate:
+    """Whether a position is proven: a true position lies within ``radius``, and no other within
+    ``unique_within`` (weighted largest norm). Not certified: ``reason`` says why.
+    """
+
+    certified: bool = False
+    radius: float | None = None
+    unique_within: float | None = None
+    reason: str = "no certificate was asked for"
+
+
+@dataclass(frozen=True, kw_only=True)
+class NewtonStep:
+    """One iterate of Newton-Raphson; ``step`` is the change that led to the next one."""
+
+    k: int
+    unknowns: Mapping[str, float]
+    residual: float
+    step: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class NewtonTrail:
+    """The iterates of one block of equations, in everyday units.
+
+    ``residual`` in the steps is the 2-norm of the block's real equations in their own unit,
+    ``step`` the largest weighted change of an unknown.
+    """
+
+    equations: tuple[str, ...]
+    steps: tuple[NewtonStep, ...]
+    status: Status
+
+
+@dataclass(frozen=True, kw_only=True)
+class Position:
+    """A position of a mechanism at one input value.
+
+    Values are in the mechanism's own units; derivatives count angles in radians
+    (``first["s16"]`` in mm/rad for an angle input).
+
+    Parameters
+    ----------
+    status, message : Status, str
+        How the search ended, and the sentence for a person.
+    input : Mapping[str, float]
+        Input values.
+    unknowns : Mapping[str, float]
+        The solved unknowns; angles unwrapped.
+    links : Mapping[str, float]
+        The angle of every link.
+    sliders : Mapping[str, float]
+        Displacement of every slider and slot, length of every cylinder.
+    points : Mapping[str, (x, y)]
+        Coordinates of every point.
+    outputs : Mapping[str, float]
+        The named formulas.
+    first, second : Mapping[str, float]
+        Derivatives by the input of unknowns, links, sliders, outputs and ``<point>.x``, ``<point>.y``.
+    velocity, acceleration : Mapping[str, float]
+        The same by time, if the input has a speed.
+    residual : float
+        Largest closure error divided by the longest link.
+    condition : float
+        Largest condition number (largest norm, weighted) of a block's Jacobian.
+    q : array, shape (n,)
+        The unknowns with angles in radians.
+    """
+
+    mechanism: str
+    units: Units
+    skeleton: Skeleton
+    status: Status
+    message: str
+    input: Mapping[str, float]
+    unknowns: Mapping[str, float]
+    links: Mapping[str, float] = FrozenDict()
+    sliders: Mapping[str, float] = FrozenDict()
+    points: Mapping[str, tuple[float, float]] = FrozenDict()
+    outputs: Mapping[str, float] = FrozenDict()
+    first: Mapping[str, float] = FrozenDict()
+    second: Mapping[str, float] = FrozenDict()
+    velocity: Mapping[str, float] = FrozenDict()
+    acceleration: Mapping[str, float] = FrozenDict()
+    residual: float
+    iterations: int
+    condition: float
+    certificate: Certificate = Certificate()
+    branch: str = ""
+    q: npt.NDArray[np.float64]
+    steps: tuple[NewtonTrail, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "q", read_only(self.q))
+
+    def __getitem__(self, name: str) -> float:
+        """A value by name: input, unknown, link angle, slider or output."""
+        for table in (self.input, self.unknowns, self.links, self.sliders, self.outputs):
+            if name in table:
+                return table[name]
+        raise KeyError(name)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The position as JSON-ready data: NaN becomes null, the status its member name."""
+        return {
+            "mechanism": self.mechanism,
+            "units": {"angle": self.units.angle.value, "length": self.units.length},
+            "status": self.status.name,
+            "message": self.message,
+            "input": _plain(self.input),
+            "unknowns": _plain(self.unknowns),
+            "links": _plain(self.links),
+            "sliders": _plain(self.sliders),
+            "points": {name: [_null(x), _null(y)] for name, (x, y) in self.points.items()},
+            "outputs": _plain(self.outputs),
+            "first_derivative": _plain(self.first),
+            "second_derivative": _plain(self.second),
+            **({"velocity": _plain(self.velocity)} if self.velocity else {}),
+            **({"acceleration": _plain(self.acceleration)} if self.acceleration else {}),
+            "residual": _null(self.residual),
+            "iterations": self.iterations,
+            "condition": _null(self.condition),
+            "certificate": {
+                "certified": self.certificate.certified,
+                "radius": self.certificate.radius,
+                "unique_within": self.certificate.unique_within,
+                "reason": self.certificate.reason,
+            },
+            "branch": self.branch,
+            **({"steps": [_trail(trail) for trail in self.steps]} if self.steps else {}),
+        }
+
+
+def _null(number: float) -> float | None:
+    return float(number) if np.isfinite(number) else None
+
+
+def _plain(table: Mapping[str, float]) -> dict[str, float | None]:
+    return {name: _null(number) for name, number in table.items()}
+
+
+def _trail(trail: NewtonTrail) -> dict[str, Any]:
+    return {
+        "equations": list(trail.equations),
+        "status": trail.status.name,
+        "steps": [
+            {
+                "k": step.k,
+                "unknowns": _plain(step.unknowns),
+                "residual": _null(step.residual),
+                "step": None if step.step is None else _null(step.step),
+            }
+            for step in trail.steps
+        ],
+    }
