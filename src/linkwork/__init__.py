@@ -1,0 +1,67 @@
+"""Linkwork: planar mechanisms solved from their loop-closure equations."""
+
+from __future__ import annotations
+
+from linkwork.everyday import (
+    Mechanism,
+    example,
+    examples,
+    linkage,
+    load,
+    loads,
+    loops,
+    plain_equations,
+)
+from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.errors import (
+    ExpressionError,
+    InputError,
+    LinkworkError,
+    MechanismError,
+    MechanismFileError,
+    MissingPackageError,
+    NotConvergedError,
+    Problem,
+    UnknownNameError,
+)
+from linkwork.foundation.status import Status
+from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
+from linkwork.numerics.newton import NewtonOptions
+from linkwork.results.check import CheckReport
+from linkwork.results.motion import Limit, Motion, Series
+from linkwork.results.position import Certificate, Position
+from linkwork.results.table import Table
+
+__all__ = [
+    "AngleUnit",
+    "Certificate",
+    "CheckReport",
+    "Cylinder",
+    "ExpressionError",
+    "Input",
+    "InputError",
+    "Limit",
+    "LinkworkError",
+    "Mechanism",
+    "MechanismError",
+    "MechanismFileError",
+    "MissingPackageError",
+    "Motion",
+    "NewtonOptions",
+    "NotConvergedError",
+    "Position",
+    "Problem",
+    "Series",
+    "Slider",
+    "Slot",
+    "Status",
+    "Table",
+    "UnknownNameError",
+    "example",
+    "examples",
+    "linkage",
+    "load",
+    "loads",
+    "loops",
+    "plain_equations",
+]

@@ -1,0 +1,27 @@
+"""Pictures of positions: a pose becomes a scene of primitives, writers only translate it."""
+
+from linkwork.drawing.matplotlib_writer import figure, render, write
+from linkwork.drawing.mechanism_scene import SceneOptions, reach_of, scene_of
+from linkwork.drawing.scene import Arc, Box, Disc, Hatch, Polygon, Polyline, Role, Scene, Text
+from linkwork.drawing.theme import LIGHT, Style, Theme
+
+__all__ = [
+    "LIGHT",
+    "Arc",
+    "Box",
+    "Disc",
+    "Hatch",
+    "Polygon",
+    "Polyline",
+    "Role",
+    "Scene",
+    "SceneOptions",
+    "Style",
+    "Text",
+    "Theme",
+    "figure",
+    "reach_of",
+    "render",
+    "scene_of",
+    "write",
+]

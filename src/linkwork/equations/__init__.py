@@ -1,0 +1,1 @@
+"""Loop-closure equations: written from a mechanism or read from a person, shown, compiled."""

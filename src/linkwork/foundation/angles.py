@@ -21,6 +21,15 @@ class AngleUnit(Enum):
         """Radians per unit."""
         return math.pi / 180.0 if self is AngleUnit.DEGREE else 1.0
 
+    def from_radians(self, angle: float) -> float:
+        """The angle in this unit; the short decimal number if one means the same radians.
+
+        ``60°`` becomes 1.047… radians and must come back as 60, not 59.99999999999999.
+        """
+        value = angle / self.radians
+        short = round(value, 10)
+        return short if short * self.radians == angle else value
+
     @property
     def turn(self) -> float:
         """One full turn in this unit."""

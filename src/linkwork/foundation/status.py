@@ -38,3 +38,17 @@ class Status(Enum):
     def ok(self) -> bool:
         """Whether a position was found."""
         return self is Status.CONVERGED
+
+    @property
+    def code(self) -> int:
+        """A small whole number, for arrays of statuses."""
+        return _CODES[self]
+
+    @classmethod
+    def of_code(cls, code: int) -> Status:
+        """The status with this code."""
+        return _MEMBERS[code]
+
+
+_MEMBERS = tuple(Status)
+_CODES = {status: code for code, status in enumerate(_MEMBERS)}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
@@ -11,9 +11,12 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from linkwork.expression.grammar import RESERVED
+from linkwork.expression.grammar import RESERVED, parse
+from linkwork.expression.tree import Name
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import (
+    ExpressionError,
+    InputError,
     MechanismError,
     Problem,
     UnknownNameError,
@@ -23,8 +26,11 @@ from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical, is_name
 from linkwork.mechanism.dimensions import Numbers
 from linkwork.mechanism.parts import Input, Number
+from linkwork.mechanism.speed import speed_per_second
 
-__all__ = ["Description", "Problems"]
+__all__ = ["Description", "Problems", "declared"]
+
+Key = tuple[str | int, ...]
 
 _MOST_ROWS = 10_000_000
 
@@ -83,7 +89,7 @@ class Description:
     def __post_init__(self) -> None:
         set_ = object.__setattr__
         if isinstance(self.angle, str):
-            set_(self, "angle", AngleUnit(self.angle))
+            set_(self, "angle", _angle_unit(self.angle, self.name))
         if isinstance(self.inputs, Input):
             set_(self, "inputs", (self.inputs,))
         set_(self, "inputs", tuple(self.inputs))
@@ -115,27 +121,51 @@ class Description:
             dimensions[known[canonical(name)]] = number
         return replace(self, dimensions=dimensions)
 
+    def with_range(
+        self, start: Number | None = None, stop: Number | None = None, step: Number | None = None
+    ) -> Self:
+        """A copy with another range of the input's table.
+
+        Raises
+        ------
+        InputError
+            If there is no input or more than one.
+        """
+        if len(self.inputs) != 1:
+            raise InputError(
+                f'mechanism "{self.name}" has {len(self.inputs)} inputs: '
+                "a range can be replaced only for a single one"
+            )
+        given = {"start": start, "stop": stop, "step": step}
+        changes = {field: number for field, number in given.items() if number is not None}
+        return replace(self, inputs=(replace(self.inputs[0], **changes),))
+
     def unit_of_input(self, which: Input) -> str:
         """``deg``, ``rad`` or the length unit."""
         return self.length if which.drives[0] in ("slider", "cylinder") else self.angle.value
 
-    def check_common(self, problems: Problems, named: Mapping[str, Iterable[str]]) -> None:
+    def speed(self, which: Input) -> float | None:
+        """The speed of an input in its own unit per second, if it has one."""
+        if which.speed is None:
+            return None
+        return speed_per_second(which.speed, which.drives[0], self.numbers, self.length)
+
+    def check_common(self, problems: Problems, named: Iterable[tuple[Key, str]]) -> None:
         """Checks shared by all forms: names, dimensions, inputs.
 
-        ``named`` maps each table that declares names to those names.
+        ``named`` lists what the form names besides: key path and name.
         """
         taken: dict[str, str] = {}
-        for table, names in {**named, "dimensions": self.dimensions}.items():
-            for name in names:
-                _check_name(problems, table, name, taken)
+        for key, name in (*named, *declared("dimensions", self.dimensions)):
+            _check_name(problems, key, name, taken)
         self.numbers.check(problems.add)
-        for output in self.outputs:
-            _check_name(problems, "outputs", output, taken)
+        for key, name in declared("outputs", self.outputs):
+            _check_name(problems, key, name, taken)
         for k, which in enumerate(self.inputs):
             _check_rows(self, which, self.input_key(k), problems)
         self._check_lock_step(problems)
 
-    def input_key(self, k: int) -> tuple[str | int, ...]:
+    def input_key(self, k: int) -> Key:
         """Key path of the k-th input in a file."""
         return ("input",) if len(self.inputs) == 1 else ("input", k)
 
@@ -143,7 +173,7 @@ class Description:
         """The table's values of one input, in the file's unit, shape (rows,)."""
         start, stop, step = self._range(which)
         count = math.floor((stop - start) / step + 1e-9) + 1
-        return start + step * np.arange(count)
+        return np.asarray(start + step * np.arange(count), dtype=np.float64)
 
     def _range(self, which: Input) -> tuple[float, float, float]:
         turn = self.angle.turn
@@ -170,35 +200,72 @@ class Description:
                 )
 
 
-def _check_name(problems: Problems, table: str, name: str, taken: dict[str, str]) -> None:
-    key = (table, name)
+def declared(table: str, names: Iterable[str]) -> Iterator[tuple[Key, str]]:
+    """Key path and name of everything that the keys of a table name."""
+    return (((table, name), name) for name in names)
+
+
+def _angle_unit(text: str, name: str) -> AngleUnit:
+    try:
+        return AngleUnit(text)
+    except ValueError:
+        known = " or ".join(f'"{unit.value}"' for unit in AngleUnit)
+        problem = Problem(key=("angle",), message=f'must be {known}, got "{text}"')
+        raise MechanismError([problem], f'mechanism "{name}"') from None
+
+
+def _check_name(problems: Problems, key: Key, name: str, taken: dict[str, str]) -> None:
     folded = canonical(name)
-    if not is_name(name):
-        problems.add(key, f'"{name}" cannot be a name: letters first, then letters, digits, _ or \'')
+    if is_name(name) and not _reads_as(name, folded):
+        problems.add(key, f'"{name}" cannot be a name: a formula would not read it as one')
+    elif not is_name(name):
+        rule = "letters first, then letters, digits, _ or '"
+        problems.add(key, f'"{name}" cannot be a name: {rule}')
     elif folded in RESERVED:
         problems.add(key, f'"{name}" is reserved in formulas: call it "{name}1"')
     elif folded in taken:
         problems.add(key, f'"{name}" is already a name in {taken[folded]}')
     else:
-        taken[folded] = f"[{table}]"
+        taken[folded] = f"[{key[0]}]" if len(key) == 2 else f"[[{key[0]}]]"
+
+
+def _reads_as(name: str, folded: str) -> bool:
+    """Whether a formula can use the name: ``iθ`` is i*θ there, ``x²`` is x^2."""
+    if folded in RESERVED:
+        return True
+    try:
+        return parse(name) == Name(folded)
+    except ExpressionError:
+        return False
 
 
 def _check_rows(
-    description: Description, which: Input, key: tuple[str | int, ...], problems: Problems
+    description: Description, which: Input, key: Key, problems: Problems
 ) -> None:
-    before = len(problems)
+    _check_speed(description, which, (*key, "speed"), problems)
     fields = (("from", which.start), ("to", which.stop), ("step", which.step))
-    for field, number in fields:
-        if number is not None:
-            description.numbers.check_number(problems.add, (*key, field), number)
+    amounts = [
+        description.numbers.check_number(problems.add, (*key, field), number)
+        for field, number in fields
+        if number is not None
+    ]
     lengthy = which.drives[0] in ("slider", "cylinder")
     missing = [field for field, number in fields if number is None]
     if lengthy and missing:
         problems.add((*key, missing[0]), "is missing: a length has no natural range")
-    if len(problems) > before:
+    if (lengthy and missing) or any(map(math.isnan, amounts)):
         return
     start, stop, step = description._range(which)
-    if step == 0 or (stop - start) * step < 0:
+    if step == 0 or (start != stop and (stop > start) != (step > 0)):
         problems.add((*key, "step"), f"a step of {step:g} does not lead from {start:g} to {stop:g}")
     elif (stop - start) / step > _MOST_ROWS:
-        problems.add((*key, "step"), f"gives more than {_MOST_ROWS} rows")
+        message = f"a step of {step:g} from {start:g} to {stop:g} gives more than {_MOST_ROWS} rows"
+        problems.add((*key, "step"), message)
+
+
+def _check_speed(description: Description, which: Input, key: Key, problems: Problems) -> None:
+    try:
+        description.speed(which)
+    except ExpressionError as error:
+        if not description.numbers.wrong:  # else the cause may be a dimension, reported already
+            problems.add(key, error.message)

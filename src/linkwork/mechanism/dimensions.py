@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 
 from linkwork.expression.grammar import CONSTANTS, parse
-from linkwork.expression.tree import names_in
+from linkwork.expression.tree import Name, names_in
 from linkwork.expression.values import value
 from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.errors import ExpressionError
+from linkwork.foundation.errors import ExpressionError, choices
 from linkwork.foundation.names import canonical
 
 __all__ = ["Numbers"]
@@ -46,11 +46,16 @@ class Numbers:
         ExpressionError
             If the formula cannot be read or has no finite real value.
         """
-        if not isinstance(number, str):
-            if not math.isfinite(number):
-                raise ExpressionError(f"must be a finite number, got {number}", str(number), 1)
-            return float(number)
-        return value(parse(number), self.known, self.unit, number)
+        if isinstance(number, str):
+            return value(parse(number), self.known, self.unit, number)
+        try:
+            plain = float(number)
+        except OverflowError:  # a whole number beyond every float
+            plain = math.inf
+        if not math.isfinite(plain) or isinstance(number, bool):
+            shown = str(number if isinstance(number, bool) else plain)
+            raise ExpressionError(f"must be a finite number, got {shown}", shown, 1)
+        return plain
 
     def check(self, report: Report) -> None:
         """Report every dimension that has no value."""
@@ -72,7 +77,12 @@ class Numbers:
             used = {node.name for node in names_in(parse(str(number)))}
         except ExpressionError:
             return False
-        return bool(used & set(self.wrong))
+        return not used.isdisjoint(self.wrong)
+
+    def _undefined(self, node: Name, text: str) -> ExpressionError:
+        known = choices("dimensions", self.spelling.values(), node.spelling)
+        message = f'column {node.column}: "{node.spelling}" is not defined {known}'
+        return ExpressionError(message, text, node.column)
 
     def _resolve(self, name: str, given: Mapping[str, Number], chain: list[str]) -> None:
         if name in self.known or name in self.wrong:
@@ -90,6 +100,8 @@ class Numbers:
                 for node in names_in(parse(number)):
                     if node.name in given and node.name not in CONSTANTS:
                         self._resolve(node.name, given, [*chain, name])
+                    elif node.name not in (*given, *CONSTANTS, "i"):
+                        raise self._undefined(node, number)
                 if name in self.wrong:
                     return
             self.known[name] = self(number)
@@ -97,4 +109,5 @@ class Numbers:
             if not self._depends_on_wrong(number):
                 self.wrong[name] = str(error) if isinstance(number, str) else error.message
             else:
-                self.wrong.setdefault(name, "depends on a dimension that has no value")
+                used = [node for node in names_in(parse(str(number))) if node.name in self.wrong]
+                self.wrong[name] = f'depends on "{used[0].spelling}", which has no value'

@@ -13,6 +13,7 @@ import numpy.typing as npt
 __all__ = ["Distance", "LinkShape", "ShapeError", "VertexAngle", "place"]
 
 _AGREE = 1e-9
+_MOST_STEPS = 60
 
 
 class ShapeError(Exception):
@@ -59,7 +60,7 @@ class Distance:
 
 @dataclass(frozen=True)
 class VertexAngle:
-    """The angle at ``vertex`` from the ray to ``a`` to the ray to ``b``, counter-clockwise [rad]."""
+    """The angle [rad] at ``vertex`` from the ray to ``a`` to that to ``b``, counter-clockwise."""
 
     a: str
     vertex: str
@@ -162,9 +163,15 @@ class _Placing:
         """The meeting of two circles, on the side of the sketch."""
         r1 = self.distance(first, point, measure=True)
         r2 = self.distance(second, point, measure=True)
-        assert r1 is not None and r2 is not None
+        assert r1 is not None
+        assert r2 is not None
         base = self.z[second] - self.z[first]
         d = abs(base)
+        if d <= _AGREE * max(r1, r2):
+            raise ShapeError(
+                f"{first} and {second} are at the same place: "
+                f"{point} cannot be placed by its distances from both"
+            )
         x = (r1 * r1 - r2 * r2 + d * d) / (2.0 * d)
         square = r1 * r1 - x * x
         tolerance = _AGREE * max(r1, r2, d) ** 2
@@ -226,7 +233,11 @@ def place(
     if not all(g.agrees(z, _AGREE) for g in given):
         if len(given) > 2 * len(points) - 3:
             raise _contradiction(given, z, points)
-        z, measured = _together(points, sketch, given)
+        try:
+            with np.errstate(all="ignore"):  # what overflows does not agree, and is reported
+                z, measured = _together(points, sketch, given)
+        except np.linalg.LinAlgError:
+            raise ShapeError("no link has these dimensions near the sketch") from None
     return LinkShape(_upright(z, points), tuple(measured))
 
 
@@ -240,7 +251,10 @@ def _base(
         return first
     pairs = [d.points for d in distances]
     with_angle = [
-        (v.vertex, ray) for v in vertices for ray in (v.a, v.b) if frozenset((v.vertex, ray)) in given
+        (v.vertex, ray)
+        for v in vertices
+        for ray in (v.a, v.b)
+        if frozenset((v.vertex, ray)) in given
     ]
     a, b = (with_angle or pairs)[0]
     return a, b
@@ -251,8 +265,9 @@ def _contradiction(
 ) -> ShapeError:
     worst = max(given, key=lambda g: abs(g.error(z)))
     return ShapeError(
-        f"a link of {len(points)} points has {2 * len(points) - 3} dimensions, {len(given)} are given "
-        f"and disagree: the others give {worst.shown(z)}, not {worst.amount_text}",
+        f"a link of {len(points)} points has {2 * len(points) - 3} dimensions, "
+        f"{len(given)} are given and disagree: "
+        f"the others give {worst.shown(z)}, not {worst.amount_text}",
         worst.table,
         worst.key,
     )
@@ -277,7 +292,7 @@ def _together(
                 measured.append(candidate)
     flat = np.concatenate([start.real, start.imag])
     n = len(points)
-    for _ in range(60):
+    for _ in range(_MOST_STEPS):
         z = flat[:n] + 1j * flat[n:]
         errors = np.array([row.error(dict(zip(points, z, strict=True))) for row in rows])
         if np.max(np.abs(errors)) <= 1e-14:

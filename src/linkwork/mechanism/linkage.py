@@ -38,7 +38,7 @@ class Linkage(Description):
         If true, dimensions are never measured from ``points``.
     """
 
-    points: Mapping[str, tuple[Number, Number]] = FrozenDict()
+    points: Mapping[str, tuple[Number, ...]] = FrozenDict()
     links: Mapping[str, tuple[str, ...]] = FrozenDict()
     lengths: Mapping[str, Number] = FrozenDict()
     angles: Mapping[str, Number] = FrozenDict()
@@ -50,18 +50,12 @@ class Linkage(Description):
     def __post_init__(self) -> None:
         super().__post_init__()
         set_ = object.__setattr__
-        spelled = {
-            canonical(name): name
-            for names in (
-                self.points,
-                self.links,
-                *[[part.name] for part in (*self.slots, *self.sliders, *self.cylinders)],
-            )
-            for name in names
-        }
+        parts: list[Slot | Slider | Cylinder] = [*self.slots, *self.sliders, *self.cylinders]
+        named = (*self.points, *self.links, *(part.name for part in parts))
+        spelled = {canonical(name): name for name in named}
 
         def same(name: str) -> str:
-            return spelled.get(canonical(name), name)
+            return str(spelled.get(canonical(name), name))
 
         set_(self, "points", FrozenDict({n: tuple(p) for n, p in self.points.items()}))
         links = {name: tuple(map(same, points)) for name, points in self.links.items()}
@@ -71,8 +65,9 @@ class Linkage(Description):
             folded = {" ".join(map(same, key.split())): number for key, number in table.items()}
             set_(self, field, FrozenDict(folded if len(folded) == len(table) else table))
         for field in ("slots", "sliders", "cylinders"):
-            parts = getattr(self, field)
-            set_(self, field, tuple(replaced_names(p, spelled, canonical) for p in parts))
+            same_kind = getattr(self, field)
+            renamed = (replaced_names(part, spelled, canonical) for part in same_kind)
+            set_(self, field, tuple(renamed))
         inputs = tuple(_spelled_input(which, same) for which in self.inputs)
         set_(self, "inputs", inputs)
         set_(self, "trace", tuple(map(same, self.trace)))

@@ -7,8 +7,8 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from linkwork.foundation.errors import choices
-from linkwork.mechanism.description import Problems
-from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
+from linkwork.mechanism.description import Problems, declared
+from linkwork.mechanism.parts import Cylinder, Input, Number, Slider, Slot
 from linkwork.mechanism.shape import Shapes
 
 if TYPE_CHECKING:
@@ -18,18 +18,21 @@ __all__ = ["check_linkage"]
 
 Key = tuple[str | int, ...]
 GROUND = "ground"
+_LARGEST = 1e100  # so that squares and quotients of lengths stay numbers
+_SMALLEST = 1e-100
 
 
 def check_linkage(linkage: Linkage, problems: Problems) -> None:
     """Add every problem of the linkage to ``problems``."""
-    parts = [*linkage.slots, *linkage.sliders, *linkage.cylinders]
     linkage.check_common(
         problems,
-        {
-            "points": linkage.points,
-            "links": linkage.links,
-            "slots, sliders and cylinders": [part.name for part in parts],
-        },
+        [
+            *declared("points", linkage.points),
+            *declared("links", linkage.links),
+            *((("slots", k, "name"), slot.name) for k, slot in enumerate(linkage.slots)),
+            *((("sliders", k, "name"), part.name) for k, part in enumerate(linkage.sliders)),
+            *((("cylinders", k, "name"), part.name) for k, part in enumerate(linkage.cylinders)),
+        ],
     )
     _check_points(linkage, problems)
     _check_links(linkage, problems)
@@ -67,9 +70,17 @@ def _check_points(linkage: Linkage, problems: Problems) -> None:
             problems.add(("points", point), f"needs two coordinates, got {len(coordinates)}")
             continue
         for number in coordinates:
-            linkage.numbers.check_number(problems.add, ("points", point), number)
+            _check_length(linkage, number, ("points", point), problems)
         if point not in carried:
             problems.add(("points", point), "is on no link: add it to a link or remove it")
+
+
+def _check_length(linkage: Linkage, number: Number, key: Key, problems: Problems) -> float:
+    """A length or coordinate whose square is a number too."""
+    amount = linkage.numbers.check_number(problems.add, key, number)
+    if abs(amount) > _LARGEST:
+        problems.add(key, f"{amount:g} is too large: at most {_LARGEST:g} {linkage.length}")
+    return amount
 
 
 def _check_links(linkage: Linkage, problems: Problems) -> None:
@@ -96,8 +107,10 @@ def _check_shared_points(linkage: Linkage, problems: Problems) -> None:
     """Two links that share two points are one rigid body."""
     seen: dict[tuple[str, str], str] = {}
     reported: set[tuple[str, str]] = set()
-    bodies = [(("links", link), link, points) for link, points in linkage.links.items()]
-    bodies += [(("cylinders", k), c.name, c.between) for k, c in enumerate(linkage.cylinders)]
+    bodies: list[tuple[Key, str, tuple[str, ...]]] = [
+        *((("links", link), link, points) for link, points in linkage.links.items()),
+        *((("cylinders", k), c.name, c.between) for k, c in enumerate(linkage.cylinders)),
+    ]
     for key, body, points in bodies:
         for pair in combinations(sorted(set(points)), 2):
             other = seen.setdefault(pair, body)
@@ -108,13 +121,13 @@ def _check_shared_points(linkage: Linkage, problems: Problems) -> None:
             advice = (
                 "a cylinder between them cannot change its length"
                 if key[0] == "cylinders"
-                else f"they move as one: make one link of {', '.join(_union(linkage, other, points))}"
+                else f"they move as one: make one link of {_union(linkage, other, points)}"
             )
             problems.add(key, f'shares {a} and {b} with "{other}": {advice}')
 
 
-def _union(linkage: Linkage, other: str, points: Iterable[str]) -> list[str]:
-    return list(dict.fromkeys([*linkage.links.get(other, ()), *points]))
+def _union(linkage: Linkage, other: str, points: Iterable[str]) -> str:
+    return ", ".join(dict.fromkeys([*linkage.links.get(other, ()), *points]))
 
 
 def _check_line(
@@ -144,7 +157,8 @@ def _check_slot(linkage: Linkage, slot: Slot, key: Key, problems: Problems) -> N
         problems.add((*key, "point"), _no_point(linkage, slot.point))
     elif slot.point in linkage.links.get(slot.on, ()):
         problems.add(
-            (*key, "point"), f'point "{slot.point}" is fixed on "{slot.on}" and cannot run in its slot'
+            (*key, "point"),
+            f'point "{slot.point}" is fixed on "{slot.on}" and cannot run in its slot',
         )
 
 
@@ -169,14 +183,17 @@ def _check_slider(linkage: Linkage, slider: Slider, key: Key, problems: Problems
         problems.add((*key, "points"), f"names {slider.points[0]} twice")
     if len(slider.points) == 2 and slider.angle is not None:
         problems.add((*key, "angle"), "is already given by the two points: leave one of them out")
-    linkage.numbers.check_number(problems.add, (*key, "offset"), slider.offset)
+    _check_length(linkage, slider.offset, (*key, "offset"), problems)
     if slider.angle is not None:
         linkage.numbers.check_number(problems.add, (*key, "angle"), slider.angle)
 
 
 def _check_cylinder(linkage: Linkage, cylinder: Cylinder, key: Key, problems: Problems) -> None:
-    if len(set(cylinder.between)) != 2:
-        problems.add((*key, "between"), "needs two different points")
+    if len(set(cylinder.between)) > 2 or len(cylinder.between) < 2:
+        problems.add((*key, "between"), f"needs two points, got {len(cylinder.between)}")
+    elif len(set(cylinder.between)) == 1:
+        message = f"needs two different points, got {cylinder.between[0]} twice"
+        problems.add((*key, "between"), message)
     for point in cylinder.between:
         if point not in linkage.points:
             problems.add((*key, "between"), _no_point(linkage, point))
@@ -187,28 +204,39 @@ def _check_dimension_keys(linkage: Linkage, problems: Problems) -> None:
         for text, number in getattr(linkage, table).items():
             key = (table, text)
             names = text.split()
-            wanted = "two points" if count == 2 else "three points"
             if len(names) != count or len(set(names)) != count:
-                problems.add(key, f'the key names {wanted} of one link, as in "{"O2 A P"[: 3 * count - 2]}"')
+                wanted = "two points" if count == 2 else "three points"
+                example = "O2 A" if count == 2 else "O2 A P"
+                problems.add(key, f'the key must name {wanted} of one link, as in "{example}"')
                 continue
             missing = [name for name in names if name not in linkage.points]
             if missing:
                 problems.add(key, _no_point(linkage, missing[0]))
             elif not any(set(names) <= set(points) for points in linkage.links.values()):
-                problems.add(key, f"no link carries {' and '.join(names)}: a distance between links varies")
-            amount = linkage.numbers.check_number(problems.add, key, number)
-            if table == "lengths" and amount <= 0:
+                what = "a distance" if count == 2 else "an angle"
+                problems.add(
+                    key, f"no link carries {' and '.join(names)}: {what} between links varies"
+                )
+            if table == "angles":
+                linkage.numbers.check_number(problems.add, key, number)
+                continue
+            amount = _check_length(linkage, number, key, problems)
+            if amount <= 0:
                 problems.add(key, f"must be a positive length, got {amount:g}")
+            elif amount < _SMALLEST:
+                message = f"{amount:g} is too small: at least {_SMALLEST:g} {linkage.length}"
+                problems.add(key, message)
 
 
 def _check_inputs(linkage: Linkage, problems: Problems) -> None:
     driven: dict[tuple[str, ...], Key] = {}
     for k, which in enumerate(linkage.inputs):
         key = linkage.input_key(k)
-        given = [f for f in ("link", "joint", "slider", "cylinder", "variable") if getattr(which, f)]
+        kinds = ("link", "joint", "slider", "cylinder", "variable")
+        given = [kind for kind in kinds if getattr(which, kind) is not None]
         if len(given) != 1:
-            what = " and ".join(given) or "nothing"
-            problems.add(key, f"must drive one of link, joint, slider, cylinder; it names {what}")
+            what = " and ".join(given) or "none of them"
+            problems.add(key, f"must name one of link, joint, slider, cylinder; it has {what}")
             continue
         quantity = _check_input(linkage, which, key, problems)
         if quantity is None:
@@ -231,15 +259,19 @@ def _check_input(
         problems.add((*key, "relative_to"), "goes with link only")
         return None
     if kind == "variable":
-        problems.add((*key, kind), "belongs to [loops] and [equations]: use link, slider or cylinder")
+        message = "belongs to [loops] and [equations]: use link, slider or cylinder"
+        problems.add((*key, kind), message)
         return None
     if kind == "link":
         return _check_angle_input(linkage, which, key, problems)
     if kind == "joint":
         return _check_joint_input(linkage, name, key, problems)
-    parts = linkage.cylinders if kind == "cylinder" else (*linkage.sliders, *linkage.slots)
-    if name not in [part.name for part in parts]:
-        known = choices("cylinders" if kind == "cylinder" else "sliders", [p.name for p in parts], name)
+    if kind == "cylinder":
+        names = [part.name for part in linkage.cylinders]
+    else:
+        names = [*(s.name for s in linkage.sliders), *(s.name for s in linkage.slots)]
+    if name not in names:
+        known = choices("cylinders" if kind == "cylinder" else "sliders and slots", names, name)
         problems.add((*key, kind), f'{kind} "{name}" is not defined {known}')
         return None
     return (name,)
@@ -249,6 +281,8 @@ def _check_angle_input(
     linkage: Linkage, which: Input, key: Key, problems: Problems
 ) -> tuple[str, ...] | None:
     link, against = which.link or "", which.relative_to or GROUND
+    if GROUND not in linkage.links and against == GROUND:
+        return None  # reported at [links]
     for field, name in (("link", link), ("relative_to", against)):
         if name not in linkage.links:
             problems.add((*key, field), _no_link(linkage, name))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from linkwork.foundation.errors import choices
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical
-from linkwork.mechanism.description import Description, Problems
+from linkwork.mechanism.description import Description, Problems, declared
 from linkwork.mechanism.parts import Number
 
 __all__ = ["Loops", "PlainEquations"]
@@ -32,9 +32,10 @@ class _Equations(Description):
         for k, which in enumerate(self.inputs):
             key = self.input_key(k)
             kind, name = which.drives
-            if kind != "variable":
-                problems.add(key, 'must name a variable of the equations: variable = "…"')
-            elif canonical(name) not in known:
+            if kind != "variable" or which.relative_to is not None:
+                problems.add(key, 'must name a variable of the equations, only: variable = "…"')
+                continue
+            if canonical(name) not in known:
                 problems.add(
                     ("guess",),
                     f'has no value for the input "{name}" {choices("guesses", self.guess, name)}',
@@ -80,7 +81,12 @@ class Loops(_Equations):
         set_(self, "trace", tuple(map(same, self.trace)))
         problems = Problems()
         self.check_common(
-            problems, {"points": self.points, "links": self.links, "guess": self.guess}
+            problems,
+            [
+                *declared("points", self.points),
+                *declared("links", self.links),
+                *declared("guess", self.guess),
+            ],
         )
         self._check_guess(problems)
         if not self.loops:
@@ -117,7 +123,7 @@ class PlainEquations(_Equations):
         super().__post_init__()
         object.__setattr__(self, "equations", FrozenDict.of(self.equations))
         problems = Problems()
-        self.check_common(problems, {"guess": self.guess})
+        self.check_common(problems, declared("guess", self.guess))
         self._check_guess(problems)
         if not self.equations:
             problems.add(("equations",), "is empty: write at least one equation")

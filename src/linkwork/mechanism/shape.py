@@ -54,14 +54,13 @@ class Shapes:
         angles_at = _by_point(angles)
         for link, points in linkage.links.items():
             sketch = {point: linkage.sketched(point) for point in points}
-            own = set(points)
             distances = [
                 Distance(pair[0], pair[1], linkage.numbers(lengths[pair]))
-                for pair in _inside(lengths_at, own)
+                for pair in _inside(lengths_at, points)
             ]
             vertices = [
-                VertexAngle(*key, linkage.numbers(angles[key]) * linkage.angle.radians)
-                for key in _inside(angles_at, own)
+                VertexAngle(a, v, b, linkage.numbers(angles[a, v, b]) * linkage.angle.radians)
+                for a, v, b in _inside(angles_at, points)
             ]
             try:
                 if link == GROUND:
@@ -84,9 +83,12 @@ def _by_point(table: Mapping[tuple[str, ...], object]) -> dict[str, list[tuple[s
     return found
 
 
-def _inside(by_point: Mapping[str, list[tuple[str, ...]]], own: set[str]) -> list[tuple[str, ...]]:
-    """The keys whose points all lie on one link."""
-    return [key for point in own for key in by_point.get(point, ()) if own.issuperset(key)]
+def _inside(
+    by_point: Mapping[str, list[tuple[str, ...]]], points: tuple[str, ...]
+) -> list[tuple[str, ...]]:
+    """The keys whose points all lie on one link, in the order of its points."""
+    own = set(points)
+    return [key for point in points for key in by_point.get(point, ()) if own.issuperset(key)]
 
 
 def _key_of(error: ShapeError, link: str) -> tuple[str, ...]:
@@ -100,7 +102,8 @@ def _check_ground(
     for a, b in combinations(sketch, 2):
         if sketch[a] == sketch[b]:
             raise ShapeError(f"{a} and {b} of ground are the same point: give it one name")
-    for given in (*distances, *vertices):
+    dimensions: list[Distance | VertexAngle] = [*distances, *vertices]
+    for given in dimensions:
         if not given.agrees(sketch, _AGREE):
             raise ShapeError(
                 f"ground coordinates are exact and give {given.shown(sketch)}, "

@@ -130,7 +130,7 @@ def _driven_parts(linkage: Linkage, carriers: Mapping[str, list[str]]) -> list[D
         elif kind == "link":
             base = linkage.links[which.relative_to or GROUND]
             shared = [p for p in linkage.links[name] if p in base]
-            found.append(DrivenPart(kind="link", name=name, pivot=(shared or [None])[0]))
+            found.append(DrivenPart(kind="link", name=name, pivot=shared[0] if shared else None))
         else:
             found.append(DrivenPart(kind=kind, name=name))
     return found

@@ -1,0 +1,1 @@
+"""Positions, whole cycles and rates of a mechanism."""

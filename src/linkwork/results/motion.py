@@ -49,7 +49,11 @@ class Motion:
     Parameters
     ----------
     inputs : Mapping[str, array (N,)]
-        Input values in everyday units; the first one is the parameter of derivatives.
+        Input values in everyday units.
+    input_units : Mapping[str, str]
+        Their units.
+    derivative_unit : str
+        What derivatives are taken by: ``rad``, or the length unit; of the first moving input.
     unknowns, links, sliders, outputs : Mapping[str, Series]
         As in :class:`~linkwork.results.position.Position`.
     points : Mapping[str, (Series, Series)]
@@ -72,6 +76,8 @@ class Motion:
     units: Units
     skeleton: Skeleton
     inputs: Mapping[str, Array]
+    input_units: Mapping[str, str]
+    derivative_unit: str
     unknowns: Mapping[str, Series]
     links: Mapping[str, Series] = FrozenDict()
     sliders: Mapping[str, Series] = FrozenDict()

@@ -1,0 +1,18 @@
+"""Mechanism files: TOML in, with every problem at its line; TOML out, and the JSON Schema."""
+
+from linkwork.textfile.lines import Lines
+from linkwork.textfile.reader import ReadFile, read_bytes, read_file, read_text
+from linkwork.textfile.schema import json_schema, schema_text
+from linkwork.textfile.writer import save, write_text
+
+__all__ = [
+    "Lines",
+    "ReadFile",
+    "json_schema",
+    "read_bytes",
+    "read_file",
+    "read_text",
+    "save",
+    "schema_text",
+    "write_text",
+]

@@ -1,0 +1,217 @@
+"""Sliders and slots: a block on a rail, a collar on a rod, a pin in a slot."""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.drawing.ground_symbols import hatching
+from linkwork.drawing.link_symbols import Gap, uncovered
+from linkwork.drawing.measures import Measures
+from linkwork.drawing.pose import Pose
+from linkwork.drawing.scene import Polygon, Polyline, Primitive, Role, xy
+from linkwork.mechanism.skeleton import Guide
+
+__all__ = ["Track", "guide_symbols", "track_gaps", "tracks"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Track:
+    """A slider or slot as it is drawn.
+
+    Parameters
+    ----------
+    name, on : str
+        Of the slider or slot, and of the link that carries the line.
+    along, away : complex
+        Unit vectors of the line and of the side that a rail and its hatching lie on.
+    start, end : complex
+        The ends of the travel of the points on the line.
+    places : tuple of complex
+        Where blocks or pins are now.
+    foot, tip : complex
+        The two points of the link that the line is laid through.
+    """
+
+    name: str
+    on: str
+    tone: int
+    block: bool
+    fixed: bool
+    along: complex
+    away: complex
+    start: complex
+    end: complex
+    places: tuple[complex, ...]
+    foot: complex
+    tip: complex
+
+
+def tracks(pose: Pose, measures: Measures, tone_of: Mapping[str, int]) -> list[Track]:
+    """All sliders and slots. The points of one slider share a track."""
+    groups: dict[str, list[Guide]] = {}
+    for guide in pose.skeleton.guides:
+        groups.setdefault(guide.name, []).append(guide)
+    return [_track(pose, measures, guides, tone_of) for guides in groups.values()]
+
+
+def _track(
+    pose: Pose, measures: Measures, guides: list[Guide], tone_of: Mapping[str, int]
+) -> Track:
+    guide = guides[0]
+    along = pose.direction(guide)
+    fixed = pose.on_ground(guide)
+    # A block sits where the sliding link is joined to another one, or else at its first point.
+    carrying = [g for g in guides if g.point in pose.skeleton.pins] or guides[:1]
+    places = tuple(pose.points[g.point] for g in carrying)
+    travels = [pose.displacement(g) for g in carrying]
+    first = pose.points[guide.point] - travels[0].now * along
+    low, high = min(t.low for t in travels), max(t.high for t in travels)
+    if not guide.block and not fixed and not pose.paths:
+        low, high = _slot_without_motion(pose, guide, low, high, measures)
+    return Track(
+        name=guide.name,
+        on=guide.on,
+        tone=tone_of.get(guide.on, 1),
+        block=guide.block,
+        fixed=fixed,
+        along=along,
+        away=_rail_side(pose, guides, along, measures) if fixed else along * -1j,
+        start=first + low * along,
+        end=first + high * along,
+        places=places,
+        foot=pose.points[guide.line[0]],
+        tip=pose.points[guide.line[1]],
+    )
+
+
+def _slot_without_motion(
+    pose: Pose, guide: Guide, low: float, high: float, measures: Measures
+) -> tuple[float, float]:
+    """The travel to draw if no motion tells it: most of the line if the pin is on it."""
+    length = abs(pose.points[guide.line[1]] - pose.points[guide.line[0]])
+    margin = 5 * measures.pin
+    if margin < low < length - margin:
+        return margin, length - margin
+    return low - margin, high + margin
+
+
+def _rail_side(pose: Pose, guides: list[Guide], along: complex, measures: Measures) -> complex:
+    """The side of a fixed line that hatching lies on, the same in all positions of a motion.
+
+    Below, as people draw the ground; above only if the links that move the slider always come
+    from below. Upright lines are hatched on the side away from these links.
+    """
+    upright = abs(along.real) < 0.2
+    below = along * -1j if along.real > 0 or upright else along * 1j
+    own = {guide.point for guide in guides}
+    others = {
+        point for bar in pose.skeleton.bars if own & set(bar.points) for point in bar.points
+    } - own
+    if not others:
+        return below
+    start = pose.points[guides[0].point]
+    depths = np.concatenate([
+        ((pose.paths.get(name, np.array([pose.points[name]])) - start) * below.conjugate()).real
+        for name in sorted(others)
+    ])  # fmt: skip
+    depths = depths[np.isfinite(depths)]
+    if upright:
+        return -below if np.mean(depths) > 0.01 * measures.size else below
+    # Without a motion a link must come steeply from below before the picture is turned over.
+    clear = 0.0 if pose.paths else 0.5 * max(abs(pose.points[name] - start) for name in others)
+    return -below if np.min(depths, initial=np.inf) > clear else below
+
+
+def track_gaps(found: list[Track], measures: Measures) -> dict[str, list[Gap]]:
+    """Where the bar of the carrying link is hidden, by the name of that link."""
+    gaps: dict[str, list[Gap]] = {}
+    for track in found:
+        if track.block:
+            pieces = [(place, measures.block[0] * track.along) for place in track.places]
+        else:
+            reach = abs(track.end - track.start) / 2 + _slot_end(measures)
+            pieces = [((track.start + track.end) / 2, reach * track.along)]
+        gaps.setdefault(track.on, []).extend(pieces)
+    return gaps
+
+
+def guide_symbols(found: list[Track], measures: Measures) -> Iterator[Primitive]:
+    """The symbols of all sliders and slots."""
+    for track in found:
+        if track.block:
+            yield from _blocks(track, measures)
+            yield from _rail(track, measures) if track.fixed else _rod(track, measures)
+        else:
+            yield from _slot(track, measures)
+
+
+def _blocks(track: Track, measures: Measures) -> Iterator[Primitive]:
+    half, height = measures.block
+    along, across = half * track.along, height * track.along * 1j
+    for z in track.places:
+        corners = (z - along - across, z + along - across, z + along + across, z - along + across)
+        yield Polygon(role=Role.SLIDER, of=track.name, points=tuple(map(xy, corners)))
+
+
+def _rail(track: Track, measures: Measures) -> Iterator[Primitive]:
+    """A hatched line under the block, as long as its travel and some more."""
+    half, height = measures.block
+    reach, down = 1.6 * half * track.along, height * track.away
+    start, end = track.start - reach + down, track.end + reach + down
+    yield Polyline(role=Role.GROUND, of=track.name, points=(xy(start), xy(end)))
+    yield hatching(start, end, track.away, measures.hatch, track.name)
+
+
+def _rod(track: Track, measures: Measures) -> Iterator[Primitive]:
+    """The rod that a collar slides on, and its arm to the link if the line is offset."""
+    reach = 1.6 * measures.block[0]
+    foot = track.foot
+    arm = ((track.start - foot) * track.along.conjugate()).imag * track.along * 1j
+    knee = foot + arm
+    ends = [knee, track.start - reach * track.along, track.end + reach * track.along]
+    ends.sort(key=lambda z: (z * track.along.conjugate()).real)
+    hidden = [(place, measures.block[0] * track.along) for place in track.places]
+    for start, end in uncovered(ends[0], ends[-1], hidden):
+        yield _bar(track, start, end)
+    if abs(arm) > 1e-6 * measures.size:
+        yield _bar(track, foot, knee)
+
+
+def _bar(track: Track, start: complex, end: complex) -> Polyline:
+    ends = (xy(start), xy(end))
+    return Polyline(role=Role.LINK, of=track.on, tone=track.tone, points=ends)
+
+
+def _slot_end(measures: Measures) -> float:
+    """From the last place of the pin to the end of its slot."""
+    return measures.slot + 0.8 * measures.pin
+
+
+def _slot(track: Track, measures: Measures) -> Iterator[Primitive]:
+    """Two parallel lines with round ends around the travel of the pin."""
+    width = measures.slot
+    reach = _slot_end(measures) + (3 * measures.pin if track.fixed else 0.0)
+    over = (reach - width) * track.along
+    start, end = track.start - over, track.end + over
+    turn = [width * cmath.exp(1j * cmath.pi * (k / 10 - 0.5)) * track.along for k in range(11)]
+    outline = [end + w for w in turn] + [start - w for w in turn]
+    corners = tuple(map(xy, outline))
+    if track.fixed:
+        yield Polyline(role=Role.GROUND, of=track.name, points=corners + corners[:1])
+        down = width * track.away
+        yield hatching(start + down, end + down, track.away, measures.hatch, track.name)
+        return
+    yield Polygon(role=Role.SLOT, of=track.name, tone=track.tone, points=corners)
+    # A link whose points all lie beside the slot is joined to it.
+    length, low, high = (
+        ((z - track.foot) * track.along.conjugate()).real
+        for z in (track.tip, start - width * track.along, end + width * track.along)
+    )
+    if low > length:
+        yield _bar(track, track.tip, start - width * track.along)
+    elif high < 0:
+        yield _bar(track, end + width * track.along, track.foot)

@@ -1,0 +1,125 @@
+"""Links: a bar between two points, a filled plate through three or more."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import product
+
+from linkwork.drawing.measures import Measures
+from linkwork.drawing.pose import Pose
+from linkwork.drawing.scene import Disc, Polygon, Polyline, Primitive, Role, xy
+from linkwork.mechanism.skeleton import Bar
+
+__all__ = [
+    "Gap",
+    "convex_outline",
+    "in_line",
+    "link_symbols",
+    "pin_symbols",
+    "tones",
+    "uncovered",
+]
+
+_IN_LINE = 1e-6  # a link is drawn as a bar if its points stray less, relative to its length
+
+#: A piece of a line hidden by a slot or block: position of its middle, vector to its end.
+Gap = tuple[complex, complex]
+
+
+def tones(pose: Pose) -> Mapping[str, int]:
+    """The tone of every link: 0 if it is driven, else its number."""
+    driven = {part.name for part in pose.skeleton.driven}
+    free = [bar.name for bar in pose.skeleton.bars if bar.name not in driven]
+    return dict.fromkeys(driven, 0) | {name: k for k, name in enumerate(free, 1)}
+
+
+def link_symbols(pose: Pose, gaps: Mapping[str, list[Gap]]) -> Iterator[Primitive]:
+    """Every link; ``gaps`` say, link by link, where slots and blocks interrupt its bar."""
+    tone = tones(pose)
+    for bar in pose.skeleton.bars:
+        yield from _link(pose, bar, tone[bar.name], gaps.get(bar.name, []))
+
+
+def _link(pose: Pose, bar: Bar, tone: int, gaps: list[Gap]) -> Iterator[Primitive]:
+    points = [pose.points[name] for name in dict.fromkeys(bar.points)]
+    if len(points) < 2:
+        return
+    outline = convex_outline(points)
+    if in_line(outline):
+        for start, end in uncovered(outline[0], outline[-1], gaps):
+            yield Polyline(role=Role.LINK, of=bar.name, tone=tone, points=(xy(start), xy(end)))
+    else:
+        yield Polygon(role=Role.PLATE, of=bar.name, tone=tone, points=tuple(map(xy, outline)))
+
+
+def pin_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
+    """A circle at every pin, a dot at every other point that something is drawn at."""
+    skeleton = pose.skeleton
+    joined = set(skeleton.pins) | {p for strut in skeleton.struts for p in strut.between}
+    for name, place in pose.points.items():
+        if name in pose.construction:
+            continue
+        if name in joined:
+            yield Disc(role=Role.PIN, of=name, centre=xy(place), radius=measures.pin)
+        else:
+            role = Role.TRACED if name in skeleton.traced else Role.POINT
+            yield Disc(role=role, of=name, centre=xy(place), radius=measures.dot)
+
+
+def convex_outline(points: Iterable[complex]) -> list[complex]:
+    """The corners of the smallest convex polygon around points, counter-clockwise.
+
+    Of points in one line only the two ends are left.
+
+    References
+    ----------
+    A. M. Andrew, Another efficient algorithm for convex hulls in two dimensions,
+    Information Processing Letters 9 (1979) 216-219, doi:10.1016/0020-0190(79)90072-3.
+    """
+    ordered = sorted(set(points), key=lambda z: (z.real, z.imag))
+    # Sorting alone would not find the ends of an upright line whose x differ by rounding.
+    ends = max(product(ordered, ordered), key=lambda pair: abs(pair[1] - pair[0]))
+    if in_line([ends[0], *ordered, ends[1]]):
+        return list(ends)
+    lower, upper = _half_outline(ordered), _half_outline(ordered[::-1])
+    return lower[:-1] + upper[:-1]
+
+
+def _half_outline(ordered: list[complex]) -> list[complex]:
+    chain: list[complex] = []
+    for z in ordered:
+        while len(chain) > 1 and _left_of(chain[-2], chain[-1], z) <= 0:
+            chain.pop()
+        chain.append(z)
+    return chain
+
+
+def _left_of(a: complex, b: complex, z: complex) -> float:
+    """Twice the area of the triangle a b z, positive if z lies to the left of a → b."""
+    return ((b - a).conjugate() * (z - a)).imag
+
+
+def in_line(points: list[complex]) -> bool:
+    """Whether points, the first and last being furthest apart, lie in one line."""
+    start, end = points[0], points[-1]
+    length = abs(end - start)
+    return all(abs(_left_of(start, end, z)) <= _IN_LINE * length * length for z in points)
+
+
+def uncovered(start: complex, end: complex, gaps: list[Gap]) -> Iterator[tuple[complex, complex]]:
+    """What is left of the line from start to end beside the gaps that lie on it."""
+    length = abs(end - start)
+    if not length:
+        return
+    along = (end - start) / length
+    holes = []
+    for middle, half in gaps:
+        place = (middle - start) * along.conjugate()
+        turned = half * along.conjugate()
+        if max(abs(place.imag), abs(turned.imag)) <= _IN_LINE * length:
+            holes.append((place.real - abs(half), place.real + abs(half)))
+    reached = 0.0
+    for low, high in [*sorted(holes), (length, length)]:
+        if low > reached:
+            yield start + reached * along, start + min(low, length) * along
+        reached = max(reached, high)

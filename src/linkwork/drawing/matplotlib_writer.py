@@ -1,0 +1,282 @@
+"""Scenes as PNG, SVG and PDF, and as Matplotlib figures for notebooks.
+
+The only module that needs Matplotlib, and only when it draws. The object-oriented interface is
+used throughout: no window, no global figure.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from textwrap import wrap
+from typing import TYPE_CHECKING, Any
+
+from linkwork.drawing.scene import (
+    XY,
+    Arc,
+    Box,
+    Disc,
+    Hatch,
+    Polygon,
+    Polyline,
+    Primitive,
+    Scene,
+    Text,
+)
+from linkwork.drawing.theme import LIGHT, Theme
+from linkwork.foundation.errors import InputError, MissingPackageError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["FORMATS", "figure", "render", "write"]
+
+#: File formats by suffix.
+FORMATS = ("png", "svg", "pdf")
+
+_LONG_SIDE = 6.0  # of the drawing, in inches
+_SHORT_SIDE = 1.5  # at least, so that ticks and the title have room
+_LEFT, _RIGHT, _BELOW, _LINE = 0.75, 0.2, 0.6, 0.19  # around the drawing, and a title line
+_TITLE, _SMALL = 11.0, 9.0  # font sizes in points
+_TICK_EVERY = 1.0  # inch, about
+_DATELESS: dict[str, dict[str, str | None]] = {
+    "png": {"Software": "Linkwork"},
+    "svg": {"Date": None, "Creator": "Linkwork"},
+    "pdf": {"CreationDate": None, "Creator": "Linkwork"},
+}
+
+
+def write(scene: Scene, path: str | Path, *, dpi: float = 200.0, theme: Theme = LIGHT) -> Path:
+    """Write a scene to a file; the suffix of ``path`` chooses the format.
+
+    The file appears whole or not at all, and the same scene gives the same bytes.
+
+    Raises
+    ------
+    InputError
+        If the suffix names no known format, or the file cannot be written.
+    MissingPackageError
+        If Matplotlib is not installed.
+    """
+    target = Path(path)
+    kind = target.suffix.lower().removeprefix(".")
+    if kind not in FORMATS:
+        known = ", ".join(f".{name}" for name in FORMATS)
+        raise InputError(f'cannot draw "{target.name}": its suffix must be one of {known}')
+    page = render(scene, kind, dpi=dpi, theme=theme)
+    part = target.with_name(f".{target.name}.{os.getpid()}.part")
+    try:
+        part.write_bytes(page)
+        part.replace(target)
+    except OSError as error:
+        raise InputError(f'cannot write "{target}": {error.strerror or error}') from error
+    finally:
+        part.unlink(missing_ok=True)
+    return target
+
+
+def render(scene: Scene, kind: str, *, dpi: float = 200.0, theme: Theme = LIGHT) -> bytes:
+    """A scene as the content of a file of one of :data:`FORMATS`."""
+    if kind not in FORMATS:
+        raise InputError(f'there is no format "{kind}" (formats: {", ".join(FORMATS)})')
+    buffer = io.BytesIO()
+    with _house_settings():
+        figure(scene, theme=theme).savefig(buffer, format=kind, dpi=dpi, metadata=_DATELESS[kind])
+    return buffer.getvalue()
+
+
+def figure(scene: Scene, ax: Axes | None = None, *, theme: Theme = LIGHT) -> Figure:
+    """A scene as a Matplotlib figure of its own, or drawn into existing axes.
+
+    Returns
+    -------
+    Figure
+        The figure that holds the drawing. In axes of the caller, line widths and fonts suit the
+        size that the axes have now.
+    """
+    with _house_settings():
+        if ax is None:
+            ax = _page(scene, theme)
+        else:
+            _dress(ax, scene, theme, scene.box.grown(0.03 * scene.measures.size))
+            ax.set_title("\n".join(filter(None, (scene.title, scene.caption))), fontsize=_TITLE)
+        brush = _Brush(ax, scene, theme)
+        for primitive in scene.primitives:
+            brush.draw(primitive)
+        found = ax.get_figure(root=True)
+    assert found is not None
+    return found
+
+
+@contextmanager
+def _house_settings() -> Iterator[None]:
+    """Matplotlib's own defaults, whatever the user's settings are, while we draw."""
+    try:
+        import matplotlib
+    except ImportError as error:
+        raise MissingPackageError("drawing needs Matplotlib: pip install matplotlib") from error
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams["svg.hashsalt"] = "linkwork"
+        yield
+
+
+def _page(scene: Scene, theme: Theme) -> Axes:
+    """New axes on a page that fits the drawing, its margins and its title."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    view = scene.box.grown(0.03 * scene.measures.size)
+    scale = _LONG_SIDE / max(view.width, view.height)
+    width, height = (max(_SHORT_SIDE, scale * side) for side in (view.width, view.height))
+    x, y = view.centre
+    half, rise = width / scale / 2, height / scale / 2
+    view = Box(x - half, y - rise, x + half, y + rise)
+    page = width + _LEFT + _RIGHT
+    title = _lines(scene.title, (page - 0.4) * 72 / (0.6 * _TITLE))
+    caption = _lines(scene.caption, (page - 0.4) * 72 / (0.6 * _SMALL))
+    above = 0.2 + _LINE * (len(title) + len(caption))
+    total = height + _BELOW + above
+    drawing = Figure(figsize=(page, total), facecolor=theme.background)
+    FigureCanvasAgg(drawing)
+    ax = drawing.add_axes((_LEFT / page, _BELOW / total, width / page, height / total))
+    _dress(ax, scene, theme, view)
+    heading = [(line, _TITLE, theme.ink) for line in title]
+    heading += [(line, _SMALL, theme.faint) for line in caption]
+    for k, (line, size, colour) in enumerate(heading):
+        place = (_LEFT / page if page > 4 else 0.2 / page, 1 - (0.26 + k * _LINE) / total)
+        drawing.text(*place, line, fontsize=size, color=colour, parse_math=False)
+    return ax
+
+
+def _lines(text: str, letters: float) -> list[str]:
+    return wrap(text, math.floor(letters), break_on_hyphens=False)
+
+
+def _dress(ax: Axes, scene: Scene, theme: Theme, view: Box) -> None:
+    """Equal, quiet axes: two thin lines with few ticks and the length unit."""
+    from matplotlib.ticker import MultipleLocator
+
+    ax.set_facecolor(theme.background)
+    ax.set_xlim(view.left, view.right)
+    ax.set_ylim(view.bottom, view.top)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.apply_aspect()
+    scale = _points_per_unit(ax)
+    short = min(view.width, view.height) * scale / 72
+    spacing = _round_step(min(_TICK_EVERY, max(0.5 * short, 0.5)) * 72 / scale)
+    for axis, name in ((ax.xaxis, "x"), (ax.yaxis, "y")):
+        axis.set_major_locator(MultipleLocator(spacing))
+        axis.set_label_text(
+            f"{name} [{scene.unit}]" if scene.unit else name,
+            fontsize=_SMALL,
+            color=theme.faint,
+            parse_math=False,
+        )
+    ax.tick_params(length=3, width=0.6, colors=theme.faint, labelsize=0.9 * _SMALL)
+    for side, spine in ax.spines.items():
+        spine.set_visible(side in ("left", "bottom"))
+        spine.set_color(theme.faint)
+        spine.set_linewidth(0.6)
+
+
+def _points_per_unit(ax: Axes) -> float:
+    """How many points (1/72 inch) a length unit of the mechanism takes on paper."""
+    (left, _), (right, _) = ax.transData.transform([(0.0, 0.0), (1.0, 0.0)])
+    root = ax.get_figure(root=True)
+    assert root is not None
+    return float(right - left) * 72 / root.dpi
+
+
+def _round_step(wanted: float) -> float:
+    """The largest of 1, 2, 5 times a power of ten that is not above 1.4 times ``wanted``."""
+    power: float = 10.0 ** math.floor(math.log10(1.4 * wanted))
+    return max(step * power for step in (1, 2, 5) if step * power <= 1.4 * wanted)
+
+
+class _Brush:
+    """Translates primitives into artists of one axes."""
+
+    def __init__(self, ax: Axes, scene: Scene, theme: Theme) -> None:
+        self.ax = ax
+        self.theme = theme
+        self.points = _points_per_unit(ax)
+        self.stroke = scene.measures.stroke * self.points
+
+    def draw(self, primitive: Primitive) -> None:
+        match primitive:
+            case Polyline() | Arc():
+                self._line([primitive.points], primitive)
+                if primitive.arrow_head:
+                    self._area(primitive.arrow_head, primitive, width=0.3)
+            case Hatch():
+                self._line(primitive.strokes, primitive)
+            case Polygon():
+                self._area(primitive.points, primitive)
+            case Disc():
+                self._disc(primitive)
+            case Text():
+                self._text(primitive)
+
+    def _common(self, primitive: Primitive) -> dict[str, Any]:
+        # The group id names role and part in an SVG file, for whoever edits or tests it.
+        gid = f"{primitive.role.name.lower()}:{primitive.of}"
+        return {"zorder": 10 + primitive.role.layer, "gid": gid, "clip_on": False}
+
+    def _line(self, lines: tuple[tuple[XY, ...], ...] | list[Any], primitive: Primitive) -> None:
+        from matplotlib.collections import LineCollection
+
+        style = self.theme.styles[primitive.role]
+        self.ax.add_collection(
+            LineCollection(
+                list(lines),
+                colors=self.theme.line(primitive),
+                linewidths=style.width * self.stroke,
+                linestyles=[(0, (0.01, 2.2))] if style.dotted else "solid",
+                capstyle="round",
+                joinstyle="round",
+                **self._common(primitive),
+            ),
+            autolim=False,
+        )
+
+    def _area(self, corners: tuple[XY, ...], primitive: Primitive, width: float = 1.0) -> None:
+        from matplotlib.patches import Polygon as PolygonPatch
+
+        self.ax.add_artist(
+            PolygonPatch(list(corners), **self._faces(primitive, width), joinstyle="round")
+        )
+
+    def _disc(self, primitive: Disc) -> None:
+        from matplotlib.patches import Circle
+
+        self.ax.add_artist(Circle(primitive.centre, primitive.radius, **self._faces(primitive)))
+
+    def _faces(self, primitive: Primitive, width: float = 1.0) -> dict[str, Any]:
+        from matplotlib.colors import to_rgba
+
+        style = self.theme.styles[primitive.role]
+        line, fill = self.theme.line(primitive), self.theme.fill(primitive)
+        return {
+            "facecolor": to_rgba(fill, style.opacity) if fill else "none",
+            "edgecolor": line or "none",
+            "linewidth": style.width * width * self.stroke if line else 0.0,
+            **self._common(primitive),
+        }
+
+    def _text(self, primitive: Text) -> None:
+        self.ax.text(
+            *primitive.start,
+            primitive.text,
+            fontsize=primitive.height * self.points,
+            color=self.theme.fill(primitive),
+            ha=("left", "center", "right")[primitive.align + 1],
+            va="baseline",
+            parse_math=False,
+            **self._common(primitive),
+        )

@@ -1,0 +1,182 @@
+"""From a position to its picture. Nothing is solved here."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+import numpy as np
+
+from linkwork.drawing.cylinder_symbol import cylinder_symbols
+from linkwork.drawing.ground_symbols import ground_symbols
+from linkwork.drawing.guide_symbols import guide_symbols, track_gaps, tracks
+from linkwork.drawing.input_arrow import input_arrows
+from linkwork.drawing.label_placement import link_names, placed, point_names, printed_name
+from linkwork.drawing.link_symbols import link_symbols, pin_symbols, tones
+from linkwork.drawing.measures import Measures
+from linkwork.drawing.pose import Pose
+from linkwork.drawing.scene import Box, Primitive, Scene
+from linkwork.drawing.trace_path import trace_symbols
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.results.motion import Motion
+from linkwork.results.position import Position
+
+__all__ = ["SceneOptions", "reach_of", "scene_of"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SceneOptions:
+    """What else a picture shows.
+
+    Parameters
+    ----------
+    link_names : bool
+        Write the names of links beside them.
+    arrows : bool
+        Show by arrows what is driven.
+    title : str, optional
+        Instead of the mechanism's name; an empty one leaves it out.
+    within : Box, optional
+        What the picture shows at least, and what the sizes of symbols are measured by: give all
+        pictures of one animation the same, from :func:`reach_of`.
+    """
+
+    link_names: bool = False
+    arrows: bool = True
+    title: str | None = None
+    within: Box | None = None
+
+
+def scene_of(
+    position: Position,
+    motion: Motion | None = None,
+    *,
+    labels: bool = True,
+    traces: Sequence[str] | None = None,
+    options: SceneOptions | None = None,
+) -> Scene:
+    """The picture of a position, in the mechanism's length unit.
+
+    Parameters
+    ----------
+    position : Position
+        A position that was found.
+    motion : Motion, optional
+        The motion it belongs to: tells the paths of points, and how long rails, slots and
+        cylinders are.
+    labels : bool
+        Write the names of points.
+    traces : sequence of str, optional
+        The points whose paths are shown; those of the mechanism's ``[trace]`` unless given.
+    options : SceneOptions, optional
+        Further choices.
+
+    Raises
+    ------
+    InputError
+        If the position was not found, the mechanism has no points, the motion is of another
+        mechanism, or traces are asked for without a motion.
+    UnknownNameError
+        If a trace names no point.
+
+    Notes
+    -----
+    Colours and fonts are the writers' business, see :mod:`linkwork.drawing.theme`.
+    """
+    chosen = options or SceneOptions()
+    pose = Pose.of(position, motion)
+    names = _traced(pose, traces)
+    within = chosen.within or _drawn_box(pose, names)
+    measures = Measures.of(within, pose.gaps)
+    found = tracks(pose, measures, tones(pose))
+    sense = -1.0 if motion is not None and (motion.speed or 0.0) < 0 else 1.0
+    primitives: list[Primitive] = [
+        *ground_symbols(pose, measures),
+        *guide_symbols(found, measures),
+        *link_symbols(pose, track_gaps(found, measures)),
+        *cylinder_symbols(pose, measures),
+        *trace_symbols(pose, names, measures),
+        *pin_symbols(pose, measures),
+    ]
+    if chosen.arrows:
+        primitives += input_arrows(pose, found, measures, sense)
+    wanted = [
+        *(point_names(pose, measures) if labels else []),
+        *(link_names(pose, measures) if chosen.link_names else []),
+    ]
+    primitives += placed(wanted, primitives)
+    return Scene(
+        primitives=tuple(primitives),
+        measures=measures,
+        within=within,
+        unit=position.units.length,
+        title=position.mechanism if chosen.title is None else chosen.title,
+        caption=_caption(position, {} if motion is None else motion.input_units),
+    )
+
+
+def reach_of(motion: Motion) -> Box:
+    """The box of every point of a mechanism over a whole motion.
+
+    Raises
+    ------
+    InputError
+        If the motion has no points, or no position was found.
+    """
+    rows = motion.found
+    ends = [
+        (float(x.value[row]), float(y.value[row]))
+        for x, y in motion.points.values()
+        for series in (x, y)
+        if rows.any()
+        for row in (
+            np.flatnonzero(rows)[np.argmin(series.value[rows])],
+            np.flatnonzero(rows)[np.argmax(series.value[rows])],
+        )
+    ]
+    if not ends:
+        raise InputError(
+            f'the motion of "{motion.mechanism}" has nothing to draw: '
+            f"{int(rows.sum())} positions, {len(motion.points)} points"
+        )
+    return Box.around(ends)
+
+
+def _traced(pose: Pose, wanted: Sequence[str] | None) -> tuple[str, ...]:
+    if wanted is None:
+        return pose.skeleton.traced if pose.paths else ()
+    for name in wanted:
+        if name not in pose.points:
+            raise UnknownNameError(
+                f'there is no point "{name}" to trace {choices("points", pose.points, name)}'
+            )
+    if wanted and not pose.paths:
+        raise InputError(
+            f"the paths of {', '.join(wanted)} cannot be drawn from one position: "
+            "give the motion too"
+        )
+    return tuple(dict.fromkeys(wanted))
+
+
+def _drawn_box(pose: Pose, traces: tuple[str, ...]) -> Box:
+    """The box of what is drawn: points now, traces, and the travel along fixed guides."""
+    now = [place for name, place in pose.points.items() if name not in pose.construction]
+    along = {guide.point for guide in pose.skeleton.guides if pose.on_ground(guide)}
+    paths = [pose.paths[name] for name in (*traces, *along) if name in pose.paths]
+    travelled = chain.from_iterable(path[np.isfinite(path)] for path in paths)
+    return Box.around((float(z.real), float(z.imag)) for z in chain(now, travelled))
+
+
+def _caption(position: Position, units: Mapping[str, str]) -> str:
+    """The input values with units: ``crank = 60°``. Without a motion what is driven tells them."""
+    angle, length = position.units.angle, position.units.length
+    of_kind = {"link": angle.value, "slider": length, "cylinder": length}
+    driven = [of_kind.get(part.kind, "") for part in position.skeleton.driven]
+    known = dict(zip(position.input, driven, strict=False)) | dict(units)
+    parts = []
+    for name, value in position.input.items():
+        unit = known.get(name, "")
+        sign = angle.sign if unit == angle.value else f" {unit}"
+        parts.append(f"{printed_name(name)} = {value:.6g}{sign}".rstrip())
+    return ", ".join(parts)

@@ -1,0 +1,158 @@
+"""Where the points of a mechanism are drawn, and how far they travel."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.foundation.errors import InputError, choices
+from linkwork.mechanism.linkage import GROUND
+from linkwork.mechanism.skeleton import Guide, Skeleton, Strut
+from linkwork.results.motion import Motion
+from linkwork.results.position import Position
+
+__all__ = ["Pose", "Travel"]
+
+Path = npt.NDArray[np.complex128]
+Real = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Travel:
+    """A length at this pose, and the smallest and largest it takes in the motion."""
+
+    now: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pose:
+    """Coordinates x + iy of every point now, and along the motion if there is one.
+
+    ``paths`` hold one entry per row of the motion, NaN where there is no position.
+    """
+
+    skeleton: Skeleton
+    points: dict[str, complex]
+    paths: dict[str, Path]
+
+    @classmethod
+    def of(cls, position: Position, motion: Motion | None) -> Pose:
+        """The pose of a position that was found.
+
+        Raises
+        ------
+        InputError
+            If the position was not found, has no points, or the motion is of something else.
+        """
+        _check(position, motion)
+        points = {name: complex(*place) for name, place in position.points.items()}
+        paths = {} if motion is None else {name: _path(motion, name) for name in points}
+        return cls(skeleton=position.skeleton, points=points, paths=paths)
+
+    def direction(self, guide: Guide) -> complex:
+        """The unit vector of a guide's line."""
+        along = self.points[guide.line[1]] - self.points[guide.line[0]]
+        return along / abs(along)
+
+    def displacement(self, guide: Guide) -> Travel:
+        """How far the point of a guide is from the first point of the line."""
+        start, end = guide.line
+        p, a, b = (self.points[name] for name in (guide.point, start, end))
+        now = float(_along(*(np.array([z]) for z in (p, a, b)))[0])
+        if not self.paths:
+            return Travel(now, now, now)
+        rows = _along(self.paths[guide.point], self.paths[start], self.paths[end])
+        return _travel(now, rows)
+
+    def length(self, strut: Strut) -> Travel:
+        """The length of a cylinder."""
+        start, end = strut.between
+        now = abs(self.points[end] - self.points[start])
+        if not self.paths:
+            return Travel(now, now, now)
+        return _travel(now, np.abs(self.paths[end] - self.paths[start]))
+
+    def on_ground(self, guide: Guide) -> bool:
+        """Whether the line of a guide stands still."""
+        return guide.on == GROUND or set(guide.line) <= set(self.skeleton.fixed)
+
+    @property
+    def gaps(self) -> Iterator[float]:
+        """Distances between pins that no motion changes: within links and within ground."""
+        for names in (self.skeleton.fixed, *(bar.points for bar in self.skeleton.bars)):
+            places = [self.points[name] for name in names if name not in self.construction]
+            yield from (abs(a - b) for k, a in enumerate(places) for b in places[:k])
+
+    @cached_property
+    def construction(self) -> set[str]:
+        """Points that only say where a fixed line runs: nothing is drawn at them."""
+        skeleton = self.skeleton
+        used = {point for bar in skeleton.bars for point in bar.points}
+        used |= {point for strut in skeleton.struts for point in strut.between}
+        used |= {guide.point for guide in skeleton.guides} | set(skeleton.traced)
+        lines = {p for g in skeleton.guides if self.on_ground(g) for p in g.line}
+        return lines - used
+
+
+def _check(position: Position, motion: Motion | None) -> None:
+    if not position.status.ok:
+        raise InputError(
+            f'"{position.mechanism}" has no position to draw at this input value: '
+            f"{position.message or position.status.value}"
+        )
+    if not position.points:
+        raise InputError(
+            f'"{position.mechanism}" has no points to draw: '
+            "add [points] with the coordinates of its pins"
+        )
+    bad = [name for name, place in position.points.items() if not np.isfinite(place).all()]
+    if bad:
+        raise InputError(f"points without coordinates cannot be drawn: {', '.join(bad)}")
+    lost = [name for name in _named(position.skeleton) if name not in position.points]
+    if lost:
+        raise InputError(
+            f"links and joints name points without coordinates: {', '.join(lost)} "
+            + choices("points", position.points)
+        )
+    for guide in position.skeleton.guides:
+        start, end = guide.line
+        if position.points[start] == position.points[end]:
+            raise InputError(
+                f'the line of "{guide.name}" has no direction: points {start} and {end} coincide'
+            )
+    if motion is not None and set(motion.points) != set(position.points):
+        raise InputError(
+            f'position and motion are of different mechanisms: "{position.mechanism}" with points '
+            f'{", ".join(position.points)}; "{motion.mechanism}" with {", ".join(motion.points)}'
+        )
+
+
+def _named(skeleton: Skeleton) -> dict[str, None]:
+    names = [*skeleton.fixed, *skeleton.pins, *skeleton.traced]
+    names += [point for bar in skeleton.bars for point in bar.points]
+    names += [point for strut in skeleton.struts for point in strut.between]
+    names += [point for guide in skeleton.guides for point in (guide.point, *guide.line)]
+    return dict.fromkeys(names)
+
+
+def _path(motion: Motion, name: str) -> Path:
+    path: Path = np.where(motion.found, motion.trace(name), complex(np.nan, np.nan))
+    return path
+
+
+def _along(p: Path, a: Path, b: Path) -> Real:
+    """How far p is from a in the direction of b, all of shape (N,)."""
+    line = b - a
+    far: Real = ((p - a) * np.conj(line)).real / np.abs(line)
+    return far
+
+
+def _travel(now: float, rows: Real) -> Travel:
+    found = rows[np.isfinite(rows)]
+    return Travel(now, float(np.min(found, initial=now)), float(np.max(found, initial=now)))

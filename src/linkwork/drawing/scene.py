@@ -1,0 +1,266 @@
+"""A picture as plain data: primitives with roles, in the mechanism's length unit.
+
+Writers translate primitives one by one and decide nothing but colours and file formats.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+from typing import TypeVar
+
+from linkwork.drawing.box import XY, Box
+from linkwork.drawing.measures import Measures
+
+__all__ = [
+    "XY",
+    "Arc",
+    "Box",
+    "Disc",
+    "Hatch",
+    "Polygon",
+    "Polyline",
+    "Primitive",
+    "Role",
+    "Scene",
+    "Text",
+    "text_width",
+    "xy",
+]
+
+
+class Role(Enum):
+    """What a primitive stands for. Its style follows from it; later members lie on top."""
+
+    PLATE = "a link of three or more points"
+    HATCH = "the hatching of what stands still"
+    GROUND = "what stands still: pivots and rails"
+    TRACE = "the path of a point"
+    SLOT = "the slot a pin runs in"
+    SLIDER = "a sliding block"
+    CYLINDER = "the barrel of a cylinder"
+    LINK = "a link drawn as a bar"
+    PIN = "a pin joint"
+    POINT = "a named point that joins nothing"
+    TRACED = "a point whose path is shown"
+    INPUT = "the arrow of what is driven"
+    LINK_NAME = "the name of a link"
+    LABEL = "the name of a point"
+
+    @property
+    def layer(self) -> int:
+        """The height of the role in the stack, 0 at the bottom."""
+        return list(Role).index(self)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Primitive:
+    """What every primitive carries.
+
+    ``of`` names the part of the mechanism that is shown. ``tone`` tells links apart: 0 for what
+    is driven and for everything that has no colour of its own, 1, 2, … for the other links.
+    """
+
+    role: Role
+    of: str = ""
+    tone: int = 0
+
+    @property
+    def outline(self) -> tuple[XY, ...]:
+        """Points whose bounding box is that of the primitive (line widths left out)."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Polyline(Primitive):
+    """An open line; with ``head`` > 0 it ends in an arrow head of that length."""
+
+    points: tuple[XY, ...]
+    head: float = 0.0
+
+    @property
+    def outline(self) -> tuple[XY, ...]:
+        return self.points + self.arrow_head
+
+    @property
+    def arrow_head(self) -> tuple[XY, ...]:
+        """The triangle of the head, its tip at the last point; empty without one."""
+        return _head(self.points, self.head)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Polygon(Primitive):
+    """A closed, filled outline."""
+
+    points: tuple[XY, ...]
+
+    @property
+    def outline(self) -> tuple[XY, ...]:
+        return self.points
+
+
+@dataclass(frozen=True, kw_only=True)
+class Disc(Primitive):
+    """A filled circle."""
+
+    centre: XY
+    radius: float
+
+    @property
+    def outline(self) -> tuple[XY, ...]:
+        (x, y), r = self.centre, self.radius
+        return (x - r, y - r), (x + r, y + r)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arc(Primitive):
+    """A circular arc from angle ``start`` over ``sweep`` [rad, counter-clockwise positive]."""
+
+    centre: XY
+    radius: float
+    start: float
+    sweep: float
+    head: float = 0.0
+
+    @property
+    def points(self) -> tuple[XY, ...]:
+        """The arc as a line of short pieces."""
+        pieces = max(8, round(abs(self.sweep) / 0.1))
+        (x, y), r = self.centre, self.radius
+        angles = [self.start + self.sweep * k / pieces for k in range(pieces + 1)]
+        return tuple((x + r * math.cos(a), y + r * math.sin(a)) for a in angles)
+
+    @property
+    def outline(self) -> tuple[XY, ...]:
+        return self.points + self.arrow_head
+
+    @property
+    def arrow_head(self) -> tuple[XY, ...]:
+        """The triangle of the head, its tip at the end of the arc; empty without one."""
+        if not self.head:
+            return ()
+        # The head is straight: it looks right if its back lies on the arc, not on the tangent.
+        back = self.start + self.sweep - math.copysign(self.head / self.radius, self.sweep)
+        (x, y), r = self.centre, self.radius
+        foot = (x + r * math.cos(back), y + r * math.sin(back))
+        return _head((foot, self.points[-1]), self.head)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hatch(Primitive):
+    """Parallel strokes."""
+
+    strokes: tuple[tuple[XY, XY], ...]
+
+    @property
+    def outline(self) -> tuple[XY, ...]:
+        return tuple(end for stroke in self.strokes for end in stroke)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Text(Primitive):
+    """A line of text beside ``anchor``; ``height`` is the font size (one em).
+
+    The baseline passes through ``anchor + offset``, which is the left end (``align`` = -1), the
+    middle (0) or the right end (1) of the text.
+    """
+
+    text: str
+    anchor: XY
+    offset: XY
+    height: float
+    align: int = 0
+
+    @property
+    def start(self) -> XY:
+        """The point of the baseline that ``align`` speaks of."""
+        return self.anchor[0] + self.offset[0], self.anchor[1] + self.offset[1]
+
+    @property
+    def box(self) -> Box:
+        """The box of the text as printed, slightly generous since fonts differ."""
+        width = text_width(self.text, self.height)
+        x, y = self.start
+        left = x - width * (self.align + 1) / 2
+        return Box(left, y - 0.16 * self.height, left + width, y + 0.76 * self.height)
+
+    @property
+    def outline(self) -> tuple[XY, ...]:
+        return self.box.corners
+
+
+P = TypeVar("P", bound=Primitive)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """A finished picture.
+
+    Parameters
+    ----------
+    primitives : tuple of Primitive
+        Sorted bottom to top.
+    measures : Measures
+        The sizes of symbols and lines.
+    within : Box
+        What the picture shows at least; pictures of one motion share it.
+    unit : str
+        The length unit of every coordinate.
+    title, caption : str
+        The mechanism's name; the input values.
+    """
+
+    primitives: tuple[Primitive, ...]
+    measures: Measures
+    within: Box
+    unit: str
+    title: str = ""
+    caption: str = ""
+
+    def __post_init__(self) -> None:
+        ordered = tuple(sorted(self.primitives, key=lambda primitive: primitive.role.layer))
+        object.__setattr__(self, "primitives", ordered)
+
+    @cached_property
+    def box(self) -> Box:
+        """The bounding box of ``within`` and all primitives."""
+        corners = [corner for primitive in self.primitives for corner in primitive.outline]
+        return Box.around([*corners, *self.within.corners])
+
+    def select(self, kind: type[P], role: Role | None = None, of: str | None = None) -> list[P]:
+        """The primitives of one kind, optionally of one role and of one part."""
+        return [
+            p
+            for p in self.primitives
+            if isinstance(p, kind) and role in (None, p.role) and of in (None, p.of)
+        ]
+
+
+def xy(z: complex) -> XY:
+    """x + iy as a pair."""
+    return float(z.real), float(z.imag)
+
+
+def text_width(text: str, height: float) -> float:
+    """The printed width of a text, estimated from a table of letter widths [em]."""
+    return height * sum(_letter_width(letter) for letter in text)
+
+
+def _letter_width(letter: str) -> float:
+    if letter in "₀₁₂₃₄₅₆₇₈₉":
+        return 0.42
+    if letter in "iljt.,'|!: ":
+        return 0.40
+    if letter in "MWmw":
+        return 1.0
+    return 0.78 if letter.isupper() else 0.65
+
+
+def _head(points: tuple[XY, ...], length: float) -> tuple[XY, ...]:
+    if not length:
+        return ()
+    tip, before = complex(*points[-1]), complex(*points[-2])
+    along = (tip - before) / abs(tip - before) * length
+    return xy(tip), xy(tip - along * (1 - 0.38j)), xy(tip - along * (1 + 0.38j))

@@ -1,0 +1,91 @@
+"""Colours and line widths of roles, shared by all writers.
+
+Colours are those of Okabe and Ito, told apart with every kind of colour blindness.
+
+References
+----------
+M. Okabe, K. Ito, Color universal design: how to make figures and presentations that are friendly
+to colorblind people, 2002.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from linkwork.drawing.scene import Primitive, Role
+from linkwork.foundation.frozen import FrozenDict
+
+__all__ = ["LIGHT", "Style", "Theme"]
+
+_BLUE, _GREEN, _ORANGE = "#0072B2", "#009E73", "#E69F00"
+_VERMILLION, _PURPLE, _SKY = "#D55E00", "#CC79A7", "#56B4E9"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Style:
+    """How a role is drawn.
+
+    ``line`` and ``fill`` are a colour, ``tone`` (the colour of the link) or nothing; ``width``
+    counts strokes (:attr:`linkwork.drawing.measures.Measures.stroke`).
+    """
+
+    line: str = ""
+    width: float = 1.0
+    fill: str = ""
+    opacity: float = 1.0
+    dotted: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Theme:
+    """Colours of a page: background, ink of text, faint ink of axes, tones of links, styles."""
+
+    background: str
+    ink: str
+    faint: str
+    driven: str
+    tones: tuple[str, ...]
+    styles: Mapping[Role, Style]
+
+    def line(self, primitive: Primitive) -> str:
+        """The line colour of a primitive; empty for none."""
+        return self._colour(self.styles[primitive.role].line, primitive.tone)
+
+    def fill(self, primitive: Primitive) -> str:
+        """The fill colour of a primitive; empty for none."""
+        return self._colour(self.styles[primitive.role].fill, primitive.tone)
+
+    def _colour(self, colour: str, tone: int) -> str:
+        if colour != "tone":
+            return colour
+        return self.tones[(tone - 1) % len(self.tones)] if tone else self.driven
+
+
+_INK, _GREY, _PAPER = "#1A1A1A", "#5A5A5A", "#FFFFFF"
+
+LIGHT = Theme(
+    background=_PAPER,
+    ink=_INK,
+    faint="#8A8A8A",
+    driven=_VERMILLION,
+    tones=(_BLUE, _GREEN, _PURPLE, _ORANGE, _SKY),
+    styles=FrozenDict.of(
+        {
+            Role.PLATE: Style(line="tone", width=1.9, fill="tone", opacity=0.2),
+            Role.HATCH: Style(line=_GREY, width=0.8),
+            Role.GROUND: Style(line=_GREY, width=1.3, fill="#E6E6E6"),
+            Role.TRACE: Style(line=_INK, width=1.3, fill=_INK, dotted=True),
+            Role.SLOT: Style(line="tone", width=1.7, fill=_PAPER),
+            Role.SLIDER: Style(line=_INK, width=1.3, fill="#EDEDED"),
+            Role.LINK: Style(line="tone", width=2.8),
+            Role.CYLINDER: Style(line="tone", width=1.4, fill=_PAPER),
+            Role.PIN: Style(line=_INK, width=1.4, fill=_PAPER),
+            Role.POINT: Style(fill=_INK),
+            Role.TRACED: Style(fill=_INK),
+            Role.INPUT: Style(line=_VERMILLION, width=1.7, fill=_VERMILLION),
+            Role.LINK_NAME: Style(fill="tone"),
+            Role.LABEL: Style(fill=_INK),
+        }
+    ),
+)

@@ -1,0 +1,225 @@
+"""Loop equations as arrays: the loop table in blocks, points, links and outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.equations.model import LoopEquations, Term
+from linkwork.equations.real_rows import FormulaRow
+from linkwork.expression.jets import Jet, evaluate
+from linkwork.expression.tree import names_in
+from linkwork.foundation.errors import MechanismError, Problem
+from linkwork.foundation.names import canonical
+from linkwork.kernels.loop_table import LinearRows, LoopTable, TableSplitter
+from linkwork.kernels.phasor_rows import PhasorRows
+from linkwork.numerics.block_solver import Block, BlockSolver
+from linkwork.numerics.decomposition import BlockForm, block_form
+
+__all__ = ["Compiled", "compile_equations"]
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compiled:
+    """Equations ready to be solved: ``table`` whole, ``solver`` in blocks, ``points``."""
+
+    equations: LoopEquations
+    table: LoopTable
+    form: BlockForm
+    solver: BlockSolver
+    points: PointTable
+
+
+@dataclass(frozen=True)
+class PointTable:
+    """Points as phasor rows added to their parents' positions, level by level."""
+
+    names: tuple[str, ...]
+    rows: PhasorRows
+    levels: tuple[tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]], ...]
+
+    @classmethod
+    def of(cls, equations: LoopEquations, index: Mapping[str, int]) -> PointTable:
+        """The table of all points."""
+        names = tuple(equations.points)
+        number = {name: k for k, name in enumerate(names)}
+        depth: dict[str, int] = {}
+        levels: dict[int, list[tuple[int, int]]] = {}
+        for name, path in equations.points.items():
+            depth[name] = 0 if path.parent is None else depth[path.parent] + 1
+            if path.parent is not None:
+                levels.setdefault(depth[name], []).append((number[name], number[path.parent]))
+        rows = phasor_rows([path.terms for path in equations.points.values()], index)
+        return cls(
+            names,
+            rows,
+            tuple(
+                (np.array([c for c, _ in level]), np.array([p for _, p in level]))
+                for _, level in sorted(levels.items())
+            ),
+        )
+
+    def jet(self, v: Array, first: Array, second: Array) -> tuple[npt.NDArray[np.complex128], ...]:
+        """Positions x + iy with first and second derivative along a path, (B, points) each."""
+        parts = self.rows.jet(v, first, second)
+        for child, parent in self.levels:
+            for part in parts:
+                part[:, child] += part[:, parent]
+        return parts
+
+
+def phasor_rows(rows: Sequence[Iterable[Term]], index: Mapping[str, int]) -> PhasorRows:
+    """Terms as arrays; ``index`` numbers the variables by symbol."""
+    terms = [(k, term) for k, row in enumerate(rows) for term in row]
+    phases = [
+        (t, index[name], weight)
+        for t, (_, term) in enumerate(terms)
+        for name, weight in term.phase
+    ]
+    return PhasorRows(
+        rows=len(rows),
+        variables=len(index),
+        row=np.array([k for k, _ in terms], dtype=np.intp),
+        coefficient=np.array([term.value for _, term in terms], dtype=complex),
+        length=np.array(
+            [-1 if t.length is None else index[t.length] for _, t in terms], dtype=np.intp
+        ),
+        phase_term=np.array([t for t, _, _ in phases], dtype=np.intp),
+        phase_variable=np.array([k for _, k, _ in phases], dtype=np.intp),
+        phase_weight=np.array([w for _, _, w in phases], dtype=float),
+    )
+
+
+def compile_equations(equations: LoopEquations, where: str) -> Compiled:
+    """Arrays and blocks of a set of equations.
+
+    Raises
+    ------
+    MechanismError
+        If equations and unknowns do not match: which unknowns stay free, which equations conflict.
+    """
+    index = {v.symbol: k for k, v in enumerate(equations.variables)}
+    table = _table(equations, index)
+    n = len(equations.unknowns)
+    pattern = [[k for k in used if k < n] for used in table.pattern()]
+    loops = len(equations.loops)
+    form = block_form(pattern, [2] * loops + [1] * (len(pattern) - loops), n)
+    if not form.square:
+        raise MechanismError(_mismatch(equations, form), where)
+    splitter = TableSplitter(table)
+    blocks = []
+    for members, unknowns in form.blocks:
+        part, known = splitter.part(list(members), list(unknowns))
+        blocks.append(
+            Block(
+                system=part,
+                equations=members,
+                unknowns=np.array(unknowns, dtype=np.intp),
+                variables=np.array([*unknowns, *known], dtype=np.intp),
+            )
+        )
+    solver = BlockSolver(blocks, n, table.variables, table.variable_scale)
+    return Compiled(
+        equations=equations,
+        table=table,
+        form=form,
+        solver=solver,
+        points=PointTable.of(equations, index),
+    )
+
+
+def _table(equations: LoopEquations, index: Mapping[str, int]) -> LoopTable:
+    linear_entries = [
+        (row, index[name], weight)
+        for row, equation in enumerate(equations.linear)
+        for name, weight in equation.terms
+    ]
+    scale = equations.length_scale
+    return LoopTable(
+        unknowns=len(equations.unknowns),
+        loops=phasor_rows([loop.terms for loop in equations.loops], index),
+        linear=LinearRows(
+            constant=np.array([e.constant for e in equations.linear], dtype=float),
+            row=np.array([row for row, _, _ in linear_entries], dtype=np.intp),
+            variable=np.array([k for _, k, _ in linear_entries], dtype=np.intp),
+            weight=np.array([w for _, _, w in linear_entries], dtype=float),
+        ),
+        functions=tuple(_formula_row(e.left, e.right, equations, index) for e in equations.real),
+        equation_scale=np.array(
+            [scale] * (2 * len(equations.loops))
+            + [1.0] * (len(equations.linear) + len(equations.real))
+        ),
+        variable_scale=np.array(
+            [scale if v.kind == "length" else 1.0 for v in equations.variables]
+        ),
+        turns=np.array([v.kind == "angle" for v in equations.variables], dtype=bool),
+    )
+
+
+def _formula_row(
+    left: object, right: object, equations: LoopEquations, index: Mapping[str, int]
+) -> FormulaRow:
+    used = dict.fromkeys(
+        node.name for side in (left, right) for node in names_in(side)  # type: ignore[arg-type]
+    )
+    names = tuple(name for name in used if name in index)
+    return FormulaRow(
+        left=left,  # type: ignore[arg-type]
+        right=right,  # type: ignore[arg-type]
+        names=names,
+        variables=tuple(index[name] for name in names),
+        constants=tuple((n, equations.symbols[n]) for n in used if n in equations.symbols),
+        unit=equations.angle,
+    )
+
+
+def _mismatch(equations: LoopEquations, form: BlockForm) -> list[Problem]:
+    """What to say when equations and unknowns do not match."""
+    names = [v.name for v in equations.unknowns]
+    labels = equations.labels
+    table = "equations" if equations.real else "loops"
+    found = []
+    if form.missing:
+        free = ", ".join(names[k] for k in form.underdetermined)
+        found.append(
+            Problem(
+                key=(table,),
+                message=f"{form.missing} unknown{'s' if form.missing > 1 else ''} too many "
+                f"for the equations: add an equation or an input (not determined: {free})",
+            )
+        )
+    if form.surplus:
+        members = ", ".join(f'"{labels[k]}"' for k in form.overdetermined)
+        unknowns = ", ".join(names[k] for k in form.conflict_unknowns) or "no unknown"
+        found.append(
+            Problem(
+                key=(table,),
+                message=f"{form.surplus} equation{'s' if form.surplus > 1 else ''} too many: "
+                f"{members} together contain only {unknowns}; "
+                "remove an equation or an input",
+            )
+        )
+    return found
+
+
+def evaluate_outputs(
+    equations: LoopEquations, names: Mapping[str, Jet], count: int
+) -> dict[str, Jet]:
+    """The jets of all outputs; ``names`` gives variables, links and coordinates."""
+    known = {**{n: Jet.constant(v) for n, v in equations.dimensions.items()}, **names}
+    found = {}
+    with np.errstate(all="ignore"):
+        for name, output in equations.outputs.items():
+            jet = evaluate(output.formula, known, equations.angle)
+            found[name] = Jet(*(np.broadcast_to(p, count) for p in (jet.v, jet.d1, jet.d2)))
+    return found
+
+
+def coordinate_name(point: str, axis: str) -> str:
+    """How a coordinate stands in a formula."""
+    return canonical(f"{point}.{axis}")

@@ -1,0 +1,278 @@
+"""Writing the loop equations of a mechanism that is given by its points and links."""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from linkwork.equations.frames import Frames
+from linkwork.equations.model import (
+    LinearEquation,
+    LoopEquation,
+    LoopEquations,
+    PointPath,
+    Term,
+    Variable,
+)
+from linkwork.equations.outputs import read_outputs
+from linkwork.equations.structure import Node, Structure, StructureBlock
+from linkwork.expression.tree import Name
+from linkwork.foundation.names import canonical
+from linkwork.mechanism.description import Problems
+from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.parts import Input
+
+__all__ = ["write_loops"]
+
+
+def write_loops(linkage: Linkage) -> LoopEquations:
+    """The loop equations of a linkage: unknowns are link angles and slider lengths.
+
+    Raises
+    ------
+    MechanismError
+        If inputs contradict each other, or do not determine the motion: with the links that
+        stay free or the parts that conflict.
+    """
+    writer = _Writer(linkage)
+    return writer.written()
+
+
+@dataclass
+class _Writer:
+    linkage: Linkage
+    problems: Problems = field(default_factory=Problems)
+    inputs: list[Variable] = field(default_factory=list)
+    start: dict[str, float] = field(default_factory=dict)
+    linear: list[LinearEquation] = field(default_factory=list)
+    points: dict[str, PointPath] = field(default_factory=dict)
+    base: dict[str, str | None] = field(default_factory=dict)
+
+    def written(self) -> LoopEquations:
+        """Everything, in order."""
+        linkage = self.linkage
+        where = f'mechanism "{linkage.name}"'
+        self.frames = frames = Frames.of(linkage, self.problems)
+        self.problems.raise_any(where)
+        self.start = dict(frames.start)
+        for k, which in enumerate(linkage.inputs):
+            self._drive(which, linkage.input_key(k))
+        self.problems.raise_any(where)
+        driven = {v.name for v in self.inputs}
+        angles = [a for b in frames.bodies if (a := frames.angle[b].variable) == self._angle_of(b)]
+        unknowns = [
+            _variable(n, kind)
+            for n, kind in self._variables(angles)
+            if n not in driven
+        ]
+        structure = self._structure({v.name for v in unknowns})
+        self._check_determined(structure)
+        self.problems.raise_any(where)
+        blocks = structure.blocks()
+        loops = [self._loop(walk) for block in blocks for walk in block.loops]
+        self._place_points(blocks)
+        variables = (*unknowns, *self.inputs)
+        outputs = self._outputs(variables)
+        self.problems.raise_any(where)
+        return LoopEquations(
+            angle=linkage.angle,
+            unknowns=tuple(unknowns),
+            inputs=tuple(self.inputs),
+            loops=tuple(loops),
+            linear=tuple(self.linear),
+            symbols=dict(frames.symbols),
+            dimensions=dict(linkage.numbers.known),
+            start=np.array([self.start[v.name] for v in variables]),
+            points=self.points,
+            links={b: frames.angle[b] for b in linkage.links if b != GROUND},
+            sliders={name: name for name in frames.lengths},
+            outputs=outputs,
+            fixed=linkage.links[GROUND],
+            length_scale=_longest(linkage),
+        )
+
+    def _angle_of(self, body: str) -> str:
+        """The angle variable a body would name itself."""
+        cylinder = {c.name: c.angle_name for c in self.linkage.cylinders}
+        return cylinder.get(body, body)
+
+    def _variables(self, angles: list[str | None]) -> list[tuple[str, str]]:
+        named = [(a, "angle") for a in angles if a is not None]
+        return named + [(length, "length") for length in self.frames.lengths]
+
+    def _drive(self, which: Input, key: tuple[str | int, ...]) -> None:
+        """Turn an input into a variable: an angle, a relative angle or a length."""
+        kind, name = which.drives
+        if kind in ("slider", "cylinder"):
+            self.inputs.append(_variable(name, "length"))
+            return
+        link, against = name, which.relative_to or GROUND
+        if kind == "joint":
+            against, link = self.linkage.bodies_at(name)
+            if link == GROUND:
+                link, against = against, link
+        angle, base = self.frames.angle[link], self.frames.angle[against]
+        if angle.variable == base.variable:
+            self.problems.add(key, f'"{link}" cannot turn against "{against}": it only slides')
+        elif base.variable is None and angle.variable == link and not base.constant:
+            self.inputs.append(_variable(link, "angle"))
+        else:
+            column = which.column
+            self.inputs.append(_variable(column, "angle"))
+            self._relate(column, link, against)
+
+    def _relate(self, column: str, link: str, against: str) -> None:
+        """θ_link - θ_against - input = 0."""
+        angle, base = self.frames.angle[link], self.frames.angle[against]
+        terms = [(column, -1.0)]
+        value = angle.constant - base.constant
+        for sign, part in ((1.0, angle), (-1.0, base)):
+            if part.variable is not None:
+                terms.append((part.variable, sign))
+                value += sign * self.frames.start[part.variable]
+        constant = angle.constant - base.constant
+        self.linear.append(
+            LinearEquation(label=f"{link} against {against}", terms=tuple(terms), constant=constant)
+        )
+        self.start[column] = cmath.phase(cmath.exp(1j * value))
+        # the unwrapped start must satisfy the relation exactly as closely as the sketch does
+        if angle.variable is not None:
+            self.start[angle.variable] += self.start[column] - value
+
+    def _structure(self, unknown: set[str]) -> Structure:
+        frames = self.frames
+        carriers: dict[str, list[str]] = {}
+        for body in frames.bodies:
+            for point in frames.places[body]:
+                carriers.setdefault(point, []).append(body)
+        incidences = [
+            (body, point)
+            for point, bodies in carriers.items()
+            if len(bodies) > 1
+            for body in bodies
+        ]
+        variables: dict[tuple[str, str], tuple[str, ...]] = {}
+        for body, point in incidences:
+            found = [frames.angle[body].variable]
+            found += [term.length for term in frames.places[body][point].sliding]
+            variables[body, point] = tuple(n for n in found if n is not None and n in unknown)
+        relations = [
+            tuple(name for name, _ in equation.terms if name in unknown)
+            for equation in self.linear
+        ]
+        return Structure(incidences, variables, relations, GROUND)
+
+    def _check_determined(self, structure: Structure) -> None:
+        form, names = structure.form()
+        if form.square:
+            return
+        if form.missing:
+            free = _subjects(names[k] for k in form.underdetermined)
+            wanted = f"{form.missing} more input{'s' if form.missing > 1 else ''}"
+            driven = len(self.linkage.inputs)
+            self.problems.add(
+                ("input",),
+                f"{driven} input{'s' if driven != 1 else ''} leave{'s' if driven == 1 else ''} "
+                f"{form.missing} degree{'s' if form.missing > 1 else ''} of freedom: "
+                f"add {wanted} or a link (free to move: {', '.join(free)})",
+            )
+        if form.surplus:
+            tied = _subjects(names[k] for k in form.conflict_unknowns)
+            self.problems.add(
+                ("links",),
+                f"{form.surplus} condition{'s' if form.surplus > 1 else ''} too many: "
+                f"remove an input or a link among {', '.join(tied) or 'those joined to ground'}",
+            )
+
+    def _loop(self, walk: tuple[Node, ...]) -> LoopEquation:
+        """The closed vector sum along a walk of bodies and points."""
+        crossings = _crossings(walk, self.frames.bodies)
+        terms: list[Term] = []
+        for start, body, end in crossings:
+            terms += self.frames.between(body, start, end)
+        left = tuple(t for t in terms if t.sign > 0)
+        right = tuple(t.negated() for t in terms if t.sign < 0)
+        label = " ".join(start for start, _, _ in crossings)
+        return LoopEquation(label=label, left=left, right=right)
+
+    def _place_points(self, blocks: list[StructureBlock]) -> None:
+        """Every point as its parent point plus terms, parents first."""
+        self.base = {GROUND: None}
+        for point in self.frames.places[GROUND]:
+            if not self.frames.places[GROUND][point].sliding:
+                self.points[point] = self._path(GROUND, point)
+        for block in blocks:
+            for parent, node in block.tree:
+                if node[0] == "body":
+                    self.base[node[1]] = parent[1]
+                elif node[1] not in self.points:
+                    self.points[node[1]] = self._path(parent[1], node[1])
+        for body in self.frames.bodies:
+            for point in self.frames.places[body]:
+                if point not in self.points:
+                    self.points[point] = self._path(body, point)
+
+    def _path(self, body: str, point: str) -> PointPath:
+        base = self.base[body]
+        if base is not None:
+            terms = self.frames.between(body, base, point)
+            return PointPath(parent=base, terms=tuple(terms))
+        place = self.frames.places[GROUND][point]
+        fixed = Term.vector(place.fixed, Name(place.base, place.base))
+        return PointPath(parent=None, terms=(fixed, *place.sliding))
+
+    def _outputs(self, variables: tuple[Variable, ...]) -> Mapping[str, object]:
+        kinds = {v.symbol: v.kind for v in variables}
+        kinds |= {canonical(link): "angle" for link in self.linkage.links if link != GROUND}
+        known = self.linkage.numbers.known
+        return read_outputs(self.linkage.outputs, kinds, self.points, known, self.problems)
+
+
+def _variable(name: str, kind: str) -> Variable:
+    """A link's angle is shown as θ with the link's name."""
+    symbol = canonical(name)
+    stem = symbol.removesuffix("_angle")
+    return Variable(
+        name=name, kind=kind, symbol=symbol, shown=f"theta_{stem}" if kind == "angle" else symbol
+    )
+
+
+def _crossings(walk: tuple[Node, ...], bodies: list[str]) -> list[tuple[str, str, str]]:
+    """(entry point, body, exit point) along a walk; ground last, the driven side first."""
+    count = len(walk)
+    found = [
+        (walk[k - 1][1], node[1], walk[(k + 1) % count][1])
+        for k, node in enumerate(walk)
+        if node[0] == "body"
+    ]
+    order = {body: k for k, body in enumerate(bodies)}
+    lowest = min(range(len(found)), key=lambda k: order[found[k][1]])
+    found = found[lowest + 1 :] + found[: lowest + 1]
+    if len(found) > 2 and order[found[0][1]] > order[found[-2][1]]:
+        backwards = [(end, body, start) for start, body, end in reversed(found)]
+        found = backwards[1:] + backwards[:1]
+    return found
+
+
+def _subjects(columns: object) -> list[str]:
+    """The bodies, else whatever there is, behind column labels."""
+    assert hasattr(columns, "__iter__")
+    labels = [str(label).split() for label in columns]
+    bodies = dict.fromkeys(parts[1] for parts in labels if parts[0] == "body")
+    if bodies:
+        return list(bodies)
+    return list(dict.fromkeys(parts[-1] if len(parts) == 1 else parts[1] for parts in labels))
+
+
+def _longest(linkage: Linkage) -> float:
+    """The longest distance inside one link."""
+    spans = [
+        abs(a - b)
+        for local in linkage.shapes.local.values()
+        for a in local.values()
+        for b in local.values()
+    ]
+    return max(spans, default=0.0) or 1.0

@@ -1,0 +1,290 @@
+"""Reading forms B and C: loop equations in textbook notation, and plain equations."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from linkwork.equations.model import (
+    LoopEquation,
+    LoopEquations,
+    PointPath,
+    RealEquation,
+    Term,
+    Variable,
+)
+from linkwork.equations.outputs import read_outputs
+from linkwork.equations.phasors import Monomial, PhasorReader
+from linkwork.expression.grammar import CONSTANTS, parse, parse_equation
+from linkwork.expression.tree import Binary, Name, Negative, Node, names_in
+from linkwork.foundation.errors import ExpressionError, choices
+from linkwork.foundation.names import canonical
+from linkwork.mechanism.description import Problems
+from linkwork.mechanism.loops import Loops, PlainEquations
+
+__all__ = ["read_loops", "read_plain_equations"]
+
+
+def read_loops(mechanism: Loops) -> LoopEquations:
+    """The equations of a mechanism given by its loops.
+
+    Raises
+    ------
+    MechanismError
+        With every formula that cannot be read and every unknown that no loop contains.
+    """
+    problems = Problems()
+    spelling = {canonical(name): name for name in mechanism.guess}
+    numbers = mechanism.numbers
+    reader = PhasorReader(
+        numbers.known,
+        numbers.unit,
+        spelling.__contains__,
+        known=tuple([*spelling.values(), *mechanism.dimensions]),
+    )
+    loops: list[LoopEquation] = []
+    for label, text in mechanism.loops.items():
+        try:
+            left, right = (reader.read(side, text) for side in parse_equation(text))
+            loops.append(
+                LoopEquation(
+                    label=label,
+                    left=tuple(_term(m, text) for m in left if m.value),
+                    right=tuple(_term(m, text) for m in right if m.value),
+                )
+            )
+        except ExpressionError as error:
+            problems.add(("loops", label), str(error))
+    points = _read_points(mechanism, reader, problems)
+    problems.raise_any(f'mechanism "{mechanism.name}"')
+    kinds = _kinds(loops, spelling, problems)
+    _check_ranges(mechanism, kinds, problems)
+    problems.raise_any(f'mechanism "{mechanism.name}"')
+    driven = [canonical(which.drives[1]) for which in mechanism.inputs]
+    unknown_names = [name for name in spelling if name not in driven]
+    variables = {
+        name: Variable(name=spelling[name], kind=kinds[name], symbol=name) for name in spelling
+    }
+    outputs = read_outputs(mechanism.outputs, kinds, mechanism.points, numbers.known, problems)
+    problems.raise_any(f'mechanism "{mechanism.name}"')
+    order = [*unknown_names, *driven]
+    values = {canonical(name): numbers(number) for name, number in mechanism.guess.items()}
+    return LoopEquations(
+        angle=mechanism.angle,
+        unknowns=tuple(variables[name] for name in unknown_names),
+        inputs=tuple(variables[name] for name in driven),
+        loops=tuple(loops),
+        symbols=_symbols(mechanism, loops),
+        dimensions=dict(numbers.known),
+        start=np.array(
+            [values[n] * (mechanism.angle.radians if kinds[n] == "angle" else 1) for n in order]
+        ),
+        points=points,
+        sliders={spelling[n]: n for n in spelling if kinds[n] == "length"},
+        outputs=outputs,
+        fixed=tuple(
+            name for name, path in points.items() if not any(t.phase or t.length for t in path.terms)
+        ),
+        length_scale=_longest(loops),
+    )
+
+
+def _term(m: Monomial, text: str) -> Term:
+    if len(m.factors) > 1:
+        raise ExpressionError(
+            f"the product {'·'.join(m.factors)} of two unknowns has no place in a loop equation: "
+            "a term is one length times e^(i*angle)",
+            text,
+            1,
+        )
+    sign = -1 if isinstance(m.shown, Negative) else 1
+    shown = m.shown.operand if isinstance(m.shown, Negative) else m.shown
+    turn = 0.0
+    if shown is not None and abs(m.value.real) <= 1e-15 * abs(m.value.imag):
+        found, rest = _without_i(shown)
+        if found:
+            shown, turn = rest, math.pi / 2
+    return Term(
+        value=m.value,
+        magnitude=shown,
+        sign=sign,
+        turn=turn,
+        length=m.factors[0] if m.factors else None,
+        phase=m.phase,
+    )
+
+
+def _without_i(node: Node) -> tuple[bool, Node | None]:
+    """A product with its factor i taken out, if it has exactly that."""
+    match node:
+        case Name("i"):
+            return True, None
+        case Binary("*"):
+            for inner, other, flipped in (
+                (node.left, node.right, False),
+                (node.right, node.left, True),
+            ):
+                found, rest = _without_i(inner)
+                if found:
+                    if rest is None:
+                        return True, other
+                    return True, Binary("*", *((other, rest) if flipped else (rest, other)))
+    return False, node
+
+
+def _read_points(
+    mechanism: Loops, reader: PhasorReader, problems: Problems
+) -> dict[str, PointPath]:
+    """Points may refer to each other in any order; a circle of references is an error."""
+    texts = {canonical(name): text for name, text in mechanism.points.items()}
+    spelling = {canonical(name): name for name in mechanism.points}
+    done: dict[str, PointPath] = {}
+    state: dict[str, str] = {}
+
+    def resolve(name: str, chain: tuple[str, ...]) -> None:
+        if name in state:
+            if state[name] == "open":
+                circle = " → ".join(spelling[n] for n in (*chain[chain.index(name) :], name))
+                problems.add(("points", spelling[name]), f"is defined by itself: {circle}")
+                state[name] = "done"
+            return
+        state[name] = "open"
+        text = texts[name]
+        try:
+            tree = parse(text)
+            for node in names_in(tree):
+                if node.name in texts:
+                    resolve(node.name, (*chain, name))
+            if state[name] == "open":
+                monomials = reader.read(tree, text)
+                reader.points[name] = monomials
+                terms = tuple(_term(m, text) for m in monomials if m.value)
+                done[spelling[name]] = PointPath(parent=None, terms=terms)
+        except ExpressionError as error:
+            if not any(p.key == ("points", spelling[name]) for p in problems):
+                problems.add(("points", spelling[name]), str(error))
+        state[name] = "done"
+
+    for name in texts:
+        resolve(name, ())
+    return {name: done[name] for name in mechanism.points if name in done}
+
+
+def _kinds(
+    loops: list[LoopEquation], spelling: Mapping[str, str], problems: Problems
+) -> dict[str, str]:
+    """What every variable measures, from where it stands."""
+    kinds: dict[str, str] = {}
+    for loop in loops:
+        for term in loop.terms:
+            found = {name: "angle" for name, _ in term.phase}
+            if term.length is not None:
+                found[term.length] = "length" if term.length not in found else "both"
+            for name, kind in found.items():
+                if kinds.setdefault(name, kind) != kind or kind == "both":
+                    problems.add(
+                        ("loops", loop.label),
+                        f'"{spelling[name]}" stands as an angle and as a length',
+                    )
+    for name, spelled in spelling.items():
+        if name not in kinds:
+            problems.add(("guess", spelled), f'"{spelled}" occurs in no loop equation')
+    return kinds
+
+
+def _check_ranges(
+    mechanism: Loops | PlainEquations, kinds: Mapping[str, str], problems: Problems
+) -> None:
+    """Only an angle has a natural range."""
+    for k, which in enumerate(mechanism.inputs):
+        if kinds[canonical(which.drives[1])] == "angle":
+            continue
+        for field, number in (("from", which.start), ("to", which.stop), ("step", which.step)):
+            if number is None:
+                problems.add(
+                    (*mechanism.input_key(k), field),
+                    f'is missing: "{which.drives[1]}" is no angle and has no natural range',
+                )
+                break
+
+
+def _symbols(mechanism: Loops | PlainEquations, loops: list[LoopEquation]) -> dict[str, float]:
+    used = {
+        node.name
+        for loop in loops
+        for term in loop.terms
+        if term.magnitude is not None
+        for node in names_in(term.magnitude)
+    }
+    known = mechanism.numbers.known
+    return {name: known[name] for name in map(canonical, mechanism.dimensions) if name in used}
+
+
+def _longest(loops: list[LoopEquation]) -> float:
+    """The longest fixed vector; 1 if there is none."""
+    sizes = [abs(t.value) for loop in loops for t in loop.terms if t.length is None]
+    return max(sizes, default=0.0) or 1.0
+
+
+def read_plain_equations(mechanism: PlainEquations) -> LoopEquations:
+    """The equations of form C; every variable is a plain number.
+
+    Raises
+    ------
+    MechanismError
+        With every formula that cannot be read and every unknown that occurs nowhere.
+    """
+    problems = Problems()
+    spelling = {canonical(name): name for name in mechanism.guess}
+    numbers = mechanism.numbers
+    equations: list[RealEquation] = []
+    occurring: set[str] = set()
+    for label, text in mechanism.equations.items():
+        try:
+            left, right = parse_equation(text)
+            for side in (left, right):
+                _check_plain(side, text, spelling, numbers.known)
+                occurring |= {node.name for node in names_in(side)}
+            equations.append(RealEquation(label=label, left=left, right=right))
+        except ExpressionError as error:
+            problems.add(("equations", label), str(error))
+    for name, spelled in spelling.items():
+        if name not in occurring and not problems:
+            problems.add(("guess", spelled), f'"{spelled}" occurs in no equation')
+    kinds = dict.fromkeys(spelling, "number")
+    outputs = read_outputs(mechanism.outputs, kinds, {}, numbers.known, problems)
+    _check_ranges(mechanism, kinds, problems)
+    problems.raise_any(f'mechanism "{mechanism.name}"')
+    driven = [canonical(which.drives[1]) for which in mechanism.inputs]
+    unknown_names = [name for name in spelling if name not in driven]
+    variables = {n: Variable(name=spelling[n], kind="number", symbol=n) for n in spelling}
+    values = {canonical(name): numbers(number) for name, number in mechanism.guess.items()}
+    return LoopEquations(
+        angle=mechanism.angle,
+        unknowns=tuple(variables[n] for n in unknown_names),
+        inputs=tuple(variables[n] for n in driven),
+        real=tuple(equations),
+        symbols={n: v for n, v in numbers.known.items() if n in occurring},
+        dimensions=dict(numbers.known),
+        start=np.array([values[n] for n in [*unknown_names, *driven]]),
+        outputs=outputs,
+    )
+
+
+def _check_plain(
+    side: Node, text: str, spelling: Mapping[str, str], numbers: Mapping[str, float]
+) -> None:
+    for node in names_in(side):
+        if node.name in spelling or node.name in numbers or node.name in CONSTANTS:
+            continue
+        if node.name == "i":
+            message = "plain equations are real: for complex loop equations use [loops]"
+        else:
+            known = choices("names", [*spelling.values(), *numbers], node.name)
+            message = f'"{node.spelling}" is neither a dimension nor in [guess] {known}'
+        raise ExpressionError(f"column {node.column}: {message}", text, node.column)
+    if "cis(" in text.replace(" ", ""):
+        raise ExpressionError("cis is complex: for complex loop equations use [loops]", text, 1)
+

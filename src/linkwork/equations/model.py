@@ -1,0 +1,198 @@
+"""The closure equations of a mechanism as symbols: what is shown and what is compiled."""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.expression.tree import Node
+from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.frozen import FrozenDict
+
+__all__ = [
+    "LinearEquation",
+    "LinkAngle",
+    "LoopEquation",
+    "LoopEquations",
+    "Output",
+    "PointPath",
+    "RealEquation",
+    "Term",
+    "Variable",
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variable:
+    """An unknown or input.
+
+    ``symbol`` is the canonical name under which formulas and terms refer to it; ``shown`` is the
+    name it has in printed equations (a link's angle is shown as θ with the link's name).
+    """
+
+    name: str
+    kind: str  # angle | length | number
+    symbol: str
+    shown: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.shown:
+            object.__setattr__(self, "shown", self.symbol)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Term:
+    """``sign · magnitude · s · exp(i (Σ weight θ + turn))``.
+
+    ``value`` is sign · magnitude · exp(i turn) as a number; ``magnitude`` is what is shown, ``None``
+    for 1. ``length`` names a variable length, ``phase`` variable angles with their weights.
+    """
+
+    value: complex
+    magnitude: Node | None = None
+    sign: int = 1
+    turn: float = 0.0
+    length: str | None = None
+    phase: tuple[tuple[str, float], ...] = ()
+
+    def negated(self) -> Term:
+        """The term with the opposite sign."""
+        return Term(
+            value=-self.value,
+            magnitude=self.magnitude,
+            sign=-self.sign,
+            turn=self.turn,
+            length=self.length,
+            phase=self.phase,
+        )
+
+    @classmethod
+    def vector(
+        cls,
+        z: complex,
+        shown: Node | None,
+        length: str | None = None,
+        phase: tuple[tuple[str, float], ...] = (),
+    ) -> Term:
+        """A fixed vector in a turning frame: modulus shown by ``shown``, direction as turn."""
+        turn = cmath.phase(z) if z else 0.0
+        sign = 1
+        if turn > np.pi / 2 + 1e-12 or turn < -np.pi / 2 + 1e-12:
+            sign, turn = -1, cmath.phase(-z)
+        if abs(turn) < 1e-15:
+            turn = 0.0
+        return cls(value=z, magnitude=shown, sign=sign, turn=turn, length=length, phase=phase)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoopEquation:
+    """A closed vector loop: the sum of ``left`` equals the sum of ``right``."""
+
+    label: str
+    left: tuple[Term, ...]
+    right: tuple[Term, ...]
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        """Left minus right."""
+        return self.left + tuple(term.negated() for term in self.right)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinearEquation:
+    """Σ weight · variable + constant = 0; angles in radians."""
+
+    label: str
+    terms: tuple[tuple[str, float], ...]
+    constant: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class RealEquation:
+    """A plain equation ``left = right`` in named variables."""
+
+    label: str
+    left: Node
+    right: Node
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointPath:
+    """A point: its ``parent`` point's position (the origin if ``None``) plus terms."""
+
+    parent: str | None
+    terms: tuple[Term, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkAngle:
+    """The angle of a link: a variable (or none) plus a constant [rad]."""
+
+    variable: str | None
+    constant: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Output:
+    """A named formula; ``kind`` tells whether its value is an angle, a length or a number."""
+
+    formula: Node
+    kind: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoopEquations:
+    """Every equation of a mechanism, with what its solution means.
+
+    Parameters
+    ----------
+    unknowns, inputs : tuple of Variable
+    loops, linear, real : equations
+        Complex loops; linear relations; plain real equations.
+    symbols : Mapping[str, float]
+        Values of the fixed lengths and dimensions that occur, by canonical name.
+    dimensions : Mapping[str, float]
+        All named dimensions, for outputs.
+    start : (N,)
+        Guess of the unknowns, then the input values it belongs to; angles in radians.
+    points : Mapping[str, PointPath]
+        Parents come before their children.
+    links : Mapping[str, LinkAngle]
+    sliders : Mapping[str, str]
+        Name of slider, slot or cylinder → variable.
+    outputs : Mapping[str, Output]
+    fixed : tuple of str
+        Points that stand still.
+    length_scale : float
+        The longest link: what lengths are measured against.
+    """
+
+    angle: AngleUnit
+    unknowns: tuple[Variable, ...]
+    inputs: tuple[Variable, ...]
+    loops: tuple[LoopEquation, ...] = ()
+    linear: tuple[LinearEquation, ...] = ()
+    real: tuple[RealEquation, ...] = ()
+    symbols: Mapping[str, float] = FrozenDict()
+    dimensions: Mapping[str, float] = FrozenDict()
+    start: npt.NDArray[np.float64]
+    points: Mapping[str, PointPath] = FrozenDict()
+    links: Mapping[str, LinkAngle] = FrozenDict()
+    sliders: Mapping[str, str] = FrozenDict()
+    outputs: Mapping[str, Output] = FrozenDict()
+    fixed: tuple[str, ...] = ()
+    length_scale: float = 1.0
+
+    @property
+    def variables(self) -> tuple[Variable, ...]:
+        """Unknowns, then inputs."""
+        return self.unknowns + self.inputs
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Names of all equations: loops, linear, real."""
+        return tuple(e.label for e in (*self.loops, *self.linear, *self.real))

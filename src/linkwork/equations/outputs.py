@@ -1,0 +1,105 @@
+"""Named outputs: formulas of unknowns, dimensions and point coordinates, and what they measure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from linkwork.expression.grammar import CONSTANTS, parse
+from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
+from linkwork.foundation.errors import ExpressionError, choices
+from linkwork.equations.model import Output
+from linkwork.foundation.names import canonical
+from linkwork.mechanism.description import Problems
+
+__all__ = ["read_outputs"]
+
+_COMPLEX_ONLY = ("cis",)
+
+
+def read_outputs(
+    formulas: Mapping[str, str],
+    kinds: Mapping[str, str],
+    points: Mapping[str, object],
+    dimensions: Mapping[str, float],
+    problems: Problems,
+) -> dict[str, Output]:
+    """The outputs as trees.
+
+    Parameters
+    ----------
+    kinds : Mapping[str, str]
+        What every usable name measures, by canonical name.
+    points : Mapping
+        Points by their name; ``A.x`` and ``A.y`` are usable too.
+    """
+    coordinates = {canonical(f"{p}.{axis}"): "length" for p in points for axis in "xy"}
+    known = {**{name: "number" for name in dimensions}, **kinds, **coordinates}
+    found: dict[str, Output] = {}
+    for name, formula in formulas.items():
+        try:
+            tree = parse(formula)
+            _check_names(tree, known, formula)
+        except ExpressionError as error:
+            problems.add(("outputs", name), str(error))
+            continue
+        found[name] = Output(formula=tree, kind=_kind(tree, known.__getitem__))
+    return found
+
+
+def _check_names(tree: Node, known: Mapping[str, str], text: str) -> None:
+    for node in names_in(tree):
+        if node.name not in known and node.name not in CONSTANTS:
+            raise ExpressionError(
+                f'column {node.column}: "{node.spelling}" is not defined '
+                f"{choices('names', known, node.name)}",
+                text,
+                node.column,
+            )
+    _check_real(tree, text)
+
+
+def _check_real(tree: Node, text: str) -> None:
+    match tree:
+        case Call() if tree.function in _COMPLEX_ONLY:
+            raise ExpressionError(
+                f"column {tree.column}: {tree.function} is complex, an output is a real number",
+                text,
+                tree.column,
+            )
+        case Call():
+            for argument in tree.arguments:
+                _check_real(argument, text)
+        case Binary():
+            _check_real(tree.left, text)
+            _check_real(tree.right, text)
+        case Negative():
+            _check_real(tree.operand, text)
+        case Name() | Number():
+            return
+
+
+def _kind(tree: Node, kind_of: Callable[[str], str]) -> str:
+    """Angle, length or number, as far as the formula tells."""
+    match tree:
+        case Number():
+            return "number"
+        case Name():
+            return "number" if tree.name in CONSTANTS else kind_of(tree.name)
+        case Negative():
+            return _kind(tree.operand, kind_of)
+        case Call("atan2" | "atan" | "asin" | "acos"):
+            return "angle"
+        case Call("abs" | "hypot" | "min" | "max"):
+            return _kind(tree.arguments[0], kind_of)
+        case Call():
+            return "number"
+        case Binary("+" | "-"):
+            kinds = {_kind(tree.left, kind_of), _kind(tree.right, kind_of)} - {"number"}
+            return kinds.pop() if len(kinds) == 1 else "number"
+        case Binary("*" | "/"):
+            left, right = _kind(tree.left, kind_of), _kind(tree.right, kind_of)
+            if right == "number":
+                return left
+            return right if left == "number" and tree.operator == "*" else "number"
+        case Binary():
+            return "number"

@@ -1,0 +1,266 @@
+"""Multiplying out a complex formula into phasor terms.
+
+A formula such as ``-d1 - i*a1 + (a4 - b4)*e^(i*θ14)`` becomes a sum of monomials: a complex
+constant times at most one variable length times ``exp(i · linear combination of angles)``. What is
+an angle and what a length follows from where a name stands.
+"""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from linkwork.expression.grammar import CONSTANTS
+from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
+from linkwork.expression.values import value
+from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.errors import ExpressionError, choices
+
+__all__ = ["Monomial", "PhasorReader"]
+
+
+@dataclass(frozen=True)
+class Monomial:
+    """``value · Π factors · exp(i (Σ weight θ))``; ``shown`` is the constant as written."""
+
+    value: complex
+    shown: Node | None = None
+    factors: tuple[str, ...] = ()
+    phase: tuple[tuple[str, float], ...] = ()
+
+    def times(self, other: Monomial) -> Monomial:
+        """The product."""
+        weights = dict(self.phase)
+        for name, weight in other.phase:
+            weights[name] = weights.get(name, 0.0) + weight
+        return Monomial(
+            self.value * other.value,
+            _product(self.shown, other.shown),
+            self.factors + other.factors,
+            tuple((name, weight) for name, weight in weights.items() if weight),
+        )
+
+    @property
+    def constant(self) -> bool:
+        """Whether no variable occurs."""
+        return not self.factors and not self.phase
+
+
+def _product(left: Node | None, right: Node | None) -> Node | None:
+    if left is None or right is None:
+        return left if right is None else right
+    if isinstance(left, Negative):
+        product = _product(left.operand, right)
+        return Negative(product) if product is not None else None
+    if isinstance(right, Negative):
+        product = _product(left, right.operand)
+        return Negative(product) if product is not None else None
+    return Binary("*", left, right)
+
+
+@dataclass
+class PhasorReader:
+    """Reads formulas over known numbers, known points and, for the rest, variables.
+
+    Parameters
+    ----------
+    numbers : Mapping[str, float]
+        Dimensions by canonical name.
+    variables : Callable
+        Tells whether a canonical name may be a variable.
+    points : Mapping[str, sum of monomials]
+        Points that formulas may refer to.
+    """
+
+    numbers: Mapping[str, float]
+    unit: AngleUnit
+    variables: Callable[[str], bool]
+    points: dict[str, list[Monomial]] = field(default_factory=dict)
+    known: tuple[str, ...] = ()
+    text: str = ""
+
+    def read(self, node: Node, text: str) -> list[Monomial]:
+        """The sum of monomials, like ones joined.
+
+        Raises
+        ------
+        ExpressionError
+            Where the formula is not of this shape, with the column.
+        """
+        self.text = text
+        return _joined(self._sum(node))
+
+    def _error(self, node: Node, message: str) -> ExpressionError:
+        return ExpressionError(f"column {node.column}: {message}", self.text, node.column)
+
+    def _sum(self, node: Node) -> list[Monomial]:
+        match node:
+            case Number():
+                return [Monomial(complex(node.value), None if node.value == 1 else node)]
+            case Name():
+                return self._name(node)
+            case Negative():
+                return [_negated(m) for m in self._sum(node.operand)]
+            case Binary("+"):
+                return self._sum(node.left) + self._sum(node.right)
+            case Binary("-"):
+                return self._sum(node.left) + [_negated(m) for m in self._sum(node.right)]
+            case Binary("*"):
+                return self._multiplied(node)
+            case Binary("/"):
+                return self._divided(node)
+            case Binary():
+                return self._power(node)
+            case Call("exp"):
+                return self._exponential(node, node.arguments[0])
+            case Call("cis"):
+                turned = [
+                    m.times(Monomial(1j, Name("i", "i"))) for m in self._sum(node.arguments[0])
+                ]
+                return self._rotation(node, turned, node.arguments[0])
+            case Call():
+                return self._function(node)
+
+    def _name(self, node: Name) -> list[Monomial]:
+        if node.name in self.numbers:
+            return [Monomial(complex(self.numbers[node.name]), node)]
+        if node.name in self.points:
+            return self.points[node.name]
+        if self.variables(node.name):
+            return [Monomial(1.0 + 0j, None, (node.name,))]
+        if node.name == "i":
+            return [Monomial(1j, node)]
+        if node.name in CONSTANTS:
+            return [Monomial(complex(CONSTANTS[node.name]), node)]
+        raise self._error(
+            node,
+            f'"{node.spelling}" is neither a dimension nor in [guess] '
+            f"{choices('names', self.known, node.name)}",
+        )
+
+    def _multiplied(self, node: Binary) -> list[Monomial]:
+        left, right = self._sum(node.left), self._sum(node.right)
+        if all(m.constant for m in left) and len(left) > 1:
+            left = [_whole(left, node.left)]
+        if all(m.constant for m in right) and len(right) > 1:
+            right = [_whole(right, node.right)]
+        product = [a.times(b) for a in left for b in right]
+        if len(product) > 1000:
+            raise self._error(node, "multiplied out, this product has more than 1000 terms")
+        return product
+
+    def _divided(self, node: Binary) -> list[Monomial]:
+        right = self._sum(node.right)
+        if not all(m.constant for m in right):
+            raise self._error(node, "a loop equation cannot be divided by an unknown")
+        divisor = sum(m.value for m in right)
+        if divisor == 0:
+            raise self._error(node, "division by zero")
+        return [
+            Monomial(
+                m.value / divisor,
+                Binary("/", m.shown or Number(1.0), node.right),
+                m.factors,
+                m.phase,
+            )
+            for m in self._sum(node.left)
+        ]
+
+    def _power(self, node: Binary) -> list[Monomial]:
+        if isinstance(node.left, Name) and node.left.name == "e" and "e" not in self.numbers:
+            return self._exponential(node, node.right)
+        base, exponent = self._sum(node.left), self._sum(node.right)
+        if not all(m.constant for m in (*base, *exponent)):
+            raise self._error(
+                node,
+                "a power of an unknown has no place in a loop equation: "
+                "write products of one length and e^(i*angle), or use [equations]",
+            )
+        b, p = sum(m.value for m in base), sum(m.value for m in exponent)
+        try:
+            return [Monomial(complex(b**p), node)]
+        except (ZeroDivisionError, OverflowError):
+            raise self._error(node, "this power is not a finite number") from None
+
+    def _exponential(self, node: Node, exponent: Node) -> list[Monomial]:
+        terms = _joined(self._sum(exponent))
+        if all(m.constant and m.value.imag == 0 for m in terms):
+            try:
+                return [Monomial(cmath.exp(sum(m.value for m in terms)), node)]
+            except OverflowError:
+                raise self._error(node, "this power is not a finite number") from None
+        return self._rotation(node, terms, exponent)
+
+    def _rotation(self, node: Node, terms: list[Monomial], shown: Node) -> list[Monomial]:
+        """exp of i times a linear combination of angles."""
+        if self.unit is AngleUnit.DEGREE and any(n.name == "pi" for n in names_in(shown)):
+            raise self._error(
+                node, 'angles are in degrees here, so pi is out of place: write 180, or angle = "rad"'
+            )
+        weights: dict[str, float] = {}
+        turn = 0.0
+        for m in terms:
+            if len(m.factors) > 1 or m.phase:
+                raise self._error(node, "an exponent takes i times a sum of angles, nothing else")
+            if m.value.real != 0.0:
+                raise self._error(
+                    node, "the exponent has a part without i: a rotation is e^(i*angle)"
+                )
+            if m.factors:
+                weights[m.factors[0]] = weights.get(m.factors[0], 0.0) + m.value.imag
+            else:
+                turn += m.value.imag * self.unit.radians
+        phase = tuple((name, weight) for name, weight in weights.items() if weight)
+        if not phase:
+            return [Monomial(cmath.exp(1j * turn), node)]
+        if turn == 0.0:
+            return [Monomial(1.0 + 0j, None, (), phase)]
+        constant = Binary(
+            "^", Name("e", "e"), Binary("*", Name("i", "i"), Number(turn / self.unit.radians))
+        )
+        return [Monomial(cmath.exp(1j * turn), constant, (), phase)]
+
+    def _function(self, node: Call) -> list[Monomial]:
+        for used in names_in(node):
+            if used.name not in self.numbers and self.variables(used.name):
+                raise self._error(
+                    node,
+                    f"{node.function} of the unknown {used.spelling} has no place in a loop equation: "
+                    f"write e^(i*{used.spelling}), or use [equations]",
+                )
+        number = value(node, self.numbers, self.unit, self.text)
+        return [Monomial(complex(number), node)]
+
+
+def _negated(m: Monomial) -> Monomial:
+    shown = m.shown
+    flipped: Node = (
+        Negative(Number(1.0) if shown is None else shown)
+        if not isinstance(shown, Negative)
+        else shown.operand
+    )
+    return Monomial(
+        -m.value, None if flipped == Number(1.0) else flipped, m.factors, m.phase
+    )
+
+
+def _whole(terms: list[Monomial], node: Node) -> Monomial:
+    """A constant sum kept in one piece, as it was written."""
+    return Monomial(sum(m.value for m in terms), node)
+
+
+def _joined(terms: list[Monomial]) -> list[Monomial]:
+    """Sums of like monomials; constants without a variable stay apart, as written."""
+    found: dict[tuple[object, ...], Monomial] = {}
+    for k, m in enumerate(terms):
+        key: tuple[object, ...] = (
+            (k,) if m.constant else (tuple(sorted(m.factors)), tuple(sorted(m.phase)))
+        )
+        if key in found:
+            old = found[key]
+            shown = Binary("+", old.shown or Number(1.0), m.shown or Number(1.0))
+            found[key] = Monomial(old.value + m.value, shown, m.factors, m.phase)
+        else:
+            found[key] = m
+    return list(found.values())

@@ -1,0 +1,58 @@
+"""Plain real equations as rows of a loop table, differentiated by jets."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.expression.jets import Jet, evaluate
+from linkwork.expression.tree import Node
+from linkwork.foundation.angles import AngleUnit
+
+__all__ = ["FormulaRow"]
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FormulaRow:
+    """left - right = 0 over a few variables given by name and index."""
+
+    left: Node
+    right: Node
+    names: tuple[str, ...]
+    variables: tuple[int, ...]
+    constants: tuple[tuple[str, float], ...]
+    unit: AngleUnit
+
+    def moved(self, new_index: dict[int, int]) -> FormulaRow:
+        """The same row over renumbered variables."""
+        return replace(self, variables=tuple(new_index[k] for k in self.variables))
+
+    def _jet(self, v: Array, d: Array) -> Jet:
+        zero = np.zeros(len(v))
+        names = {
+            name: Jet(v[:, k], d[:, k], zero)
+            for name, k in zip(self.names, self.variables, strict=True)
+        }
+        names |= {name: Jet.constant(value) for name, value in self.constants}
+        with np.errstate(all="ignore"):
+            jet = evaluate(self.left, names, self.unit) - evaluate(self.right, names, self.unit)
+        return Jet(*(np.broadcast_to(part, len(v)) for part in (jet.v, jet.d1, jet.d2)))
+
+    def value_and_gradient(self, v: Array) -> tuple[Array, Array]:
+        """Value (B,) and derivatives by ``variables`` (B, k)."""
+        gradient = np.zeros((len(v), len(self.variables)))
+        value = np.zeros(len(v))
+        for column, k in enumerate(self.variables):
+            direction = np.zeros_like(v)
+            direction[:, k] = 1.0
+            jet = self._jet(v, direction)
+            value, gradient[:, column] = jet.v, jet.d1
+        return value, gradient
+
+    def second(self, v: Array, d: Array) -> Array:
+        """Second derivative along d, (B,)."""
+        return self._jet(v, d).d2

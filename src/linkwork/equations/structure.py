@@ -1,0 +1,260 @@
+"""The structure of a linkage: in which order its bodies are determined, and which loops to write.
+
+Bodies and points form a graph. The finest order in which bodies can be determined follows from
+the block-triangular form of the full set of joint conditions, which does not depend on any choice
+of loops. Inside each block the loops are a minimum cycle basis, everything determined before
+counting as one rigid frame, so that the written loops decompose as finely as the mechanism does.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from linkwork.numerics.decomposition import BlockForm, block_form
+
+__all__ = ["Node", "Structure", "StructureBlock"]
+
+#: ("body", name) or ("point", name)
+Node = tuple[str, str]
+Edge = tuple[Node, Node]
+_ROOT: Node = ("root", "")
+_LARGE = 60  # nodes in a block beyond which only one candidate cycle per edge is considered
+
+
+@dataclass(frozen=True)
+class StructureBlock:
+    """Bodies and points determined together; ``loops`` as closed walks of nodes."""
+
+    new: tuple[Node, ...]
+    tree: tuple[tuple[Node, Node], ...]
+    loops: tuple[tuple[Node, ...], ...]
+
+
+@dataclass
+class Structure:
+    """The body-point graph of a linkage and its blocks in solving order.
+
+    Parameters
+    ----------
+    incidences : sequence of (body, point)
+        Every place where a body carries or guides a point that another body needs.
+    variables : Mapping[(body, point), tuple of str]
+        The unknown angles and lengths in each incidence.
+    relations : sequence of tuple of str
+        Unknowns tied by one further real equation each.
+    ground : str
+
+    ``neighbours`` holds the part of the graph that is determined already.
+    """
+
+    incidences: Sequence[tuple[str, str]]
+    variables: Mapping[tuple[str, str], tuple[str, ...]]
+    relations: Sequence[tuple[str, ...]]
+    ground: str
+    neighbours: dict[Node, list[Node]] = field(default_factory=dict)
+
+    def form(self) -> tuple[BlockForm, list[str]]:
+        """Block form of all joint conditions; and the names of its columns."""
+        names: dict[str, int] = {}
+
+        def columns(labels: Iterable[str]) -> list[int]:
+            return [names.setdefault(label, len(names)) for label in labels]
+
+        pattern: list[list[int]] = []
+        for body, point in self.incidences:
+            ends = [f"point {point} x", f"point {point} y"]
+            if body != self.ground:
+                ends += [f"body {body} x", f"body {body} y"]
+            pattern.append(columns([*ends, *self.variables[body, point]]))
+        pattern += [columns(relation) for relation in self.relations]
+        count = [2] * len(self.incidences) + [1] * len(self.relations)
+        return block_form(pattern, count, len(names)), list(names)
+
+    def blocks(self) -> list[StructureBlock]:
+        """Blocks with their spanning trees and loops, in solving order."""
+        form, _ = self.form()
+        known: set[Node] = {("body", self.ground)}
+        found: list[StructureBlock] = []
+        for equations, _ in form.blocks:
+            edges = [
+                (("body", self.incidences[e][0]), ("point", self.incidences[e][1]))
+                for e in equations
+                if e < len(self.incidences)
+            ]
+            if not edges:
+                continue
+            block = self._block(edges, known)
+            known.update(block.new)
+            for body, point in edges:
+                self.neighbours.setdefault(body, []).append(point)
+                self.neighbours.setdefault(point, []).append(body)
+            found.append(block)
+        return found
+
+    def _block(self, edges: list[Edge], known: set[Node]) -> StructureBlock:
+        graph = _BlockGraph(edges, known)
+        tree = graph.spanning_tree()
+        wanted = len(edges) - len(graph.new)
+        loops: list[tuple[Node, ...]] = []
+        if wanted > 0:
+            candidates = graph.candidates(tree)
+            walks = sorted(
+                ((self._closed(cycle, known), cycle) for cycle in candidates),
+                key=lambda pair: (len(pair[0]), pair[0]),
+            )
+            basis = _IndependentSet({edge: k for k, edge in enumerate(edges)})
+            for walk, cycle in walks:
+                if len(loops) < wanted and basis.add(cycle):
+                    loops.append(walk)
+        return StructureBlock(tuple(graph.new), tuple(tree), tuple(loops))
+
+    def _closed(self, cycle: tuple[Edge, ...], known: set[Node]) -> tuple[Node, ...]:
+        """The walk around a cycle of block edges, closed through known bodies where it leaves."""
+        walk: list[Node] = []
+        steps = _oriented(cycle, known)
+        for k, (here, there) in enumerate(steps):
+            walk.append(here)
+            following = steps[(k + 1) % len(steps)][0]
+            if there != following:
+                walk += _path(self.neighbours, there, following)[:-1]
+        return tuple(walk)
+
+
+class _BlockGraph:
+    """One block's edges with everything known drawn together into a root."""
+
+    def __init__(self, edges: list[Edge], known: set[Node]) -> None:
+        self.known = known
+        self.new = list(dict.fromkeys(n for edge in edges for n in edge if n not in known))
+        self.at: dict[Node, list[tuple[Node, Edge]]] = {_ROOT: []}
+        for edge in edges:
+            a, b = (self._seen(n) for n in edge)
+            self.at.setdefault(a, []).append((b, edge))
+            self.at.setdefault(b, []).append((a, edge))
+
+    def _seen(self, node: Node) -> Node:
+        return _ROOT if node in self.known else node
+
+    def _shortest(self, source: Node) -> dict[Node, tuple[Node, Edge]]:
+        """Breadth-first parents, without the source."""
+        parent: dict[Node, tuple[Node, Edge]] = {}
+        queue = deque([source])
+        while queue:
+            here = queue.popleft()
+            for there, edge in self.at[here]:
+                if there != source and there not in parent:
+                    parent[there] = (here, edge)
+                    queue.append(there)
+        return parent
+
+    def spanning_tree(self) -> list[tuple[Node, Node]]:
+        """(real parent, new node) in the order of discovery from the root."""
+        return [
+            (edge[0] if edge[1] == node else edge[1], node)
+            for node, (_, edge) in self._shortest(_ROOT).items()
+        ]
+
+    def candidates(self, tree: list[tuple[Node, Node]]) -> list[tuple[Edge, ...]]:
+        """Cycles among which a minimum basis lies (Horton 1987), shortest paths from each node."""
+        sources = list(self.at) if len(self.at) <= _LARGE else [_ROOT]
+        found: dict[frozenset[Edge], tuple[Edge, ...]] = {}
+        for source in sources:
+            parent = self._shortest(source)
+            used = {edge for _, edge in parent.values()}
+            for here, ends in self.at.items():
+                for there, edge in ends:
+                    if edge in used:
+                        continue
+                    left = _climb(here, parent)
+                    right = _climb(there, parent)
+                    if set(left) & set(right):
+                        continue
+                    cycle = (*reversed(left), edge, *right)
+                    found.setdefault(frozenset(cycle), cycle)
+        return list(found.values())
+
+
+def _climb(node: Node, parent: Mapping[Node, tuple[Node, Edge]]) -> list[Edge]:
+    """Edges from a node up to the source."""
+    edges = []
+    while node in parent:
+        node, edge = parent[node]
+        edges.append(edge)
+    return edges
+
+
+class _IndependentSet:
+    """Cycles independent over GF(2), by elimination on bit masks."""
+
+    def __init__(self, number: Mapping[Edge, int]) -> None:
+        self.number = number
+        self.pivots: dict[int, int] = {}
+
+    def add(self, cycle: Iterable[Edge]) -> bool:
+        """Add a cycle unless it is a sum of those already in."""
+        bits = 0
+        for edge in cycle:
+            bits ^= 1 << self.number[edge]
+        while bits:
+            lead = bits.bit_length()
+            if lead not in self.pivots:
+                self.pivots[lead] = bits
+                return True
+            bits ^= self.pivots[lead]
+        return False
+
+
+def _oriented(cycle: tuple[Edge, ...], known: set[Node]) -> list[Edge]:
+    """The edges of a cycle, each turned so that it leads on to the next.
+
+    Known nodes are one place: the cycle may leave it at another node than it came in.
+    """
+
+    def place(node: Node) -> Node:
+        return _ROOT if node in known else node
+
+    first = cycle[0]
+    if len(cycle) == 1:
+        return [first]
+    if len(cycle) == 2:
+        a, b = cycle
+        x, y = (a if place(a[0]) == _ROOT else a[::-1]) if _ROOT in map(place, a) else a
+        z, w = b if place(b[0]) == place(y) else b[::-1]
+        return [(x, y), (z, w)]
+    ends = {place(n) for n in cycle[1]}
+    turned = first if place(first[1]) in ends else first[::-1]
+    steps = [turned]
+    for edge in cycle[1:]:
+        at = place(steps[-1][1])
+        steps.append(edge if place(edge[0]) == at else edge[::-1])
+    return steps
+
+
+def _path(neighbours: Mapping[Node, list[Node]], start: Node, end: Node) -> list[Node]:
+    """Shortest path through what is determined, from both sides, cheaper side first."""
+    parents: tuple[dict[Node, Node | None], dict[Node, Node | None]] = ({start: None}, {end: None})
+    edge: list[list[Node]] = [[start], [end]]
+    while edge[0] and edge[1]:
+        cost = [sum(len(neighbours[n]) for n in side) for side in edge]
+        side = 0 if cost[0] <= cost[1] else 1
+        mine, other = parents[side], parents[1 - side]
+        following: list[Node] = []
+        for here in edge[side]:
+            for there in neighbours[here]:
+                if there in mine:
+                    continue
+                mine[there] = here
+                if there in other:
+                    return _back(parents[0], there)[::-1] + _back(parents[1], there)[1:]
+                following.append(there)
+        edge[side] = following
+    raise AssertionError("what is determined is connected")
+
+
+def _back(parent: Mapping[Node, Node | None], node: Node) -> list[Node]:
+    found = [node]
+    while (before := parent[found[-1]]) is not None:
+        found.append(before)
+    return found

@@ -1,0 +1,138 @@
+"""Terms of loop equations and their derivatives, written in a notation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from linkwork.equations.model import Term
+from linkwork.equations.notation import Notation
+from linkwork.expression.tree import Number
+
+__all__ = ["Signed", "TermWriter", "joined"]
+
+
+@dataclass(frozen=True)
+class Signed:
+    """A product with its sign; ``text`` empty stands for 1, ``zero`` for nothing."""
+
+    sign: int
+    text: str
+
+
+def joined(parts: Iterable[Signed]) -> str:
+    """A sum of signed products: ``a - b + c``; ``0`` if empty."""
+    shown = ""
+    for part in parts:
+        text = part.text or "1"
+        if shown:
+            shown += f" {'-' if part.sign < 0 else '+'} {text}"
+        else:
+            shown = f"-{text}" if part.sign < 0 else text
+    return shown or "0"
+
+
+@dataclass(frozen=True)
+class TermWriter:
+    """Writes terms and their derivatives; ``names`` maps symbols to what is shown."""
+
+    notation: Notation
+    names: Mapping[str, str]
+
+    def angle(self, term: Term, sign: int = 1, with_turn: bool = True) -> str:
+        """Σ weight θ (+ turn), times sign."""
+        parts = []
+        for symbol, weight in term.phase:
+            w = weight * sign
+            name = self.notation.name(self.names[symbol])
+            factor = "" if abs(w) == 1 else f"{abs(w):g}"
+            parts.append(Signed(-1 if w < 0 else 1, f"{factor}{name}"))
+        if with_turn and term.turn:
+            turn = term.turn * sign
+            parts.append(Signed(-1 if turn < 0 else 1, self.notation.degrees(abs(turn))))
+        return joined(parts)
+
+    def _factors(self, term: Term, length: bool = True) -> list[str]:
+        found = []
+        if term.magnitude is not None and term.magnitude != Number(1.0):
+            found.append(self.notation.node(term.magnitude))
+        if length and term.length is not None:
+            found.append(self.notation.name(self.names[term.length]))
+        return found
+
+    def complex_form(
+        self, term: Term, *, length: bool = True, factor_i: float = 0.0, conjugate: bool = False
+    ) -> Signed:
+        """The term (or its derivative: times i·weight, or without its length) as a phasor.
+
+        A quarter turn is written as the factor i.
+        """
+        quarter = abs(abs(term.turn) - math.pi / 2) < 1e-12
+        sign = term.sign * (-1 if quarter and term.turn < 0 else 1)
+        powers_of_i = int(quarter) + (1 if factor_i else 0)
+        sign *= -1 if factor_i < 0 else 1
+        if powers_of_i == 2:
+            sign, powers_of_i = -sign, 0
+        if conjugate and powers_of_i:
+            sign = -sign
+        factors = [f"{abs(factor_i):g}"] if abs(factor_i) not in (0.0, 1.0) else []
+        if powers_of_i:
+            factors.append(self.notation.imaginary)
+        factors += self._factors(term, length)
+        angle = self.angle(term, -1 if conjugate else 1, with_turn=not quarter)
+        if angle != "0":
+            factors.append(self.notation.phasor(angle))
+        return Signed(sign, self.notation.product(factors))
+
+    def real_form(
+        self, term: Term, *, imaginary: bool, length: bool = True, weight: float | None = None
+    ) -> list[Signed]:
+        """Real or imaginary part of the term; with ``weight`` of its derivative by an angle."""
+        wanted = "sin" if imaginary else "cos"
+        sign = term.sign
+        factors = []
+        if weight is not None:
+            # d cos = -sin, d sin = cos
+            sign *= (1 if weight > 0 else -1) * (1 if wanted == "sin" else -1)
+            wanted = "cos" if wanted == "sin" else "sin"
+            factors += [] if abs(weight) == 1 else [f"{abs(weight):g}"]
+        quarter = abs(abs(term.turn) - math.pi / 2) < 1e-12
+        if quarter:
+            # cos(x ± 90°) = ∓sin x, sin(x ± 90°) = ±cos x
+            up = 1 if term.turn > 0 else -1
+            sign *= -up if wanted == "cos" else up
+            wanted = "sin" if wanted == "cos" else "cos"
+        if self._complex_magnitude(term):
+            return self._split(term, wanted, sign, factors)
+        angle = self.angle(term, with_turn=not quarter)
+        factors += self._factors(term, length)
+        if angle == "0":
+            return [] if wanted == "sin" else [Signed(sign, self.notation.product(factors))]
+        factors.append(self.notation.function(wanted, angle))
+        return [Signed(sign, self.notation.product(factors))]
+
+    def _complex_magnitude(self, term: Term) -> bool:
+        plain = term.value * term.sign
+        rotated = plain * complex(math.cos(term.turn), -math.sin(term.turn))
+        return abs(rotated.imag) > 1e-12 * abs(rotated)
+
+    def _split(self, term: Term, wanted: str, sign: int, factors: list[str]) -> list[Signed]:
+        """A genuinely complex factor p + iq: (p + iq) e^{ix} has parts p cos - q sin, p sin + q cos."""
+        z = term.value * term.sign
+        if wanted == "cos":
+            pairs = ((z.real, "cos", 1), (z.imag, "sin", -1))
+        else:
+            pairs = ((z.real, "sin", 1), (z.imag, "cos", 1))
+        angle = self.angle(term)
+        found = []
+        for number, function, s in pairs:
+            if number == 0 or (angle == "0" and function == "sin"):
+                continue
+            text = [*factors, f"{abs(number):.10g}"]
+            if term.length is not None:
+                text.append(self.notation.name(self.names[term.length]))
+            if angle != "0":
+                text.append(self.notation.function(function, angle))
+            found.append(Signed(sign * s * (1 if number > 0 else -1), self.notation.product(text)))
+        return found

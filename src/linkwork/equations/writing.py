@@ -1,0 +1,271 @@
+"""Showing the equations: loops, real form, and the Jacobian in complex and in real form."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from linkwork.equations.model import LoopEquation, LoopEquations, Variable
+from linkwork.equations.notation import Latex, Notation, PlainText
+from linkwork.equations.term_writing import Signed, TermWriter, joined
+from linkwork.expression.derivative import derivative
+from linkwork.expression.tree import Binary, Number
+from linkwork.expression.writing import number_text
+from linkwork.foundation.names import pretty
+
+__all__ = ["EquationSheet"]
+
+Matrix = list[list[str]]
+
+
+@dataclass(frozen=True)
+class EquationSheet:
+    """The closure equations of a mechanism, ready to be shown."""
+
+    equations: LoopEquations
+
+    @cached_property
+    def _names(self) -> dict[str, str]:
+        return {v.symbol: v.shown for v in self.equations.variables}
+
+    def _writer(self, notation: Notation) -> TermWriter:
+        return TermWriter(notation, self._names)
+
+    # What is shown, in one notation
+
+    def loop(self, loop: LoopEquation, notation: Notation) -> str:
+        """``a2·e^(iθ12) + … = …``."""
+        write = self._writer(notation)
+        left = joined(write.complex_form(term) for term in loop.left)
+        right = joined(write.complex_form(term) for term in loop.right)
+        return f"{left} = {right}"
+
+    def real_rows(self, notation: Notation) -> list[str]:
+        """Every real equation F_k = …: real parts, imaginary parts, linear, plain."""
+        write = self._writer(notation)
+        rows = []
+        for imaginary in (False, True):
+            for loop in self.equations.loops:
+                parts = [
+                    s for term in loop.terms for s in write.real_form(term, imaginary=imaginary)
+                ]
+                rows.append(joined(parts))
+        for line in self.equations.linear:
+            parts = [
+                Signed(-1 if w < 0 else 1, self._weighted(abs(w), notation.name(self._names[n])))
+                for n, w in line.terms
+            ]
+            if line.constant:
+                parts.append(
+                    Signed(-1 if line.constant < 0 else 1, notation.degrees(abs(line.constant)))
+                )
+            rows.append(joined(parts))
+        for equation in self.equations.real:
+            rows.append(notation.formula(_difference(equation.left, equation.right)))
+        return rows
+
+    @staticmethod
+    def _weighted(weight: float, name: str) -> str:
+        return name if weight == 1 else f"{weight:g}{name}"
+
+    def complex_jacobian(self, notation: Notation) -> Matrix:
+        """Loops, then their conjugates, by the unknowns."""
+        write = self._writer(notation)
+        rows = []
+        for conjugate in (False, True):
+            for loop in self.equations.loops:
+                row = []
+                for unknown in self.equations.unknowns:
+                    parts = []
+                    for term in loop.terms:
+                        weight = dict(term.phase).get(unknown.symbol, 0.0)
+                        if weight:
+                            parts.append(
+                                write.complex_form(term, factor_i=weight, conjugate=conjugate)
+                            )
+                        if term.length == unknown.symbol:
+                            parts.append(
+                                write.complex_form(term, length=False, conjugate=conjugate)
+                            )
+                    row.append(joined(parts))
+                rows.append(row)
+        return rows
+
+    def real_jacobian(self, notation: Notation) -> Matrix:
+        """∂F/∂x as real numbers: real parts, imaginary parts, linear, plain equations."""
+        write = self._writer(notation)
+        rows = []
+        for imaginary in (False, True):
+            for loop in self.equations.loops:
+                rows.append(
+                    [self._real_entry(write, loop, u, imaginary) for u in self.equations.unknowns]
+                )
+        for line in self.equations.linear:
+            weights = dict(line.terms)
+            rows.append(
+                [number_text(weights.get(u.symbol, 0.0)) for u in self.equations.unknowns]
+            )
+        for equation in self.equations.real:
+            whole = _difference(equation.left, equation.right)
+            row = []
+            for unknown in self.equations.unknowns:
+                try:
+                    row.append(notation.formula(derivative(whole, unknown.symbol)))
+                except ValueError:
+                    row.append("…")
+            rows.append(row)
+        return rows
+
+    def _real_entry(
+        self, write: TermWriter, loop: LoopEquation, unknown: Variable, imaginary: bool
+    ) -> str:
+        parts: list[Signed] = []
+        for term in loop.terms:
+            weight = dict(term.phase).get(unknown.symbol, 0.0)
+            if weight:
+                parts += write.real_form(term, imaginary=imaginary, weight=weight)
+            if term.length == unknown.symbol:
+                parts += write.real_form(term, imaginary=imaginary, length=False)
+        return joined(parts)
+
+    # Plain text
+
+    def text(self, width: int = 80) -> str:
+        """Everything for a terminal of the given width."""
+        return "\n".join(self._text_lines(width)) + "\n"
+
+    def _text_lines(self, width: int) -> Iterator[str]:
+        notation, equations = PlainText(), self.equations
+        yield from _wrapped("unknowns  ", ", ".join(map(self._described, equations.unknowns)), width)
+        if equations.inputs:
+            yield from _wrapped(
+                "inputs    ", ", ".join(map(self._described, equations.inputs)), width
+            )
+        values = [f"{pretty(n)} = {number_text(v)}" for n, v in equations.symbols.items()]
+        if values:
+            yield from _wrapped("with      ", ", ".join(values), width)
+        for k, loop in enumerate(equations.loops):
+            yield ""
+            yield f'Loop {k + 1} "{loop.label}"'
+            yield from _wrapped("  ", self.loop(loop, notation), width, "      ")
+        for line in (*equations.linear, *equations.real):
+            yield ""
+            yield f'Equation "{line.label}"'
+            row = equations.labels.index(line.label) + len(equations.loops)
+            yield from _wrapped("  ", f"{self.real_rows(notation)[row]} = 0", width, "      ")
+        if equations.loops:
+            yield from ("", "Real form")
+            for k, row_text in enumerate(self.real_rows(notation)):
+                head = f"  F{k + 1} = "
+                yield from _wrapped(head, row_text, width, "       ")
+        columns = [notation.name(u.shown) for u in equations.unknowns]
+        if equations.loops:
+            count = len(equations.loops)
+            labels = [f"loop {k + 1}" for k in range(count)] + [
+                f"conj {k + 1}" for k in range(count)
+            ]
+            yield from ("", "Jacobian, complex form")
+            yield from _matrix_lines(self.complex_jacobian(notation), labels, columns, width)
+        yield from ("", "Jacobian, real form" if equations.loops else "Jacobian")
+        rows = self.real_jacobian(notation)
+        yield from _matrix_lines(rows, [f"F{k + 1}" for k in range(len(rows))], columns, width)
+
+    def _described(self, variable: Variable) -> str:
+        unit = {"angle": "angle", "length": "length"}.get(variable.kind, "")
+        shown = pretty(variable.shown)
+        return f"{shown} ({unit})" if unit else shown
+
+    # LaTeX
+
+    def latex(self) -> str:
+        """The loop equations and both Jacobians as LaTeX displays."""
+        notation, equations = Latex(), self.equations
+        parts = []
+        displays = [
+            self.loop(loop, notation).replace(" = ", " &= ", 1) for loop in equations.loops
+        ]
+        offset = 2 * len(equations.loops)
+        displays += [f"{row} &= 0" for row in self.real_rows(notation)[offset:]]
+        parts.append(_environment("align*", " \\\\\n".join(f"  {row}" for row in displays)))
+        if equations.loops:
+            rows = [f"  F_{{{k + 1}}} &= {row}" for k, row in enumerate(self.real_rows(notation))]
+            parts.append(_environment("align*", " \\\\\n".join(rows)))
+            parts.append(self._latex_matrix(self.complex_jacobian(notation), notation))
+        parts.append(self._latex_matrix(self.real_jacobian(notation), notation))
+        return "\n".join(parts)
+
+    def _latex_matrix(self, matrix: Matrix, notation: Notation) -> str:
+        rows = " \\\\\n".join("    " + " & ".join(row) for row in matrix)
+        unknowns = r" \\ ".join(
+            rf"\delta {notation.name(u.shown)}" for u in self.equations.unknowns
+        )
+        body = f"  \\begin{{bmatrix}}\n{rows}\n  \\end{{bmatrix}}\n"
+        body += f"  \\begin{{bmatrix}} {unknowns} \\end{{bmatrix}} = -F"
+        return f"\\[\n{body}\n\\]\n"
+
+    # Data
+
+    def to_dict(self) -> dict[str, Any]:
+        """Loops, real form and Jacobians as text and LaTeX."""
+        text, latex = PlainText(), Latex()
+        equations = self.equations
+        return {
+            "unknowns": [v.name for v in equations.unknowns],
+            "inputs": [v.name for v in equations.inputs],
+            "dimensions": dict(equations.symbols),
+            "loops": [
+                {"label": p.label, "text": self.loop(p, text), "latex": self.loop(p, latex)}
+                for p in equations.loops
+            ],
+            "real_form": {"text": self.real_rows(text), "latex": self.real_rows(latex)},
+            "jacobian_complex": {
+                "text": self.complex_jacobian(text),
+                "latex": self.complex_jacobian(latex),
+            },
+            "jacobian_real": {
+                "text": self.real_jacobian(text),
+                "latex": self.real_jacobian(latex),
+            },
+        }
+
+
+def _difference(left: Any, right: Any) -> Any:
+    return left if right == Number(0.0) else Binary("-", left, right)
+
+
+def _environment(name: str, body: str) -> str:
+    return f"\\begin{{{name}}}\n{body}\n\\end{{{name}}}\n"
+
+
+def _wrapped(head: str, body: str, width: int, indent: str = "") -> list[str]:
+    return textwrap.wrap(
+        body,
+        width,
+        initial_indent=head,
+        subsequent_indent=indent or " " * len(head),
+        break_long_words=False,
+        break_on_hyphens=False,
+    ) or [head]
+
+
+def _matrix_lines(
+    matrix: Matrix, labels: Sequence[str], columns: Sequence[str], width: int
+) -> Iterator[str]:
+    """A matrix if it fits the width, else its entries that are not zero, one to a line."""
+    table = [[*columns], *matrix]
+    widths = [max(len(row[k]) for row in table) for k in range(len(columns))]
+    label_width = max(map(len, labels), default=0)
+    if 2 + label_width + 2 + sum(widths) + 2 * len(widths) <= width:
+        head = "  ".join(f"{c:^{w}}" for c, w in zip(columns, widths, strict=True))
+        yield f"  {'':{label_width}}  {head}".rstrip()
+        for label, row in zip(labels, matrix, strict=True):
+            body = "  ".join(f"{entry:^{w}}" for entry, w in zip(row, widths, strict=True))
+            yield f"  {label:{label_width}}  {body}".rstrip()
+        return
+    for label, row in zip(labels, matrix, strict=True):
+        for column, entry in zip(columns, row, strict=True):
+            if entry != "0":
+                yield from _wrapped(f"  ∂({label})/∂{column} = ", entry, width, "      ")

@@ -1,0 +1,215 @@
+"""The friendly face: a mechanism that can be solved, swept, checked, shown and drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, Self
+
+from linkwork.drawing.mechanism_scene import scene_of
+from linkwork.drawing.scene import Scene
+from linkwork.equations.model import LoopEquations
+from linkwork.equations.writing import EquationSheet
+from linkwork.foundation.errors import MechanismError, UnknownNameError, choices
+from linkwork.mechanism.description import Description
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loops import Loops, PlainEquations
+from linkwork.mechanism.parts import Number
+from linkwork.motion import check, model, solving, sweep
+from linkwork.numerics.newton import NewtonOptions
+from linkwork.results.check import CheckReport
+from linkwork.results.motion import Motion
+from linkwork.results.position import Position
+from linkwork.textfile.reader import ReadFile, read_file, read_text
+
+__all__ = ["Mechanism", "example", "examples", "linkage", "load", "loads", "loops", "plain_equations"]
+
+
+class Mechanism:
+    """A planar mechanism.
+
+    Made by :func:`load`, :func:`example`, :func:`linkage`, :func:`loops` or
+    :func:`plain_equations`. Immutable: changing a dimension gives a new mechanism.
+
+    Parameters
+    ----------
+    description : Description
+        What is asked: points and links, loop equations, or plain equations.
+
+    Raises
+    ------
+    MechanismError
+        If the equations cannot be written or do not determine the motion.
+    """
+
+    def __init__(self, description: Description, read: ReadFile | None = None) -> None:
+        self.description = description
+        try:
+            self.model = model.model_of(description)
+        except MechanismError as error:
+            if read is None:
+                raise
+            raise read.located(error) from None
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Mechanism) and self.description == other.description
+
+    def __hash__(self) -> int:
+        return hash((type(self.description), self.description.name))
+
+    def __repr__(self) -> str:
+        equations = self.model.equations
+        inputs = ", ".join(v.name for v in equations.inputs) or "nothing"
+        return (
+            f'<Mechanism "{self.description.name}": {len(equations.labels)} equations for '
+            f"{', '.join(v.name for v in equations.unknowns)}; driven by {inputs}>"
+        )
+
+    @property
+    def name(self) -> str:
+        """What the mechanism is called."""
+        return self.description.name
+
+    @property
+    def loop_equations(self) -> LoopEquations:
+        """The closure equations as symbols."""
+        return self.model.equations
+
+    def with_dimensions(self, **changes: Number) -> Self:
+        """A copy with named dimensions replaced."""
+        return type(self)(self.description.with_dimensions(changes))
+
+    def check(self) -> CheckReport:
+        """What was understood: loops, unknowns, blocks, mobility, the start."""
+        return check.check(self.model)
+
+    def equations(self) -> EquationSheet:
+        """The loop equations and the Jacobian, to be shown as text or LaTeX."""
+        return EquationSheet(self.model.equations)
+
+    def solve(
+        self,
+        at: float | Mapping[str, float] | None = None,
+        *,
+        from_guess: bool = False,
+        options: NewtonOptions | None = None,
+        with_steps: bool = False,
+        throw: bool = False,
+    ) -> Position:
+        """The position at one input value; see :func:`linkwork.motion.solving.solve`."""
+        return solving.solve(
+            self.model,
+            at,
+            from_guess=from_guess,
+            options=options,
+            with_steps=with_steps,
+            throw=throw,
+        )
+
+    def sweep(
+        self,
+        *,
+        start: Number | None = None,
+        stop: Number | None = None,
+        step: Number | None = None,
+        options: NewtonOptions | None = None,
+        progress: Callable[[float], None] | None = None,
+    ) -> Motion:
+        """The whole cycle; see :func:`linkwork.motion.sweep.sweep`.
+
+        Parameters
+        ----------
+        start, stop, step : number, optional
+            Replace the range of the (only) input, in everyday units.
+        """
+        asked = self.model
+        if not (start is None and stop is None and step is None):
+            asked = model.model_of(self.description.with_range(start, stop, step))
+        return sweep.sweep(asked, options=options, progress=progress)
+
+    def scene(self, at: float | Mapping[str, float] | None = None) -> Scene:
+        """A picture of one position with the traces of the traced points over the cycle."""
+        position = self.solve(at, throw=True)
+        motion = self.sweep() if self.description.inputs else None
+        return scene_of(position, motion)
+
+    def draw(self, path: str | Path, at: float | Mapping[str, float] | None = None) -> None:
+        """Draw one position to a PNG, SVG or PDF file."""
+        from linkwork.drawing.matplotlib_writer import write  # noqa: PLC0415
+
+        write(self.scene(at), Path(path))
+
+    def save(self, path: str | Path) -> None:
+        """Write the mechanism as a TOML file."""
+        from linkwork.textfile.writer import save  # noqa: PLC0415
+
+        save(self.description, Path(path))
+
+
+def load(path: str | Path) -> Mechanism:
+    """Read a mechanism file.
+
+    Raises
+    ------
+    MechanismFileError
+        With every problem found: file, line, key.
+    """
+    read = read_file(Path(path))
+    return Mechanism(read.description, read)
+
+
+def loads(text: str, name: str = "text") -> Mechanism:
+    """Read a mechanism from the text of a file."""
+    read = read_text(text, name)
+    return Mechanism(read.description, read)
+
+
+def _library() -> Iterator[tuple[str, Any]]:
+    for entry in sorted(files("linkwork.library").iterdir(), key=lambda e: e.name):
+        if entry.name.endswith(".toml"):
+            yield entry.name.removesuffix(".toml"), entry
+
+
+def examples() -> tuple[str, ...]:
+    """The names of the mechanisms that come with Linkwork."""
+    return tuple(name for name, _ in _library())
+
+
+def example_text(name: str) -> str:
+    """The file of a library mechanism.
+
+    Raises
+    ------
+    UnknownNameError
+        With the names that exist.
+    """
+    known = dict(_library())
+    if name not in known:
+        raise UnknownNameError(f'there is no example "{name}" {choices("examples", known, name)}')
+    text: str = known[name].read_text(encoding="utf-8")
+    return text
+
+
+def example(name: str) -> Mechanism:
+    """A mechanism of the library by name."""
+    return loads(example_text(name), f"{name}.toml")
+
+
+def linkage(**parts: Any) -> Mechanism:
+    """A mechanism from points and links; arguments as :class:`~linkwork.mechanism.linkage.Linkage`."""
+    return Mechanism(Linkage(**parts))
+
+
+def loops(**parts: Any) -> Mechanism:
+    """A mechanism from loop equations; arguments as :class:`~linkwork.mechanism.loops.Loops`."""
+    return Mechanism(Loops(**parts))
+
+
+def plain_equations(**parts: Any) -> Mechanism:
+    """A system of plain equations; arguments as
+    :class:`~linkwork.mechanism.loops.PlainEquations`.
+    """
+    return Mechanism(PlainEquations(**parts))
+
+

@@ -1,0 +1,123 @@
+"""The derivative of a formula as a formula, for showing; numbers come from jets."""
+
+from __future__ import annotations
+
+from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
+
+__all__ = ["derivative"]
+
+_ZERO, _ONE = Number(0.0), Number(1.0)
+
+
+def derivative(node: Node, name: str) -> Node:
+    """d(node)/d(name), lightly simplified; angles count in radians.
+
+    Raises
+    ------
+    ValueError
+        For ``min`` and ``max``, which have no derivative in one formula.
+    """
+    if not any(used.name == name for used in names_in(node)):
+        return _ZERO
+    match node:
+        case Name():
+            return _ONE
+        case Negative():
+            return _negative(derivative(node.operand, name))
+        case Binary("+" | "-"):
+            left, right = derivative(node.left, name), derivative(node.right, name)
+            return _sum(left, right) if node.operator == "+" else _sum(left, _negative(right))
+        case Binary("*"):
+            return _sum(
+                _product(derivative(node.left, name), node.right),
+                _product(node.left, derivative(node.right, name)),
+            )
+        case Binary("/"):
+            top = _sum(
+                _product(derivative(node.left, name), node.right),
+                _negative(_product(node.left, derivative(node.right, name))),
+            )
+            return Binary("/", top, Binary("^", node.right, Number(2.0)))
+        case Binary():
+            return _power(node, name)
+        case Call():
+            return _chain(node, name)
+        case Number():
+            return _ZERO
+
+
+def _power(node: Binary, name: str) -> Node:
+    base, exponent = node.left, node.right
+    if derivative(exponent, name) == _ZERO:
+        if isinstance(exponent, Number):
+            lower: Node = Number(exponent.value - 1.0)
+            reduced = base if lower == _ONE else Binary("^", base, lower)
+        else:
+            reduced = Binary("^", base, Binary("-", exponent, _ONE))
+        return _product(_product(exponent, reduced), derivative(base, name))
+    inner = _product(exponent, Call("ln", (base,)))
+    if base == Name("e"):
+        inner = exponent
+    return _product(node, derivative(inner, name))
+
+
+def _chain(node: Call, name: str) -> Node:
+    x = node.arguments[0]
+    square = Binary("^", x, Number(2.0))
+    outer: dict[str, Node] = {
+        "sin": Call("cos", (x,)),
+        "cos": Negative(Call("sin", (x,))),
+        "tan": Binary("+", _ONE, Binary("^", node, Number(2.0))),
+        "exp": node,
+        "ln": Binary("/", _ONE, x),
+        "log10": Binary("/", _ONE, Binary("*", Call("ln", (Number(10.0),)), x)),
+        "sqrt": Binary("/", _ONE, Binary("*", Number(2.0), node)),
+        "asin": Binary("/", _ONE, Call("sqrt", (Binary("-", _ONE, square),))),
+        "acos": Negative(Binary("/", _ONE, Call("sqrt", (Binary("-", _ONE, square),)))),
+        "atan": Binary("/", _ONE, Binary("+", _ONE, square)),
+        "abs": Binary("/", x, node),
+    }
+    if node.function in outer:
+        return _product(outer[node.function], derivative(x, name))
+    if node.function == "hypot":
+        y = node.arguments[1]
+        top = _sum(_product(x, derivative(x, name)), _product(y, derivative(y, name)))
+        return Binary("/", top, node)
+    if node.function == "atan2":
+        other = node.arguments[1]
+        top = _sum(
+            _product(other, derivative(x, name)),
+            _negative(_product(x, derivative(other, name))),
+        )
+        return Binary("/", top, Binary("+", square, Binary("^", other, Number(2.0))))
+    raise ValueError(f"{node.function} has no derivative in one formula")
+
+
+def _negative(node: Node) -> Node:
+    if node == _ZERO:
+        return node
+    return node.operand if isinstance(node, Negative) else Negative(node)
+
+
+def _sum(left: Node, right: Node) -> Node:
+    if left == _ZERO:
+        return right
+    if right == _ZERO:
+        return left
+    if isinstance(right, Negative):
+        return Binary("-", left, right.operand)
+    return Binary("+", left, right)
+
+
+def _product(left: Node, right: Node) -> Node:
+    if _ZERO in (left, right):
+        return _ZERO
+    if left == _ONE:
+        return right
+    if right == _ONE:
+        return left
+    if isinstance(left, Negative):
+        return _negative(_product(left.operand, right))
+    if isinstance(right, Negative):
+        return _negative(_product(left, right.operand))
+    return Binary("*", left, right)

@@ -1,0 +1,260 @@
+"""The loop table: every equation of a mechanism as arrays.
+
+Rows, in this order: real parts of L loops, imaginary parts of L loops, linear rows
+A v + b = 0 (relative angles, gears), function rows. Columns: n unknowns, then the inputs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.kernels.phasor_rows import PhasorRows
+
+__all__ = ["FunctionRow", "LinearRows", "LoopTable", "TableSplitter"]
+
+Array = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+
+
+class FunctionRow(Protocol):
+    """A real equation given by any smooth function of a few variables."""
+
+    @property
+    def variables(self) -> tuple[int, ...]:
+        """Indices of the variables it depends on."""
+
+    def moved(self, new_index: dict[int, int]) -> FunctionRow:
+        """The same row over renumbered variables."""
+
+    def value_and_gradient(self, v: Array) -> tuple[Array, Array]:
+        """Value (B,) and derivatives by ``variables`` (B, len(variables))."""
+
+    def second(self, v: Array, d: Array) -> Array:
+        """Second derivative along d, (B,)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinearRows:
+    """Rows Σ_k weight v_k + constant = 0 as sparse entries."""
+
+    constant: Array
+    row: IntArray
+    variable: IntArray
+    weight: Array
+
+    @classmethod
+    def none(cls) -> LinearRows:
+        """No rows."""
+        empty = np.zeros(0, dtype=np.intp)
+        return cls(constant=np.zeros(0), row=empty, variable=empty, weight=np.zeros(0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoopTable:
+    """All equations over n unknowns and the inputs behind them.
+
+    Parameters
+    ----------
+    unknowns : int
+        n; the variables behind are inputs.
+    loops : PhasorRows
+        L complex rows over all N variables.
+    linear : LinearRows
+    functions : tuple of FunctionRow
+    equation_scale : (m,)
+        What each real row's residual is divided by before it is compared.
+    variable_scale : (N,)
+        Weight of each variable: 1 for angles, a length of the mechanism for lengths.
+    turns : (N,) bool
+        Which variables are angles.
+    """
+
+    unknowns: int
+    loops: PhasorRows
+    linear: LinearRows
+    functions: tuple[FunctionRow, ...]
+    equation_scale: Array
+    variable_scale: Array
+    turns: npt.NDArray[np.bool_]
+
+    @property
+    def variables(self) -> int:
+        """N, unknowns and inputs."""
+        return len(self.variable_scale)
+
+    @property
+    def equations(self) -> int:
+        """m, real equations."""
+        return len(self.equation_scale)
+
+    @cached_property
+    def _linear_matrix(self) -> Array:
+        a = np.zeros((len(self.linear.constant), self.variables))
+        np.add.at(a, (self.linear.row, self.linear.variable), self.linear.weight)
+        return a
+
+    @property
+    def _only_loops(self) -> bool:
+        return not len(self.linear.constant) and not self.functions
+
+    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
+        """F, (B, m), and dF/dv, (B, m, N)."""
+        value, slope = self.loops.value_and_jacobian(v)
+        residual = np.concatenate([value.real, value.imag], axis=1)
+        jacobian = np.concatenate([slope.real, slope.imag], axis=1)
+        if self._only_loops:
+            return residual, jacobian
+        extra, extra_slope = self._real_rows(v)
+        return (
+            np.concatenate([residual, extra], axis=1),
+            np.concatenate([jacobian, extra_slope], axis=1),
+        )
+
+    def residual(self, v: Array) -> Array:
+        """F, (B, m)."""
+        value = self.loops.value(v)
+        residual = np.concatenate([value.real, value.imag], axis=1)
+        if self._only_loops:
+            return residual
+        return np.concatenate([residual, self._real_rows(v)[0]], axis=1)
+
+    def jacobian(self, v: Array) -> Array:
+        """dF/dv, (B, m, N): the Jacobian by the unknowns, then the derivative by the inputs."""
+        return self.residual_and_jacobian(v)[1]
+
+    def second(self, v: Array, d: Array) -> Array:
+        """D²F[d, d], the directional second derivative, (B, m)."""
+        value = self.loops.jet(v, d, np.zeros_like(d))[2]
+        parts = [value.real, value.imag]
+        if not self._only_loops:
+            parts.append(np.zeros((len(v), len(self.linear.constant))))
+            parts += [row.second(v, d)[:, None] for row in self.functions]
+        return np.concatenate(parts, axis=1)
+
+    def _real_rows(self, v: Array) -> tuple[Array, Array]:
+        a = self._linear_matrix
+        values = [v @ a.T + self.linear.constant]
+        slopes = [np.broadcast_to(a, (len(v), *a.shape))]
+        for row in self.functions:
+            value, gradient = row.value_and_gradient(v)
+            slope = np.zeros((len(v), 1, self.variables))
+            slope[:, 0, list(row.variables)] = gradient
+            values.append(value[:, None])
+            slopes.append(slope)
+        return np.concatenate(values, axis=1), np.concatenate(slopes, axis=1)
+
+    def pattern(self) -> list[tuple[int, ...]]:
+        """The variables in each equation: L loops (two real rows each), then the real rows."""
+        found: list[set[int]] = [set() for _ in range(self.loops.rows + len(self.linear.constant))]
+        loops = self.loops
+        for term, variable in zip(loops.phase_term, loops.phase_variable, strict=True):
+            found[loops.row[term]].add(int(variable))
+        for row, length in zip(loops.row, loops.length, strict=True):
+            if length >= 0:
+                found[row].add(int(length))
+        for row, variable in zip(self.linear.row, self.linear.variable, strict=True):
+            found[loops.rows + row].add(int(variable))
+        return [tuple(sorted(f)) for f in found] + [row.variables for row in self.functions]
+
+
+class TableSplitter:
+    """Cuts a table into smaller ones; sparse, so that n cuts cost no more than the table."""
+
+    def __init__(self, table: LoopTable) -> None:
+        self.table = table
+        loops, linear = table.loops, table.linear
+        self._terms_of_row = _by_value(loops.row, loops.rows)
+        self._entries_of_term = _by_value(loops.phase_term, len(loops.row))
+        self._entries_of_linear = _by_value(linear.row, len(linear.constant))
+
+    def part(self, equations: list[int], unknowns: list[int]) -> tuple[LoopTable, list[int]]:
+        """The table of some equations (numbered as in ``pattern``) for some unknowns.
+
+        Returns the table and the variables of the whole that it takes as inputs.
+        """
+        whole = self.table
+        loops, lines, functions = self._sorted_out(equations)
+        pattern = self._pattern(loops, lines) | {
+            k for f in functions for k in whole.functions[f].variables
+        }
+        known = sorted(pattern - set(unknowns))
+        index = {old: new for new, old in enumerate([*unknowns, *known])}
+        order = np.array([*unknowns, *known], dtype=np.intp)
+        n_loops, n_lines = whole.loops.rows, len(whole.linear.constant)
+        real = [
+            *loops,
+            *[n_loops + k for k in loops],
+            *[2 * n_loops + k for k in lines],
+            *[2 * n_loops + n_lines + k for k in functions],
+        ]
+        part = LoopTable(
+            unknowns=len(unknowns),
+            loops=self._loops(loops, index),
+            linear=self._linear(lines, index),
+            functions=tuple(whole.functions[k].moved(index) for k in functions),
+            equation_scale=whole.equation_scale[np.array(real, dtype=np.intp)],
+            variable_scale=whole.variable_scale[order],
+            turns=whole.turns[order],
+        )
+        return part, known
+
+    def _sorted_out(self, equations: list[int]) -> tuple[list[int], list[int], list[int]]:
+        n_loops, n_lines = self.table.loops.rows, len(self.table.linear.constant)
+        loops = [k for k in equations if k < n_loops]
+        lines = [k - n_loops for k in equations if n_loops <= k < n_loops + n_lines]
+        functions = [k - n_loops - n_lines for k in equations if k >= n_loops + n_lines]
+        return loops, lines, functions
+
+    def _pattern(self, loops: list[int], lines: list[int]) -> set[int]:
+        table = self.table
+        found: set[int] = set()
+        for row in loops:
+            for term in self._terms_of_row[row]:
+                if table.loops.length[term] >= 0:
+                    found.add(int(table.loops.length[term]))
+                found.update(
+                    int(table.loops.phase_variable[e]) for e in self._entries_of_term[term]
+                )
+        for row in lines:
+            found.update(int(table.linear.variable[e]) for e in self._entries_of_linear[row])
+        return found
+
+    def _loops(self, rows: list[int], index: dict[int, int]) -> PhasorRows:
+        loops = self.table.loops
+        terms = [(new, t) for new, row in enumerate(rows) for t in self._terms_of_row[row]]
+        entries = [(new, e) for new, (_, t) in enumerate(terms) for e in self._entries_of_term[t]]
+        own = np.array([t for _, t in terms], dtype=np.intp)
+        return PhasorRows(
+            rows=len(rows),
+            variables=len(index),
+            row=np.array([new for new, _ in terms], dtype=np.intp),
+            coefficient=loops.coefficient[own],
+            length=np.array([index.get(int(k), -1) for k in loops.length[own]], dtype=np.intp),
+            phase_term=np.array([new for new, _ in entries], dtype=np.intp),
+            phase_variable=np.array(
+                [index[int(loops.phase_variable[e])] for _, e in entries], dtype=np.intp
+            ),
+            phase_weight=np.array([loops.phase_weight[e] for _, e in entries], dtype=float),
+        )
+
+    def _linear(self, rows: list[int], index: dict[int, int]) -> LinearRows:
+        linear = self.table.linear
+        entries = [(new, e) for new, row in enumerate(rows) for e in self._entries_of_linear[row]]
+        return LinearRows(
+            constant=linear.constant[np.array(rows, dtype=np.intp)],
+            row=np.array([new for new, _ in entries], dtype=np.intp),
+            variable=np.array([index[int(linear.variable[e])] for _, e in entries], dtype=np.intp),
+            weight=np.array([linear.weight[e] for _, e in entries], dtype=float),
+        )
+
+
+def _by_value(values: IntArray, count: int) -> list[list[int]]:
+    found: list[list[int]] = [[] for _ in range(count)]
+    for k, value in enumerate(values):
+        found[value].append(k)
+    return found

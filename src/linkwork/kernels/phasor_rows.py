@@ -1,0 +1,120 @@
+"""Rows of phasor terms, the one shape of every planar closure equation and point.
+
+    F_l = Σ_t c_t s_t exp(i ψ_t),     ψ_t = Σ_k W_kt v_k
+
+``v`` holds unknowns and inputs, angles in radians; ``s_t`` is one variable length or 1; ``c_t`` is
+complex and holds fixed lengths and fixed offsets. A turning link has W = 1; a relative angle, a
+gear ratio or an input is just another column of W. Everything is batched: ``v`` is (B, N).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["PhasorRows"]
+
+Array = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PhasorRows:
+    """Sparse description of R complex rows over N variables, T terms.
+
+    Parameters
+    ----------
+    rows, variables : int
+        R and N.
+    row : (T,) int
+        The row each term belongs to.
+    coefficient : (T,) complex
+    length : (T,) int
+        Index of the term's variable length, -1 for none.
+    phase_term, phase_variable, phase_weight : (P,)
+        The non-zero entries W[variable, term].
+    """
+
+    rows: int
+    variables: int
+    row: IntArray
+    coefficient: ComplexArray
+    length: IntArray
+    phase_term: IntArray
+    phase_variable: IntArray
+    phase_weight: Array
+
+    @cached_property
+    def _weights(self) -> Array:
+        """W, (N, T)."""
+        w = np.zeros((self.variables, len(self.row)))
+        np.add.at(w, (self.phase_variable, self.phase_term), self.phase_weight)
+        return w
+
+    @cached_property
+    def _sliding(self) -> IntArray:
+        """The terms with a variable length."""
+        return np.flatnonzero(self.length >= 0)
+
+    @cached_property
+    def _gather(self) -> ComplexArray:
+        """Adds terms into rows, (T, R)."""
+        g = np.zeros((len(self.row), self.rows), dtype=complex)
+        g[np.arange(len(self.row)), self.row] = 1.0
+        return g
+
+    @cached_property
+    def _slopes(self) -> ComplexArray:
+        """Adds terms, then bare phasors of sliding terms, into Jacobian entries, (T + S, R N)."""
+        terms, sliding = len(self.row), self._sliding
+        m = np.zeros((terms + len(sliding), self.rows, self.variables), dtype=complex)
+        t, k = self.phase_term, self.phase_variable
+        np.add.at(m, (t, self.row[t], k), 1j * self.phase_weight)
+        s = np.arange(len(sliding))
+        m[terms + s, self.row[sliding], self.length[sliding]] += 1.0
+        return m.reshape(terms + len(sliding), self.rows * self.variables)
+
+    def _phasors(self, v: Array) -> ComplexArray:
+        return self.coefficient * np.exp(1j * (v @ self._weights))
+
+    def _terms(self, v: Array, phasors: ComplexArray) -> ComplexArray:
+        sliding = self._sliding
+        if not len(sliding):
+            return phasors
+        terms = phasors.copy()
+        terms[:, sliding] *= v[:, self.length[sliding]]
+        return terms
+
+    def value(self, v: Array) -> ComplexArray:
+        """F, (B, R)."""
+        return self._terms(v, self._phasors(v)) @ self._gather
+
+    def value_and_jacobian(self, v: Array) -> tuple[ComplexArray, ComplexArray]:
+        """F, (B, R), and dF/dv, (B, R, N)."""
+        phasors = self._phasors(v)
+        terms = self._terms(v, phasors)
+        sliding = self._sliding
+        both = np.concatenate([terms, phasors[:, sliding]], axis=1) if len(sliding) else terms
+        jacobian = (both @ self._slopes).reshape(len(v), self.rows, self.variables)
+        return terms @ self._gather, jacobian
+
+    def jet(self, v: Array, d1: Array, d2: Array) -> tuple[ComplexArray, ...]:
+        """F with first and second derivative along a path with v' = d1, v'' = d2; each (B, R).
+
+        For d2 = 0 the last one is the directional second derivative D²F[d1, d1].
+        """
+        e = self._phasors(v)
+        psi1, psi2 = d1 @ self._weights, d2 @ self._weights
+        s, s1, s2 = np.ones_like(psi1), np.zeros_like(psi1), np.zeros_like(psi1)
+        sliding = self._sliding
+        index = self.length[sliding]
+        s[:, sliding], s1[:, sliding], s2[:, sliding] = v[:, index], d1[:, index], d2[:, index]
+        value = e * s
+        first = e * (s1 + 1j * s * psi1)
+        second = e * (s2 - s * psi1**2 + 1j * (2.0 * s1 * psi1 + s * psi2))
+        g = self._gather
+        return value @ g, first @ g, second @ g

@@ -1,0 +1,53 @@
+"""The speed of an input: ``"300 rpm"``, ``"25 rad/s"``, ``"50 mm/s"``, or a bare number."""
+
+from __future__ import annotations
+
+import math
+
+from linkwork.foundation.errors import ExpressionError
+from linkwork.mechanism.dimensions import Numbers
+from linkwork.mechanism.parts import Number
+
+__all__ = ["speed_per_second"]
+
+_ANGULAR = {"rpm": math.tau / 60.0, "rad/s": 1.0, "deg/s": math.pi / 180.0}  # [rad/s]
+
+
+def speed_per_second(speed: Number, kind: str, numbers: Numbers, length: str) -> float:
+    """The speed in the mechanism's own unit per second.
+
+    Parameters
+    ----------
+    speed : number or str
+        A number or formula, which may be followed by a unit.
+    kind : str
+        What is driven: ``slider`` and ``cylinder`` have a length's speed, ``link`` and ``joint``
+        an angle's, ``variable`` either.
+    numbers : Numbers
+        The dimensions, and the unit of angles.
+    length : str
+        The unit of lengths; nothing is converted.
+
+    Raises
+    ------
+    ExpressionError
+        If the number cannot be read, or the unit does not fit what is driven.
+    """
+    if not isinstance(speed, str):
+        return numbers(speed)
+    angular = {} if kind in ("slider", "cylinder") else _ANGULAR
+    linear = {} if kind in ("link", "joint") else {f"{length}/s": 1.0}
+    text = speed.rstrip()
+    for unit in sorted({**angular, **linear}, key=len, reverse=True):
+        amount = text.removesuffix(unit)
+        if amount != text and not amount[-1:].isalpha():
+            scale = 1.0 if unit in linear else angular[unit] / numbers.unit.radians
+            return numbers(amount) * scale
+    try:
+        return numbers(text)
+    except ExpressionError:
+        known = ", ".join({**angular, **linear})
+        raise ExpressionError(
+            f'must be a number and a unit ({known}), got "{speed[:40]}"', speed, 1
+        ) from None
+

@@ -1,0 +1,91 @@
+"""What was understood: loops, unknowns, blocks, mobility, and whether the start closes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loops import Loops
+from linkwork.motion.model import Model
+from linkwork.motion.start import first_position
+from linkwork.numerics.newton import NewtonOptions
+from linkwork.results.check import BlockSummary, CheckReport
+from linkwork.results.quantity import Kind
+
+__all__ = ["check", "grubler_count"]
+
+_RANK_TOLERANCE = 1e-9  # relative to the largest singular value of the scaled Jacobian
+
+
+def check(model: Model) -> CheckReport:
+    """Report what was understood of a mechanism and try its start position."""
+    description, equations = model.description, model.equations
+    start = first_position(model, model.start_inputs, NewtonOptions())
+    rank = None
+    if start.status.ok:
+        rank = len(equations.variables) - _rank(model, start.v)
+    measured: tuple[tuple[str, str, float], ...] = ()
+    links = joints = 0
+    count = None
+    if isinstance(description, Linkage):
+        form, count = "points and links", grubler_count(description)
+        measured = tuple(
+            (m.link, " ".join(m.points), m.length) for m in description.shapes.measured
+        )
+        links = len(description.links) + len(description.cylinders)
+        joints = _pins(description) + len(description.sliders) + len(description.slots)
+    else:
+        form = "loops" if isinstance(description, Loops) else "equations"
+    units = model.units
+    return CheckReport(
+        mechanism=description.name,
+        form=form,
+        links=links,
+        joints=joints,
+        loops=equations.labels,
+        unknowns=tuple((v.name, units.of(Kind(v.kind))) for v in equations.unknowns),
+        inputs=tuple((v.name, units.of(Kind(v.kind))) for v in equations.inputs),
+        rows=len(model.rows) if description.inputs else 0,
+        blocks=tuple(
+            BlockSummary(
+                equations=tuple(equations.labels[e] for e in block.equations),
+                unknowns=tuple(equations.unknowns[k].name for k in block.unknowns),
+            )
+            for block in model.compiled.solver.blocks
+        ),
+        mobility_count=count,
+        mobility_rank=rank,
+        measured=measured,
+        start=start.status,
+        start_message=start.message,
+        start_input={
+            v.name: float(value)
+            for v, value in zip(equations.inputs, model.everyday_start, strict=True)
+        },
+        residual=start.residual,
+    )
+
+
+def _pins(linkage: Linkage) -> int:
+    """Revolute joints, a pin of k bodies counting k - 1."""
+    return sum(max(len(bodies) - 1, 0) for bodies in linkage.carriers().values())
+
+
+def grubler_count(linkage: Linkage) -> int:
+    """Grübler's mobility 3(n - 1) - 2·(pins and sliders) - (slots).
+
+    A cylinder counts as its two links and their sliding joint: one body with one freedom more.
+    """
+    bodies = len(linkage.links) + len(linkage.cylinders)
+    lower_pairs = _pins(linkage) + len(linkage.sliders)
+    return 3 * (bodies - 1) - 2 * lower_pairs - len(linkage.slots) + len(linkage.cylinders)
+
+
+def _rank(model: Model, v: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> int:
+    """Rank of all equations by all variables, inputs included, scaled."""
+    table = model.compiled.table
+    jacobian = table.jacobian(v[None, :])[0]
+    scaled = jacobian * table.variable_scale / table.equation_scale[:, None]
+    if not scaled.size:
+        return 0
+    return int(np.linalg.matrix_rank(scaled, tol=_RANK_TOLERANCE * np.linalg.norm(scaled, 2)))

@@ -1,0 +1,134 @@
+"""A mechanism made ready to be solved: description, equations, arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.equations.compiling import Compiled, compile_equations
+from linkwork.equations.from_linkage import write_loops
+from linkwork.equations.from_loops import read_loops, read_plain_equations
+from linkwork.equations.model import LoopEquations
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.names import canonical
+from linkwork.mechanism.description import Description
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loops import Loops, PlainEquations
+from linkwork.mechanism.skeleton import DrivenPart, Skeleton
+from linkwork.motion.speeds import input_speed
+from linkwork.results.quantity import Kind, Units
+
+__all__ = ["Model", "model_of"]
+
+
+@dataclass(frozen=True)
+class Model:
+    """Everything that solving needs, derived once from a description."""
+
+    description: Description
+    equations: LoopEquations
+    compiled: Compiled
+    skeleton: Skeleton
+
+    @property
+    def units(self) -> Units:
+        """The mechanism's units."""
+        return Units(self.description.angle, self.description.length)
+
+    @cached_property
+    def input_scale(self) -> npt.NDArray[np.float64]:
+        """Internal units per everyday unit of each input, (p,)."""
+        return np.array([self.units.scale(Kind(v.kind)) for v in self.equations.inputs])
+
+    @property
+    def start_inputs(self) -> npt.NDArray[np.float64]:
+        """The input values the guess belongs to, internal units, (p,)."""
+        return self.equations.start[len(self.equations.unknowns) :]
+
+    @cached_property
+    def rows(self) -> npt.NDArray[np.float64]:
+        """The table's input values, internal units, (rows, p)."""
+        if not self.description.inputs:
+            raise InputError(
+                f'mechanism "{self.description.name}" has no input: add [input] to sweep it'
+            )
+        return self.everyday_rows * self.input_scale
+
+    @cached_property
+    def everyday_rows(self) -> npt.NDArray[np.float64]:
+        """The table's input values as asked, everyday units, (rows, p)."""
+        columns = [self.description.rows(which) for which in self.description.inputs]
+        return np.stack(columns, axis=1) if columns else np.zeros((1, 0))
+
+    @cached_property
+    def everyday_start(self) -> npt.NDArray[np.float64]:
+        """The input values the guess belongs to, everyday units, (p,)."""
+        values = [
+            self.units.angle.from_radians(float(value)) if variable.kind == "angle" else value
+            for variable, value in zip(self.equations.inputs, self.start_inputs, strict=True)
+        ]
+        return np.array(values, dtype=float)
+
+    @cached_property
+    def speed(self) -> float | None:
+        """Rate of the leading input, [rad/s] or [length/s]."""
+        if not self.description.inputs:
+            return None
+        return input_speed(self.description, self.equations.inputs, self.rows)
+
+    def input_values(self, at: dict[str, float]) -> npt.NDArray[np.float64]:
+        """Named everyday input values as an array, everyday units, (p,).
+
+        Raises
+        ------
+        UnknownNameError, InputError
+            For a name that is no input, or an input without a value.
+        """
+        known = {canonical(v.name): k for k, v in enumerate(self.equations.inputs)}
+        names = [v.name for v in self.equations.inputs]
+        values = np.full(len(names), np.nan)
+        for name, value in at.items():
+            if canonical(name) not in known:
+                raise UnknownNameError(
+                    f'"{name}" is not an input of {self.description.name} '
+                    f"{choices('inputs', names, name)}"
+                )
+            values[known[canonical(name)]] = value
+        missing = [name for name, value in zip(names, values, strict=True) if np.isnan(value)]
+        if missing:
+            raise InputError(
+                f"no value for the input {', '.join(missing)}: this mechanism has "
+                f"{len(names)} inputs ({', '.join(names)}), give each of them"
+            )
+        return values
+
+
+def model_of(description: Description) -> Model:
+    """Write or read the equations of a mechanism and compile them.
+
+    Raises
+    ------
+    MechanismError
+        With every problem found.
+    """
+    where = f'mechanism "{description.name}"'
+    match description:
+        case Linkage():
+            equations = write_loops(description)
+            skeleton = Skeleton.of_linkage(description)
+        case Loops():
+            equations = read_loops(description)
+            fixed = description.links.get("ground", equations.fixed)
+            driven = tuple(
+                DrivenPart(kind="variable", name=v.name) for v in equations.inputs
+            )
+            skeleton = Skeleton.of_points(description.links, fixed, description.trace, driven)
+        case PlainEquations():
+            equations = read_plain_equations(description)
+            skeleton = Skeleton()
+        case _:
+            raise TypeError(f"no equations are known for {type(description).__name__}")
+    return Model(description, equations, compile_equations(equations, where), skeleton)

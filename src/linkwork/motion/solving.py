@@ -1,0 +1,249 @@
+"""One position at one input value."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.foundation.errors import NotConvergedError
+from linkwork.foundation.status import Status
+from linkwork.motion.model import Model
+from linkwork.motion.reading import Named, named_series
+from linkwork.motion.start import Start, first_position
+from linkwork.motion.tracking import leading_scale, track_to, turns_freely
+from linkwork.numerics.newton import NewtonOptions
+from linkwork.numerics.track import InputPath, Rows, Track, node_at, rows_on_track
+from linkwork.results.motion import Series
+from linkwork.results.position import NewtonTrail, Position
+
+__all__ = ["solve"]
+
+Array = npt.NDArray[np.float64]
+
+
+def solve(
+    model: Model,
+    at: float | Mapping[str, float] | None = None,
+    *,
+    from_guess: bool = False,
+    options: NewtonOptions | None = None,
+    with_steps: bool = False,
+    throw: bool = False,
+) -> Position:
+    """The position at one input value.
+
+    Newton-Raphson finds the position at the guess's own input value; the branch is then followed
+    to the value asked, and the other way around if a limit is met on the way.
+
+    Parameters
+    ----------
+    at : number or Mapping[str, number], optional
+        Input value(s) in everyday units; the guess's own if left out.
+    from_guess : bool
+        Start Newton-Raphson at the asked value directly, as the textbook's example does.
+    with_steps : bool
+        Keep the iterates.
+    throw : bool
+        Raise instead of returning a position that was not found.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        For input values that do not fit the mechanism.
+    NotConvergedError
+        Only with ``throw``.
+    """
+    options = options or NewtonOptions()
+    target = _target(model, at)
+    inputs = target * model.input_scale
+    start = first_position(
+        model, inputs if from_guess else model.start_inputs, options, with_steps
+    )
+    if not start.status.ok:
+        position = _failed(model, target, start.status, start.message, start)
+    elif from_guess or np.array_equal(inputs, model.start_inputs):
+        position = _arrived(model, target, start)
+    else:
+        position = _followed(model, target, start)
+    if throw and not position.status.ok:
+        raise NotConvergedError(position.message)
+    return position
+
+
+def _target(model: Model, at: float | Mapping[str, float] | None) -> Array:
+    if at is None:
+        return model.everyday_start
+    if not isinstance(at, Mapping):
+        inputs = model.equations.inputs
+        at = {inputs[0].name: float(at)} if len(inputs) == 1 else {"": float(at)}
+    return model.input_values(dict(at))
+
+
+def _rate(model: Model) -> Array:
+    """How all inputs move by the leading one, (p,)."""
+    rows = model.rows if model.description.inputs else np.zeros((1, 0))
+    return lock_step(rows)[1]
+
+
+def lock_step(rows: Array) -> tuple[int, Array]:
+    """The leading input and the rate of every input by it."""
+    if not rows.shape[1]:
+        return 0, np.zeros(0)
+    changes = rows[1] - rows[0] if len(rows) > 1 else np.zeros(rows.shape[1])
+    moving = np.flatnonzero(changes)
+    lead = int(moving[0]) if len(moving) else 0
+    if not len(moving):
+        rate = np.zeros(rows.shape[1])
+        rate[0] = 1.0
+        return 0, rate
+    return lead, changes / changes[lead]
+
+
+def _arrived(model: Model, target: Array, start: Start) -> Position:
+    solver = model.compiled.solver
+    v = start.v[None, :]
+    rates = solver.rates(v, _rate(model))
+    rows = Rows(
+        v=v,
+        status=np.array([Status.CONVERGED.code], dtype=np.int8),
+        iterations=np.array([start.iterations]),
+        residual=np.array([start.residual]),
+        rates=rates,
+    )
+    return position_of(model, target, rows, start.message, start.trails)
+
+
+def _followed(model: Model, target: Array, start: Start) -> Position:
+    """Along the straight line from the guess's inputs to the target."""
+    solver = model.compiled.solver
+    origin = model.start_inputs
+    inputs = target * model.input_scale
+    span = inputs - origin
+    lead = int(np.argmax(np.abs(span / _input_weights(model))))
+    scale = leading_scale(model, lead)
+    rate = span / span[lead]
+    path = InputPath(origin=origin - rate * origin[lead], rate=rate)
+    first = node_at(solver, path, float(origin[lead]), start.v)
+    goal = float(inputs[lead])
+    track = track_to(solver, path, first, [goal], scale)
+    if not track.first_t <= goal <= track.last_t and turns_freely(model):
+        goal -= np.copysign(2.0 * np.pi, goal - first.t)
+        track = track_to(solver, path, first, [goal], scale)
+    if not track.first_t <= goal <= track.last_t:
+        return _stopped(model, target, track, lead, start)
+    rows = rows_on_track(solver, path, track, np.array([goal]), scale)
+    rates = solver.rates(rows.v, _rate(model))
+    rows = Rows(
+        v=rows.v,
+        status=rows.status,
+        iterations=rows.iterations,
+        residual=rows.residual,
+        rates=rates,
+    )
+    message = Status.of_code(int(rows.status[0])).value
+    return position_of(model, target, rows, message, start.trails)
+
+
+def _input_weights(model: Model) -> Array:
+    return model.compiled.solver.variable_scale[model.compiled.solver.unknowns :]
+
+
+def _stopped(model: Model, target: Array, track: Track, lead: int, start: Start) -> Position:
+    ends = [end for end in (track.above, track.below) if end is not None]
+    scale = model.input_scale[lead]
+    name = model.equations.inputs[lead].name
+    unit = model.units.angle.sign if scale != 1.0 else ""
+    met = " and ".join(f"{end.reached / scale:.9g}{unit}" for end in ends)
+    status = (
+        Status.OUT_OF_REACH if all(e.status is Status.OUT_OF_REACH for e in ends) else Status.LOST
+    )
+    return _failed(model, target, status, f"{status.value} (limit at {name} = {met})", start)
+
+
+def _failed(model: Model, target: Array, status: Status, message: str, start: Start) -> Position:
+    n = model.compiled.solver.variables
+    nothing = np.full((1, n), np.nan)
+    named = named_series(
+        model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool)
+    )
+    return _position(model, named, status, message, start.residual, start.iterations, np.inf,
+                     np.full(len(model.equations.unknowns), np.nan), start.trails)
+
+
+def position_of(
+    model: Model, target: Array, rows: Rows, message: str, trails: tuple[NewtonTrail, ...] = ()
+) -> Position:
+    """The one row of a batch as a position."""
+    status = Status.of_code(int(rows.status[0]))
+    named = named_series(
+        model,
+        rows.v,
+        rows.rates.first,
+        rows.rates.second,
+        target[None, :],
+        np.array([status.ok]),
+    )
+    return _position(
+        model,
+        named,
+        status,
+        message,
+        float(rows.residual[0]),
+        int(rows.iterations[0]),
+        float(rows.rates.condition[0]),
+        rows.v[0, : model.compiled.solver.unknowns],
+        trails,
+    )
+
+
+def _position(
+    model: Model,
+    named: Named,
+    status: Status,
+    message: str,
+    residual: float,
+    iterations: int,
+    condition: float,
+    q: Array,
+    trails: tuple[NewtonTrail, ...],
+) -> Position:
+    everything: dict[str, Series] = {
+        **named.unknowns,
+        **named.links,
+        **named.sliders,
+        **named.outputs,
+        **{s.quantity.name: s for pair in named.points.values() for s in pair},
+    }
+    first = {name: float(s.first[0]) for name, s in everything.items()}
+    second = {name: float(s.second[0]) for name, s in everything.items()}
+    speed = model.speed
+    return Position(
+        mechanism=model.description.name,
+        units=model.units,
+        skeleton=model.skeleton,
+        status=status,
+        message=message,
+        input={name: float(value[0]) for name, value in named.inputs.items()},
+        unknowns=_values(named.unknowns),
+        links=_values(named.links),
+        sliders=_values(named.sliders),
+        points={
+            name: (float(x.value[0]), float(y.value[0])) for name, (x, y) in named.points.items()
+        },
+        outputs=_values(named.outputs),
+        first=first,
+        second=second,
+        velocity={} if speed is None else {n: d * speed for n, d in first.items()},
+        acceleration={} if speed is None else {n: d * speed**2 for n, d in second.items()},
+        residual=residual,
+        iterations=iterations,
+        condition=condition,
+        q=q,
+        steps=trails,
+    )
+
+
+def _values(table: Mapping[str, Series]) -> dict[str, float]:
+    return {name: float(series.value[0]) for name, series in table.items()}

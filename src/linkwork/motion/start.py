@@ -1,0 +1,98 @@
+"""The first position: Newton-Raphson from the guess at its own input value."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.foundation.status import Status
+from linkwork.motion.closing import explain
+from linkwork.motion.model import Model
+from linkwork.numerics.newton import NewtonOptions, Watch
+from linkwork.results.position import NewtonStep, NewtonTrail
+from linkwork.results.quantity import Kind
+
+__all__ = ["Start", "first_position"]
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Start:
+    """A solved (or failed) first position: variables (N,), evidence and the iterates."""
+
+    v: Array
+    status: Status
+    message: str
+    iterations: int
+    residual: float
+    trails: tuple[NewtonTrail, ...]
+
+
+def first_position(
+    model: Model, inputs: Array, options: NewtonOptions, with_steps: bool = False
+) -> Start:
+    """Newton-Raphson from the guess with the given input values (p,), internal units."""
+    solver = model.compiled.solver
+    v = model.equations.start.copy()
+    v[solver.unknowns :] = inputs
+    watchers = [_Watcher(model, k) for k in range(len(solver.blocks))]
+    watches: list[Watch | None] = list(watchers) if with_steps else [None] * len(watchers)
+    done = solver.solve(v[None, :], options, watches)
+    status = Status.of_code(int(done.status[0]))
+    message = status.value
+    if not status.ok:
+        status, message = explain(model, v, status, int(done.failed_block[0]))
+    trails = []
+    for k, watcher in enumerate(watchers):
+        if watcher.steps:
+            failed = k == done.failed_block[0]
+            trails.append(watcher.trail(Status.of_code(int(done.status[0])) if failed else Status.CONVERGED))
+    return Start(
+        v=done.v[0],
+        status=status,
+        message=message,
+        iterations=int(done.iterations[0]),
+        residual=float(done.residual[0]),
+        trails=tuple(trails),
+    )
+
+
+class _Watcher:
+    """Notes the iterates of one block in everyday units."""
+
+    def __init__(self, model: Model, number: int) -> None:
+        self.block = model.compiled.solver.blocks[number]
+        labels = model.equations.labels
+        self.equations = tuple(labels[e] for e in self.block.equations)
+        self.variables = [model.equations.unknowns[k] for k in self.block.unknowns]
+        self.scales = [model.units.scale(Kind(v.kind)) for v in self.variables]
+        self.steps: list[NewtonStep] = []
+
+    def __call__(self, k: int, v: Array, residual: Array, change: Array | None) -> None:
+        n = len(self.variables)
+        weights = self.block.system.variable_scale[:n]
+        self.steps.append(
+            NewtonStep(
+                k=k,
+                unknowns={
+                    variable.name: float(value / scale)
+                    for variable, value, scale in zip(
+                        self.variables, v[0, :n], self.scales, strict=True
+                    )
+                },
+                residual=float(np.linalg.norm(residual[0])),
+                step=None if change is None else float(np.abs(change[0] / weights).max()),
+            )
+        )
+
+    def trail(self, status: Status) -> NewtonTrail:
+        """The iterates with how they ended."""
+        return NewtonTrail(equations=self.equations, steps=tuple(self.steps), status=status)
+
+
+def bare(options: NewtonOptions) -> NewtonOptions:
+    """The textbook's method without a limit on the step."""
+    return replace(options, largest_turn=float("inf"))

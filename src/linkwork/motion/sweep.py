@@ -1,0 +1,256 @@
+"""The whole cycle: a table of positions along one branch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.foundation.status import Status
+from linkwork.motion.model import Model
+from linkwork.motion.reading import Named, named_series
+from linkwork.motion.solving import lock_step
+from linkwork.motion.start import Start, first_position
+from linkwork.motion.tracking import leading_scale, track_to, turns_freely
+from linkwork.numerics.newton import NewtonOptions
+from linkwork.numerics.track import InputPath, Node, Rows, Track, follow, node_at, rows_on_track
+from linkwork.results.motion import Limit, Motion
+from linkwork.results.quantity import Kind
+
+__all__ = ["sweep"]
+
+Array = npt.NDArray[np.float64]
+_CHUNK = 4096  # rows solved together: large enough to amortise NumPy calls, small enough for cache
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Solved:
+    """Rows of the table in internal units; ``v`` of rows that were not found is NaN."""
+
+    v: Array
+    first: Array
+    second: Array
+    status: npt.NDArray[np.int8]
+    iterations: npt.NDArray[np.int64]
+    residual: Array
+    condition: Array
+
+
+def sweep(
+    model: Model,
+    *,
+    options: NewtonOptions | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Motion:
+    """The positions at every row of the input's table, all on the branch of the guess.
+
+    The branch is followed from the guess's own input value both ways with steps as small as
+    safety asks, whatever the table's step. A row outside its reach is tried a whole turn away,
+    and kept with its status if it is not there either.
+
+    Parameters
+    ----------
+    progress : callable, optional
+        Called with the finished fraction, 0 to 1.
+    """
+    options = options or NewtonOptions()
+    start = first_position(model, model.start_inputs, options)
+    rows = model.rows
+    if not start.status.ok:
+        return _without_start(model, rows, start)
+    lead, rate = lock_step(rows)
+    path = InputPath(origin=rows[0] - rate * rows[0, lead], rate=rate)
+    scale = leading_scale(model, lead)
+    t = rows[:, lead]
+    anchor = _onto_path(model, path, start, t, lead)
+    if anchor is None:
+        return _without_start(model, rows, start)
+    report = _Report(progress, anchor.t, float(t.min()), float(t.max()))
+    track = _covering(model, path, anchor, t, scale, report)
+    placed = _placed(track, t, turns_freely(model))
+    solved = _solve_rows(model, path, track, placed, scale, report)
+    missing = np.isnan(placed)
+    solved.status[missing] = _status_outside(track).code
+    return _motion(model, rows, t, solved, track, start)
+
+
+class _Report:
+    """Progress as a fraction: tracking is the first half, the rows the second."""
+
+    def __init__(
+        self, progress: Callable[[float], None] | None, start: float, low: float, high: float
+    ) -> None:
+        self.progress = progress
+        self.start = start
+        self.span = max(high, start) - min(low, start) or 1.0
+
+    def tracked(self, t: float) -> None:
+        """A step of the track has arrived at t."""
+        if self.progress is not None:
+            self.progress(min(0.5, 0.5 * abs(t - self.start) / self.span))
+
+    def solved(self, fraction: float) -> None:
+        """A fraction of the rows is done."""
+        if self.progress is not None:
+            self.progress(0.5 + 0.5 * fraction)
+
+
+def _onto_path(
+    model: Model, path: InputPath, start: Start, t: Array, lead: int
+) -> Node | None:
+    """The start as a node of the table's path; several inputs are first led onto it."""
+    solver = model.compiled.solver
+    own = model.start_inputs
+    here = float(own[lead])
+    if np.allclose(path.at(here), own, rtol=0, atol=1e-12 * leading_scale(model, lead)):
+        return node_at(solver, path, here, start.v)
+    weights = solver.variable_scale[solver.unknowns :]
+    distance = np.abs((path.at(t) - own) / weights).max(axis=1)
+    nearest = float(t[int(np.argmin(distance))])
+    span = path.at(nearest) - own
+    way = InputPath(origin=own, rate=span)
+    first = node_at(solver, way, 0.0, start.v)
+    nodes, end = follow(solver, way, first, 1.0, 1.0)
+    if end is not None:
+        return None
+    return node_at(solver, path, nearest, nodes[-1].v)
+
+
+def _covering(
+    model: Model, path: InputPath, anchor: Node, t: Array, scale: float, report: _Report
+) -> Track:
+    """A track over the table's range, wound on the other way where a limit cuts it short."""
+    solver = model.compiled.solver
+    track = track_to(solver, path, anchor, [t.min(), t.max()], scale, report.tracked)
+    if not turns_freely(model):
+        return track
+    above, below = track.above, track.below
+    turn = 2.0 * np.pi
+    if above is not None and below is None:
+        beyond = t[t > track.last_t]
+        return track_to(solver, path, anchor, [beyond.min() - turn, t.min(), t.max()], scale)
+    if below is not None and above is None:
+        beyond = t[t < track.first_t]
+        return track_to(solver, path, anchor, [beyond.max() + turn, t.min(), t.max()], scale)
+    return track
+
+
+def _placed(track: Track, t: Array, free: bool) -> Array:
+    """Where on the track each row lies, whole turns apart if need be; NaN if nowhere."""
+    placed = np.where((t >= track.first_t) & (t <= track.last_t), t, np.nan)
+    if not free:
+        return placed
+    turn = 2.0 * np.pi
+    for shift in (-turn, turn, -2 * turn, 2 * turn):
+        moved = t + shift
+        inside = np.isnan(placed) & (moved >= track.first_t) & (moved <= track.last_t)
+        placed[inside] = moved[inside]
+    return placed
+
+
+def _solve_rows(
+    model: Model, path: InputPath, track: Track, placed: Array, scale: float, report: _Report
+) -> _Solved:
+    solver = model.compiled.solver
+    count, n = len(placed), solver.variables
+    v, first, second = (np.full((count, n), np.nan) for _ in range(3))
+    status = np.zeros(count, dtype=np.int8)
+    iterations = np.zeros(count, dtype=np.int64)
+    residual, condition = np.full(count, np.nan), np.full(count, np.nan)
+    there = np.flatnonzero(~np.isnan(placed))
+    for begin in range(0, len(there), _CHUNK):
+        chunk = there[begin : begin + _CHUNK]
+        rows: Rows = rows_on_track(solver, path, track, placed[chunk], scale)
+        v[chunk], first[chunk], second[chunk] = rows.v, rows.rates.first, rows.rates.second
+        status[chunk], iterations[chunk] = rows.status, rows.iterations
+        residual[chunk], condition[chunk] = rows.residual, rows.rates.condition
+        report.solved((begin + len(chunk)) / len(there))
+    return _Solved(
+        v=v,
+        first=first,
+        second=second,
+        status=status,
+        iterations=iterations,
+        residual=residual,
+        condition=condition,
+    )
+
+
+def _status_outside(track: Track) -> Status:
+    ends = [end.status for end in (track.below, track.above) if end is not None]
+    return Status.OUT_OF_REACH if Status.OUT_OF_REACH in ends else Status.LOST
+
+
+def _motion(
+    model: Model, rows: Array, t: Array, solved: _Solved, track: Track, start: Start
+) -> Motion:
+    found = solved.status == Status.CONVERGED.code
+    named = named_series(
+        model, solved.v, solved.first, solved.second, model.everyday_rows, found
+    )
+    lead = int(np.argmax((rows == t[:, None]).all(axis=0)))
+    scale = model.input_scale[lead]
+    limits = tuple(
+        Limit(
+            input=end.reached / scale,
+            bracket=(
+                min(end.reached, end.failed) / scale,
+                max(end.reached, end.failed) / scale,
+            ),
+            status=end.status,
+        )
+        for end in (track.below, track.above)
+        if end is not None
+    )
+    return _assembled(model, named, solved, limits, start.message)
+
+
+def _without_start(model: Model, rows: Array, start: Start) -> Motion:
+    count, n = len(rows), model.compiled.solver.variables
+    nothing = np.full((count, n), np.nan)
+    solved = _Solved(
+        v=nothing,
+        first=nothing,
+        second=nothing,
+        status=np.full(count, Status.NO_START.code, dtype=np.int8),
+        iterations=np.zeros(count, dtype=np.int64),
+        residual=np.full(count, np.nan),
+        condition=np.full(count, np.nan),
+    )
+    named = named_series(
+        model, nothing, nothing, nothing, model.everyday_rows, np.zeros(count, dtype=bool)
+    )
+    return _assembled(model, named, solved, (), start.message)
+
+
+def _assembled(
+    model: Model, named: Named, solved: _Solved, limits: tuple[Limit, ...], message: str
+) -> Motion:
+    count = len(solved.status)
+    return Motion(
+        mechanism=model.description.name,
+        units=model.units,
+        skeleton=model.skeleton,
+        inputs=named.inputs,
+        input_units={v.name: model.units.of(Kind(v.kind)) for v in model.equations.inputs},
+        derivative_unit=model.units.of_rate(
+            Kind(model.equations.inputs[lock_step(model.rows)[0]].kind)
+        ),
+        unknowns=named.unknowns,
+        links=named.links,
+        sliders=named.sliders,
+        points=named.points,
+        outputs=named.outputs,
+        status=tuple(Status.of_code(int(code)) for code in solved.status),
+        message=message,
+        residual=solved.residual,
+        iterations=solved.iterations,
+        condition=solved.condition,
+        certified=np.zeros(count, dtype=bool),
+        branch=("",) * count,
+        speed=model.speed,
+        limits=limits,
+        q=solved.v[:, : model.compiled.solver.unknowns],
+    )

@@ -1,0 +1,54 @@
+"""Following a mechanism's branch over a range of input values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from linkwork.motion.model import Model
+from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.track import InputPath, Node, Progress, Track, follow
+
+__all__ = ["leading_scale", "track_to", "turns_freely"]
+
+
+def leading_scale(model: Model, lead: int) -> float:
+    """The natural size of a step of the leading input: a radian or the longest link."""
+    solver = model.compiled.solver
+    return float(solver.variable_scale[solver.unknowns + lead])
+
+
+def turns_freely(model: Model) -> bool:
+    """Whether adding a whole turn to the input changes nothing in the equations."""
+    inputs = model.equations.inputs
+    if len(inputs) != 1 or inputs[0].kind != "angle":
+        return False
+    if model.equations.linear and any(
+        name == inputs[0].symbol and weight != round(weight)
+        for equation in model.equations.linear
+        for name, weight in equation.terms
+    ):
+        return False
+    loops = model.compiled.table.loops
+    mine = loops.phase_variable == len(model.equations.unknowns)
+    weights = loops.phase_weight[mine]
+    return bool(np.all(weights == np.round(weights)))
+
+
+def track_to(
+    solver: BlockSolver,
+    path: InputPath,
+    start: Node,
+    goals: Iterable[float],
+    scale: float,
+    progress: Progress | None = None,
+) -> Track:
+    """The branch from ``start`` as far towards the smallest and largest goal as it goes."""
+    goals = list(goals)
+    low, high = min([*goals, start.t]), max([*goals, start.t])
+    above, above_end = follow(solver, path, start, high, scale, progress=progress)
+    below, below_end = follow(solver, path, start, low, scale, progress=progress)
+    return Track(
+        nodes=(*reversed(below), start, *above), below=below_end, above=above_end
+    )

@@ -1,0 +1,197 @@
+"""Solving a decomposed system block by block: positions, rates, condition."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.foundation.status import Status
+from linkwork.numerics.newton import NewtonOptions, Watch, newton
+from linkwork.numerics.system import Array, System
+
+__all__ = ["Block", "BlockSolution", "BlockSolver", "Rates"]
+
+_CONVERGED = Status.CONVERGED.code
+
+
+@dataclass(frozen=True, kw_only=True)
+class Block:
+    """An irreducible part: its system, which variables of the whole it solves for, which it uses.
+
+    ``variables`` lists the whole's variables in the part's order: unknowns, then known ones.
+    """
+
+    system: System
+    equations: tuple[int, ...]
+    unknowns: npt.NDArray[np.intp]
+    variables: npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True, kw_only=True)
+class BlockSolution:
+    """Solved variables (B, N) with evidence; ``failed_block`` is -1 where all blocks converged."""
+
+    v: Array
+    status: npt.NDArray[np.int8]
+    failed_block: npt.NDArray[np.int64]
+    iterations: npt.NDArray[np.int64]
+    residual: Array
+    first_step: Array
+    contraction: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rates:
+    """Derivatives along the input path: (B, N) each; evidence about the Jacobian.
+
+    ``condition`` (B,): largest over the blocks of ‖J‖·‖J⁻¹‖ (largest norm, weighted).
+    ``orientation`` (B, blocks): sign of det J. NaN and 0 where J is singular.
+    """
+
+    first: Array
+    second: Array
+    condition: Array
+    orientation: npt.NDArray[np.int8]
+
+
+@dataclass(frozen=True)
+class BlockSolver:
+    """A system in block-triangular form.
+
+    Parameters
+    ----------
+    blocks : sequence of Block
+        In solving order.
+    unknowns, variables : int
+        n and N of the whole.
+    variable_scale : (N,)
+    """
+
+    blocks: Sequence[Block]
+    unknowns: int
+    variables: int
+    variable_scale: Array
+    options: NewtonOptions = field(default_factory=NewtonOptions)
+
+    def solve(
+        self,
+        start: Array,
+        options: NewtonOptions | None = None,
+        watches: Sequence[Watch | None] | None = None,
+    ) -> BlockSolution:
+        """Newton-Raphson block by block from each row of ``start`` (B, N), inputs included.
+
+        A row whose block fails keeps its guess in the blocks behind.
+        """
+        v = start.copy()
+        count = len(v)
+        status = np.full(count, _CONVERGED, dtype=np.int8)
+        failed = np.full(count, -1)
+        iterations = np.zeros(count, dtype=np.int64)
+        residual = np.zeros(count)
+        first = np.zeros(count)
+        contraction = np.zeros(count)
+        live = np.arange(count)
+        for k, block in enumerate(self.blocks):
+            here = v[live[:, None], block.variables]
+            done = newton(
+                block.system, here, options or self.options, watches[k] if watches else None
+            )
+            v[live[:, None], block.unknowns] = done.v[:, : len(block.unknowns)]
+            status[live] = done.status
+            iterations[live] = np.maximum(iterations[live], done.iterations)
+            residual[live] = np.maximum(residual[live], done.residual)
+            first[live] = np.maximum(first[live], done.first_step)
+            contraction[live] = np.maximum(contraction[live], done.contraction)
+            wrong = done.status != _CONVERGED
+            if wrong.any():
+                failed[live[wrong]] = k
+                live = live[~wrong]
+                if not len(live):
+                    break
+        return BlockSolution(
+            v=v,
+            status=status,
+            failed_block=failed,
+            iterations=iterations,
+            residual=residual,
+            first_step=first,
+            contraction=contraction,
+        )
+
+    def rates(self, v: Array, input_rate: Array) -> Rates:
+        """First and second derivative of all variables when the inputs move at a constant rate.
+
+        J x' = -F_u u';  J x'' = -D²F[(x', u'), (x', u')]: one inverse of J serves both and the
+        condition number.
+
+        Parameters
+        ----------
+        v : (B, N)
+            Converged positions.
+        input_rate : (p,)
+            u' of the inputs; u'' = 0.
+        """
+        count = len(v)
+        first = np.zeros((count, self.variables))
+        second = np.zeros((count, self.variables))
+        first[:, self.unknowns :] = input_rate
+        condition = np.ones(count)
+        orientation = np.zeros((count, len(self.blocks)), dtype=np.int8)
+        for k, block in enumerate(self.blocks):
+            n = len(block.unknowns)
+            system = block.system
+            here = v[:, block.variables]
+            jacobian = system.jacobian(here)
+            inverse, sign = _inverse(jacobian[:, :, :n])
+            known = block.variables[n:]
+            direction = np.empty_like(here)
+            direction[:, n:] = first[:, known]
+            x1 = -_apply(inverse, _apply(jacobian[:, :, n:], direction[:, n:]))
+            direction[:, :n] = x1
+            bend = system.second(here, direction) + _apply(jacobian[:, :, n:], second[:, known])
+            first[:, block.unknowns] = x1
+            second[:, block.unknowns] = -_apply(inverse, bend)
+            condition = np.maximum(condition, _condition(system, jacobian[:, :, :n], inverse))
+            orientation[:, k] = sign
+        return Rates(first=first, second=second, condition=condition, orientation=orientation)
+
+    def residual(self, v: Array) -> Array:
+        """Largest scaled residual over all equations, (B,)."""
+        worst = np.zeros(len(v))
+        for block in self.blocks:
+            f = block.system.residual(v[:, block.variables]) / block.system.equation_scale
+            worst = np.maximum(worst, np.abs(f).max(axis=1, initial=0.0))
+        return worst
+
+
+def _apply(matrix: Array, vector: Array) -> Array:
+    product: Array = (matrix @ vector[:, :, None])[:, :, 0]
+    return product
+
+
+def _inverse(jacobian: Array) -> tuple[Array, npt.NDArray[np.int8]]:
+    """J⁻¹ and the sign of det J per lane; NaN and 0 where J is singular."""
+    try:
+        inverse = np.linalg.inv(jacobian)
+    except np.linalg.LinAlgError:
+        inverse = np.full_like(jacobian, np.nan)
+        for lane, matrix in enumerate(jacobian):
+            try:
+                inverse[lane] = np.linalg.inv(matrix)
+            except np.linalg.LinAlgError:
+                continue
+    sign = np.sign(np.linalg.det(jacobian))
+    return inverse, np.where(np.isfinite(sign), sign, 0).astype(np.int8)
+
+
+def _condition(system: System, jacobian: Array, inverse: Array) -> Array:
+    n = jacobian.shape[2]
+    w, s = system.variable_scale[:n], system.equation_scale
+    forward = np.abs(jacobian * w / s[:, None]).sum(axis=2).max(axis=1, initial=0.0)
+    backward = np.abs(inverse * s / w[:, None]).sum(axis=2).max(axis=1, initial=0.0)
+    product: Array = forward * backward
+    return np.where(np.isfinite(product), product, np.inf)

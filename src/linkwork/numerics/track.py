@@ -1,0 +1,285 @@
+"""Following one branch of solutions along a path of inputs, with steps as small as safety asks.
+
+Predictor: second-order Taylor. Corrector: Newton-Raphson. A step is taken only if the corrector
+contracts fast, stays near the prediction, keeps the sign of det J in every block, and arrives with
+the rate that was predicted; otherwise the step is halved.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.foundation.status import Status
+from linkwork.numerics.block_solver import BlockSolver, Rates
+from linkwork.numerics.newton import NewtonOptions
+from linkwork.numerics.system import Array
+
+__all__ = ["End", "InputPath", "Node", "Track", "TrackOptions", "follow", "rows_on_track"]
+
+_CONVERGED = Status.CONVERGED.code
+
+
+@dataclass(frozen=True, kw_only=True)
+class InputPath:
+    """Inputs as u(t) = origin + t · rate, both (p,)."""
+
+    origin: Array
+    rate: Array
+
+    def at(self, t: float | Array) -> Array:
+        """u(t), (p,) or (B, p)."""
+        return self.origin + np.multiply.outer(np.asarray(t), self.rate)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrackOptions:
+    """How careful a step is.
+
+    ``largest_correction`` [weighted]: how far Newton may move a prediction. ``aim`` is the
+    correction the step size aims at. ``contraction``: largest ratio of successive corrections.
+    ``rate_error``: how far the rate times the step may be from its prediction [weighted].
+    ``smallest_step``: relative to the path's natural length, below which the track ends.
+    """
+
+    largest_correction: float = 0.1
+    aim: float = 0.03
+    contraction: float = 0.25
+    rate_error: float = 0.2
+    first_step: float = 0.1
+    largest_step: float = 0.8
+    smallest_step: float = 1e-13
+    most_steps: int = 100_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class Node:
+    """A solved position on a track with its derivatives by t; ``v`` etc. are (N,)."""
+
+    t: float
+    v: Array
+    first: Array
+    second: Array
+    orientation: npt.NDArray[np.int8]
+
+
+@dataclass(frozen=True, kw_only=True)
+class End:
+    """Why a track ended before its goal: the last t reached and the first t that failed."""
+
+    reached: float
+    failed: float
+    status: Status
+
+
+@dataclass(frozen=True, kw_only=True)
+class Track:
+    """Nodes in the order of increasing t, and the ends at both sides if the goal was not met."""
+
+    nodes: tuple[Node, ...]
+    below: End | None = None
+    above: End | None = None
+
+    @property
+    def first_t(self) -> float:
+        """Smallest t reached."""
+        return self.nodes[0].t
+
+    @property
+    def last_t(self) -> float:
+        """Largest t reached."""
+        return self.nodes[-1].t
+
+
+Progress = Callable[[float], None]
+
+
+def node_at(solver: BlockSolver, path: InputPath, t: float, v: Array) -> Node:
+    """The node of a converged position."""
+    rates = solver.rates(v[None, :], path.rate)
+    return _node(t, v, rates)
+
+
+def _node(t: float, v: Array, rates: Rates) -> Node:
+    return Node(
+        t=t,
+        v=v,
+        first=rates.first[0],
+        second=rates.second[0],
+        orientation=rates.orientation[0],
+    )
+
+
+def follow(
+    solver: BlockSolver,
+    path: InputPath,
+    start: Node,
+    goal: float,
+    scale: float,
+    options: TrackOptions | None = None,
+    progress: Progress | None = None,
+) -> tuple[list[Node], End | None]:
+    """Follow the branch of ``start`` to ``t = goal``.
+
+    Parameters
+    ----------
+    scale : float
+        Natural size of t: one radian for an angle, a length of the mechanism for a length.
+
+    Returns
+    -------
+    nodes, end
+        The nodes after ``start`` in the order reached; ``None`` if the goal was reached.
+    """
+    opt = options or TrackOptions()
+    quick = replace(solver.options, max_steps=6, largest_turn=math.inf)
+    sign = math.copysign(1.0, goal - start.t)
+    nodes: list[Node] = []
+    here = start
+    if goal == start.t:
+        return nodes, None
+    if not here.orientation.all() or not np.isfinite(here.second).all():
+        return nodes, End(reached=here.t, failed=here.t, status=Status.LOST)
+    h = opt.first_step * scale
+    failed_at = goal
+    for _ in range(opt.most_steps):
+        rest = abs(goal - here.t)
+        h = min(h, opt.largest_step * scale, rest)
+        t = goal if h == rest else here.t + sign * h
+        following, correction = _step(solver, path, here, t, quick, opt)
+        if following is None:
+            failed_at = t
+            h *= 0.5 if correction is None else max(0.1, min(0.5, correction))
+            if h < opt.smallest_step * max(scale, abs(here.t)):
+                status = _kind_of_end(solver, start, here)
+                return nodes, End(reached=here.t, failed=failed_at, status=status)
+            continue
+        nodes.append(following)
+        here = following
+        if progress is not None:
+            progress(here.t)
+        if here.t == goal:
+            return nodes, None
+        h *= min(2.0, max(0.5, correction or 2.0))
+    return nodes, End(reached=here.t, failed=goal, status=Status.LOST)
+
+
+def _step(
+    solver: BlockSolver,
+    path: InputPath,
+    here: Node,
+    t: float,
+    quick: NewtonOptions,
+    opt: TrackOptions,
+) -> tuple[Node | None, float | None]:
+    """One trial step: the new node, or ``None``; and the factor for the next step size."""
+    h = t - here.t
+    guess = here.v + h * here.first + (0.5 * h * h) * here.second
+    guess[solver.unknowns :] = path.at(t)
+    found = solver.solve(guess[None, :], quick)
+    correction = float(found.first_step[0])
+    factor = (opt.aim / correction) ** (1.0 / 3.0) if correction > 0 else 2.0
+    if (
+        found.status[0] != _CONVERGED
+        or correction > opt.largest_correction
+        or found.contraction[0] > opt.contraction
+    ):
+        return None, factor if correction > opt.largest_correction else None
+    rates = solver.rates(found.v, path.rate)
+    if not (rates.orientation[0] == here.orientation).all():
+        return None, None
+    drift = (rates.first[0] - here.first - h * here.second) / solver.variable_scale
+    turn = float(np.abs(drift * h).max())
+    if not turn <= opt.rate_error:
+        return None, None
+    if turn > 0:
+        factor = min(factor, (0.5 * opt.rate_error / turn) ** (1.0 / 3.0))
+    return _node(t, found.v[0], rates), factor
+
+
+def _kind_of_end(solver: BlockSolver, start: Node, here: Node) -> Status:
+    """Rates that grow without bound are the mark of a dead point; otherwise nothing is claimed."""
+    weights = solver.variable_scale
+    fast = float(np.abs(here.first / weights).max())
+    usual = float(np.abs(start.first / weights).max())
+    return Status.OUT_OF_REACH if fast > 1e3 * max(usual, 1.0) else Status.LOST
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rows:
+    """Positions at many values of t: as a block solution with rates, rows not found marked."""
+
+    v: Array
+    status: npt.NDArray[np.int8]
+    iterations: npt.NDArray[np.int64]
+    residual: Array
+    rates: Rates
+
+
+def rows_on_track(
+    solver: BlockSolver, path: InputPath, track: Track, t: Array, scale: float
+) -> Rows:
+    """Positions at the values ``t`` (B,), all inside the track, as many lanes at once.
+
+    Starts from quintic interpolation between the track's nodes. A row that ends elsewhere than
+    predicted, or with another sign of det J, is followed again from its node step by step.
+    """
+    guess, left = _interpolated(track, t)
+    guess[:, solver.unknowns :] = path.at(t)
+    found = solver.solve(guess, replace(solver.options, max_steps=12, largest_turn=math.inf))
+    v, status = found.v, found.status.copy()
+    rates = solver.rates(v, path.rate)
+    weights = solver.variable_scale
+    moved = np.abs((v - guess) / weights).max(axis=1)
+    expected = np.stack([track.nodes[k].orientation for k in left])
+    doubtful = (
+        (status != _CONVERGED)
+        | ~(moved <= 0.1)
+        | (rates.orientation != expected).any(axis=1)
+    )
+    residual, iterations = found.residual.copy(), found.iterations.copy()
+    for row in np.flatnonzero(doubtful):
+        node = _nearest(track, int(left[row]), float(t[row]))
+        nodes, end = follow(solver, path, node, float(t[row]), scale)
+        arrived = nodes[-1] if nodes else node
+        if end is not None:
+            status[row] = Status.LOST.code
+            continue
+        v[row] = arrived.v
+        status[row] = _CONVERGED
+        residual[row] = solver.residual(arrived.v[None, :])[0]
+    if doubtful.any():
+        rates = solver.rates(v, path.rate)
+    return Rows(v=v, status=status, iterations=iterations, residual=residual, rates=rates)
+
+
+def _nearest(track: Track, left: int, t: float) -> Node:
+    right = min(left + 1, len(track.nodes) - 1)
+    return min(track.nodes[left], track.nodes[right], key=lambda node: abs(node.t - t))
+
+
+def _interpolated(track: Track, t: Array) -> tuple[Array, npt.NDArray[np.intp]]:
+    """Quintic Hermite values at t (B, N) and the index of the node at the left of each."""
+    nodes = track.nodes
+    times = np.array([node.t for node in nodes])
+    if len(nodes) == 1:
+        return np.repeat(nodes[0].v[None, :], len(t), axis=0), np.zeros(len(t), dtype=np.intp)
+    left = np.clip(np.searchsorted(times, t, side="right") - 1, 0, len(nodes) - 2)
+    v = np.stack([node.v for node in nodes])
+    d1 = np.stack([node.first for node in nodes])
+    d2 = np.stack([node.second for node in nodes])
+    h = (times[left + 1] - times[left])[:, None]
+    s = (t[:, None] - times[left][:, None]) / h
+    v0, v1 = v[left], v[left + 1]
+    a1, b1 = d1[left] * h, d1[left + 1] * h
+    a2, b2 = d2[left] * h * h, d2[left + 1] * h * h
+    rise = v1 - v0
+    c3 = 10 * rise - 6 * a1 - 4 * b1 - 1.5 * a2 + 0.5 * b2
+    c4 = -15 * rise + 8 * a1 + 7 * b1 + 1.5 * a2 - b2
+    c5 = 6 * rise - 3 * a1 - 3 * b1 - 0.5 * a2 + 0.5 * b2
+    value: Array = v0 + s * (a1 + s * (0.5 * a2 + s * (c3 + s * (c4 + s * c5))))
+    return value, left

@@ -1,0 +1,80 @@
+"""What the program understood of a mechanism, before a cycle is solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from linkwork.foundation.status import Status
+
+__all__ = ["BlockSummary", "CheckReport"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class BlockSummary:
+    """Equations that are solved together, by label, for the named unknowns."""
+
+    equations: tuple[str, ...]
+    unknowns: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckReport:
+    """Form, equations, mobility and the start of a mechanism.
+
+    Parameters
+    ----------
+    form : str
+        ``points and links``, ``loops`` or ``equations``.
+    mobility_count : int or None
+        Grübler's count, for points-and-links mechanisms.
+    mobility_rank : int or None
+        Variables minus the rank of the full Jacobian at the start position, if one was found.
+    measured : tuple of (link, "A B", length)
+        Dimensions that were measured between sketched points.
+    start : Status, str
+        How Newton-Raphson ended at the guess's own input value, and the sentence.
+    start_input : mapping of the guess's input values, everyday units.
+    """
+
+    mechanism: str
+    form: str
+    links: int
+    joints: int
+    loops: tuple[str, ...]
+    unknowns: tuple[tuple[str, str], ...]
+    inputs: tuple[tuple[str, str], ...]
+    rows: int
+    blocks: tuple[BlockSummary, ...]
+    mobility_count: int | None
+    mobility_rank: int | None
+    measured: tuple[tuple[str, str, float], ...]
+    start: Status
+    start_message: str
+    start_input: dict[str, float]
+    residual: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """The report as JSON-ready data."""
+        return {
+            "mechanism": self.mechanism,
+            "form": self.form,
+            "links": self.links,
+            "joints": self.joints,
+            "loops": list(self.loops),
+            "unknowns": [{"name": n, "unit": u} for n, u in self.unknowns],
+            "inputs": [{"name": n, "unit": u} for n, u in self.inputs],
+            "rows": self.rows,
+            "blocks": [
+                {"equations": list(b.equations), "unknowns": list(b.unknowns)}
+                for b in self.blocks
+            ],
+            "mobility": {"count": self.mobility_count, "rank": self.mobility_rank},
+            "measured": [{"link": k, "points": p, "length": v} for k, p, v in self.measured],
+            "start": {
+                "status": self.start.name,
+                "message": self.start_message,
+                "input": self.start_input,
+                "residual": self.residual,
+            },
+        }

@@ -1,0 +1,108 @@
+"""A table: named columns with units, one row per input value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.foundation.errors import MissingPackageError
+from linkwork.results.motion import Motion, Series
+
+__all__ = ["Table", "table_of"]
+
+Column = npt.NDArray[Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """Columns by name, all of one length, with the unit of each ("" for none).
+
+    Numbers are float arrays, ``status`` and ``branch`` arrays of text, ``certified`` of bool.
+    """
+
+    columns: Mapping[str, Column]
+    units: Mapping[str, str]
+    index: str
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values())))
+
+    def __getitem__(self, name: str) -> Column:
+        return self.columns[name]
+
+    def rows(self) -> Iterator[tuple[Any, ...]]:
+        """The rows as tuples of plain Python values."""
+        return zip(*(column.tolist() for column in self.columns.values()), strict=True)
+
+    def to_pandas(self) -> Any:
+        """A pandas DataFrame with the input as index; units in ``attrs["units"]``."""
+        try:
+            import pandas  # noqa: ICN001, PLC0415 - optional and heavy
+        except ImportError:
+            raise MissingPackageError(
+                'data frames need pandas: pip install "linkwork[tables]"'
+            ) from None
+        frame = pandas.DataFrame(dict(self.columns)).set_index(self.index)
+        frame.attrs["units"] = dict(self.units)
+        return frame
+
+    def to_xarray(self) -> Any:
+        """An xarray Dataset over the input; every variable has ``attrs["units"]``."""
+        try:
+            import xarray  # noqa: PLC0415 - optional and heavy
+        except ImportError:
+            raise MissingPackageError(
+                'labelled arrays need xarray: pip install "linkwork[tables]"'
+            ) from None
+        axis = self.columns[self.index]
+        variables = {
+            name: (self.index, column, {"units": self.units[name]})
+            for name, column in self.columns.items()
+            if name != self.index
+        }
+        coordinates = {self.index: (self.index, axis, {"units": self.units[self.index]})}
+        return xarray.Dataset(variables, coords=coordinates)
+
+
+def table_of(motion: Motion) -> Table:
+    """All columns of a motion: inputs, unknowns, points, outputs, derivatives, rates, evidence.
+
+    ``<name>.d1`` and ``.d2`` are derivatives by the (first) input with angles in radians;
+    ``.velocity`` and ``.acceleration`` appear when the input has a speed.
+    """
+    units = motion.units
+    columns: dict[str, Column] = {}
+    unit_of: dict[str, str] = {}
+
+    def add(name: str, values: Column, unit: str) -> None:
+        columns[name], unit_of[name] = values, unit
+
+    for name, values in motion.inputs.items():
+        add(name, values, motion.input_units[name])
+    everything: dict[str, Series] = dict(motion.unknowns)
+    for x, y in motion.points.values():
+        everything[x.quantity.name], everything[y.quantity.name] = x, y
+    everything |= motion.outputs
+    for name, series in everything.items():
+        add(name, series.value, units.of(series.quantity.kind))
+    by = motion.derivative_unit
+    for name, series in everything.items():
+        rate = units.of_rate(series.quantity.kind)
+        add(f"{name}.d1", series.first, f"{rate}/{by}")
+        add(f"{name}.d2", series.second, f"{rate}/{by}^2")
+    if motion.speed is not None:
+        for name, series in everything.items():
+            rate = units.of_rate(series.quantity.kind)
+            add(f"{name}.velocity", series.first * motion.speed, f"{rate}/s")
+            add(f"{name}.acceleration", series.second * motion.speed**2, f"{rate}/s^2")
+    add("status", np.array([status.name for status in motion.status]), "")
+    add("residual", motion.residual, "")
+    add("iterations", motion.iterations, "")
+    add("condition", motion.condition, "")
+    add("certified", motion.certified, "")
+    add("branch", np.array(motion.branch), "")
+    return Table(columns=columns, units=unit_of, index=next(iter(motion.inputs)))

@@ -1,0 +1,288 @@
+"""Every table and key of a mechanism file, said once.
+
+The reader's checks (:mod:`~linkwork.textfile.structure`) and the published JSON Schema
+(:mod:`~linkwork.textfile.schema`) are both generated from :data:`FORMS`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+__all__ = [
+    "EQUATIONS", "FORMAT", "FORMS", "LINKAGE", "LOOPS",
+    "Constant", "Flag", "Form", "Formula", "Key", "Kind", "ListOf", "Named", "Number", "Speed",
+    "Table", "Tables", "Text", "form_of",
+]  # fmt: skip
+
+#: The version of the file format that this package reads and writes.
+FORMAT = 1
+
+
+@dataclass(frozen=True)
+class Constant:
+    """The one whole number allowed."""
+
+    number: int
+
+
+@dataclass(frozen=True)
+class Text:
+    """Text, or one of a few words."""
+
+    words: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number, or a formula of the named dimensions."""
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A formula in quotes; with ``equation`` it has an equals sign."""
+
+    equation: bool = False
+
+
+@dataclass(frozen=True)
+class Speed:
+    """A number, or text with a unit: ``"300 rpm"``."""
+
+
+@dataclass(frozen=True)
+class Flag:
+    """true or false."""
+
+
+@dataclass(frozen=True)
+class ListOf:
+    """A list; ``noun`` is what one entry is called in messages."""
+
+    of: Kind
+    noun: str
+    least: int = 0
+    most: int | None = None
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table whose keys are known."""
+
+    keys: tuple[Key, ...]
+
+
+@dataclass(frozen=True)
+class Tables:
+    """A list of tables, ``[[slots]]``; with ``single`` one plain ``[input]`` will do."""
+
+    keys: tuple[Key, ...]
+    single: bool = False
+
+
+@dataclass(frozen=True)
+class Named:
+    """A table whose keys the author chooses; each key has ``words`` words."""
+
+    of: Kind
+    words: int = 1
+
+
+Kind = Constant | Text | Number | Formula | Speed | Flag | ListOf | Table | Tables | Named
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key: its name, what may stand there, and one line for people."""
+
+    name: str
+    kind: Kind
+    doc: str
+    required: bool = False
+
+
+@dataclass(frozen=True)
+class Form:
+    """One of the three ways to write a mechanism; ``marker`` is the table that tells it."""
+
+    title: str
+    doc: str
+    marker: str
+    keys: tuple[Key, ...]
+
+    @property
+    def definition(self) -> str:
+        """Its name among the definitions of the JSON Schema."""
+        return self.title.replace("-", "_").replace(" ", "_")
+
+
+_NAME_LIST = ListOf(Text(), "name")
+_POINT_PAIR = ListOf(Text(), "point", 2, 2)
+
+_HEAD = (
+    Key(
+        "format",
+        Constant(FORMAT),
+        "The version of this file format; write format = 1",
+        required=True,
+    ),
+    Key("name", Text(), "What the mechanism is called"),
+    Key("length", Text(), "Unit of every length in this file; nothing is converted"),
+    Key("angle", Text(("deg", "rad")), "Unit of every angle in this file"),
+    Key("source", Text(), "Where the mechanism comes from: book, page, drawing"),
+)
+_DIMENSIONS = Key(
+    "dimensions", Named(Number()), "Named numbers and formulas, usable wherever a number is"
+)
+_OUTPUTS = Key(
+    "outputs",
+    Named(Formula()),
+    "Named formulas of unknowns, dimensions and point coordinates (A.x)",
+)
+_TRACE = Key(
+    "trace",
+    Table((Key("points", _NAME_LIST, "Points whose path is drawn", required=True),)),
+    "What leaves a trace in pictures",
+)
+_GUESS = Key(
+    "guess",
+    Named(Number()),
+    "Estimates of all unknowns and the input value they belong to",
+    required=True,
+)
+_RANGE = (
+    Key("from", Number(), "First input value"),
+    Key("to", Number(), "Last input value"),
+    Key("step", Number(), "Step between input values; its sign leads from the first to the last"),
+    Key("speed", Speed(), 'Speed of the input, "300 rpm"; a bare number is the unit per second'),
+)
+_DRIVES = (
+    Key("link", Text(), "The link whose angle is driven"),
+    Key("relative_to", Text(), "The link against which the angle is measured; ground if left out"),
+    Key("joint", Text(), "The pin whose two links are driven against each other"),
+    Key("slider", Text(), "The slider or slot whose displacement is driven"),
+    Key("cylinder", Text(), "The cylinder whose length is driven"),
+    *_RANGE,
+)
+_VARIABLE = (
+    Key("variable", Text(), "The name in the equations that is driven", required=True),
+    *_RANGE,
+)
+_SLOT = (
+    Key("name", Text(), "Name of the displacement, zero at the first point of the line", True),
+    Key("point", Text(), "The pin: a point of another link", required=True),
+    Key("on", Text(), "The link with the slot", required=True),
+    Key("line", _POINT_PAIR, "Two points of that link; positive from first to second", True),
+)
+_SLIDER = (
+    Key("name", Text(), "Name of the displacement, zero at the first point of the line", True),
+    Key("link", Text(), "The link that slides without turning", required=True),
+    Key(
+        "points",
+        ListOf(Text(), "point", 1, 2),
+        "Two points of the sliding link on the line, or one point and angle",
+        required=True,
+    ),
+    Key("on", Text(), "The link along which it slides", required=True),
+    Key("line", _POINT_PAIR, "Two points of that link; positive from first to second", True),
+    Key("offset", Number(), "Distance of the points from the line, positive to its left"),
+    Key("angle", Number(), "With one point: the angle from the line to the sliding link"),
+)
+_CYLINDER = (
+    Key("name", Text(), "Name of the variable length", required=True),
+    Key("between", _POINT_PAIR, "The two points it connects", required=True),
+)
+
+LINKAGE = Form(
+    "points-and-links",
+    "A mechanism by its points and the links that carry them",
+    "",
+    (
+        *_HEAD,
+        Key("sketch", Flag(), "If true, dimensions are never measured from [points]"),
+        _DIMENSIONS,
+        Key(
+            "points",
+            Named(ListOf(Number(), "coordinate", 2, 2)),
+            "One assembled position: A = [35, 20]; exact for ground, elsewhere a sketch will do",
+            required=True,
+        ),
+        Key(
+            "links",
+            Named(ListOf(Text(), "point", 1)),
+            'The points each link carries: crank = ["O2", "A"]; "ground" stands still',
+            required=True,
+        ),
+        Key("lengths", Named(Number(), 2), 'Exact distances in one link: "O2 A" = 40'),
+        Key(
+            "angles",
+            Named(Number(), 3),
+            'Exact angles in one link: "B A P" = 30, at A from AB to AP, counter-clockwise',
+        ),
+        Key("slots", Tables(_SLOT), "Pin in slot: a point runs along a line of another link"),
+        Key("sliders", Tables(_SLIDER), "A link slides along a line of another without turning"),
+        Key("cylinders", Tables(_CYLINDER), "A link of variable length between two points"),
+        Key("input", Tables(_DRIVES, single=True), "What is driven, and over which values"),
+        _TRACE,
+        _OUTPUTS,
+    ),
+)
+LOOPS = Form(
+    "loops",
+    "A mechanism by its vector loop-closure equations",
+    "loops",
+    (
+        *_HEAD,
+        _DIMENSIONS,
+        Key(
+            "loops",
+            Named(Formula(equation=True), 0),
+            'Loop equations by label: "A B C" = "a2*e^(i*theta2) + a3*e^(i*theta3) = d"',
+            required=True,
+        ),
+        _GUESS,
+        Key(
+            "input",
+            Tables(_VARIABLE, single=True),
+            'What is driven: variable = "theta2"',
+            required=True,
+        ),
+        Key(
+            "points",
+            Named(Formula()),
+            'Points as formulas, A = "a2*e^(i*theta2)"; they make it drawable',
+        ),
+        Key(
+            "links",
+            Named(ListOf(Text(), "point", 1)),
+            'Points drawn as one link: crank = ["A0", "A"]; "ground" stands still',
+        ),
+        _TRACE,
+        _OUTPUTS,
+    ),
+)
+EQUATIONS = Form(
+    "plain-equations",
+    "Any small system of real equations, solved by Newton-Raphson",
+    "equations",
+    (
+        *_HEAD,
+        _DIMENSIONS,
+        Key(
+            "equations",
+            Named(Formula(equation=True), 0),
+            'Real equations by label: f = "x^3 - 2*x + 2 = 0"',
+            required=True,
+        ),
+        _GUESS,
+        Key("input", Tables(_VARIABLE, single=True), 'What is driven: variable = "x"'),
+        _OUTPUTS,
+    ),
+)
+FORMS = (LINKAGE, LOOPS, EQUATIONS)
+
+
+def form_of(tables: Iterable[str]) -> Form:
+    """The form of a file with these top-level keys."""
+    present = set(tables)
+    return next((form for form in FORMS if form.marker in present), LINKAGE)

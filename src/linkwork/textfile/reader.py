@@ -1,0 +1,140 @@
+"""Reading mechanism files: TOML in, a description out, or every problem with its line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from linkwork.foundation.errors import MechanismError, MechanismFileError, Problem
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loops import Loops, PlainEquations
+from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
+from linkwork.textfile.keys import EQUATIONS, FORMAT, LOOPS, Form, form_of
+from linkwork.textfile.lines import Lines
+from linkwork.textfile.structure import Structure
+from linkwork.textfile.toml_text import bytes_of, data_of, text_of
+
+__all__ = ["ReadFile", "read_bytes", "read_file", "read_text"]
+
+#: Tables and keys on which the meaning of no other table depends.
+_LEAVES = frozenset({"name", "length", "source", "input", "trace", "outputs"})
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReadFile:
+    """A mechanism file that was understood, and where its keys stand.
+
+    Parameters
+    ----------
+    description : Linkage, Loops or PlainEquations
+        What the file describes.
+    lines : Lines
+        From key path to line number.
+    name : str
+        The file's name, for messages.
+    """
+
+    description: Linkage | Loops | PlainEquations
+    lines: Lines
+    name: str
+
+    def located(self, error: MechanismError) -> MechanismFileError:
+        """The same problems with file name and line numbers, in the file's order."""
+        return _located(error.problems, self.lines, self.name)
+
+
+def read_file(path: Path | str) -> ReadFile:
+    """Read the mechanism in a file.
+
+    Raises
+    ------
+    MechanismFileError
+        With every problem found: file, line, key and what to do.
+    """
+    return read_bytes(bytes_of(Path(path), str(path)), str(path))
+
+
+def read_bytes(data: bytes, name: str = "standard input") -> ReadFile:
+    """Read the mechanism in the bytes of a file; raises like :func:`read_file`."""
+    return read_text(text_of(data, name), name)
+
+
+def read_text(text: str, name: str = "the text") -> ReadFile:
+    """Read the mechanism in a text; raises like :func:`read_file`.
+
+    Examples
+    --------
+    >>> file = read_text('''
+    ... format = 1
+    ... [equations]
+    ... f = "x^2 - 2 = 0"
+    ... [guess]
+    ... x = 1
+    ... ''')
+    >>> dict(file.description.guess)
+    {'x': 1}
+    """
+    data = data_of(text, name)
+    lines = Lines.of(text)
+    _check_format(data, lines, name)
+    form = form_of(data)
+    structure = Structure(data, form)
+    problems = list(structure.problems)
+    lost = {(key,) for key in structure.lost}
+    if structure.lost <= _LEAVES:
+        kept = {key: entry for key, entry in structure.content.items() if key not in structure.lost}
+        try:
+            description = _description(kept, form)
+        except MechanismError as error:
+            problems += [p for p in error.problems if p.key[:1] not in lost]
+        else:
+            if not problems:
+                return ReadFile(description=description, lines=lines, name=name)
+    raise _located(problems, lines, name) from None
+
+
+def _located(problems: Iterable[Problem], lines: Lines, name: str) -> MechanismFileError:
+    found = [p if p.line is not None else p.at_line(lines.line(p.key)) for p in problems]
+    return MechanismFileError(sorted(found, key=lambda p: p.line or 0), name)
+
+
+def _check_format(data: dict[str, Any], lines: Lines, name: str) -> None:
+    """A file of another format has other rules: nothing else is said about it."""
+    number = data.get("format", FORMAT)
+    if type(number) is int and number > FORMAT:
+        message = (
+            f"is {number if number < 10**9 else 'too large'}, this version of Linkwork "
+            f"reads format = {FORMAT}: update Linkwork"
+        )
+        raise _located([Problem(key=("format",), message=message)], lines, name)
+
+
+def _description(content: dict[str, Any], form: Form) -> Linkage | Loops | PlainEquations:
+    """The mechanism described by the checked content of a file."""
+    fields: dict[str, Any] = {
+        key: content[key]
+        for key in ("name", "length", "angle", "source", "dimensions", "outputs")
+        if key in content
+    }
+    fields["inputs"] = tuple(map(_input, content.get("input", ())))
+    fields["trace"] = tuple(content.get("trace", {}).get("points", ()))
+    if form is LOOPS:
+        own = {key: content.get(key, {}) for key in ("loops", "guess", "points", "links")}
+        return Loops(**fields, **own)
+    if form is EQUATIONS:
+        return PlainEquations(**fields, equations=content["equations"], guess=content["guess"])
+    return Linkage(
+        **fields,
+        **{key: content.get(key, {}) for key in ("points", "links", "lengths", "angles")},
+        slots=tuple(Slot(**table) for table in content.get("slots", ())),
+        sliders=tuple(Slider(**table) for table in content.get("sliders", ())),
+        cylinders=tuple(Cylinder(**table) for table in content.get("cylinders", ())),
+        sketch=content.get("sketch", False),
+    )
+
+
+def _input(table: dict[str, Any]) -> Input:
+    renamed = {"from": "start", "to": "stop"}
+    return Input(**{renamed.get(key, key): entry for key, entry in table.items()})

@@ -1,0 +1,114 @@
+"""The JSON Schema of mechanism files, for editors that complete and check while one types."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from linkwork.textfile.keys import (
+    FORMS,
+    Constant,
+    Flag,
+    Form,
+    Formula,
+    Key,
+    Kind,
+    ListOf,
+    Named,
+    Number,
+    Speed,
+    Table,
+    Tables,
+    Text,
+)
+
+__all__ = ["json_schema", "schema_text"]
+
+_DRAFT = "https://json-schema.org/draft/2020-12/schema"
+_FORMULA = {"type": "string", "minLength": 1}
+_SHARED: dict[str, dict[str, Any]] = {
+    "number": {
+        "description": "A number, or a formula of the named dimensions in quotes",
+        "anyOf": [{"type": "number"}, _FORMULA],
+    },
+    "formula": {"description": "A formula in quotes", **_FORMULA},
+    "equation": {
+        "description": "An equation in quotes: left = right",
+        "type": "string",
+        "pattern": "^[^=]+=[^=]+$",
+    },
+    "speed": {
+        "description": 'A number (units per second), or text with a unit: "300 rpm"',
+        "anyOf": [{"type": "number"}, _FORMULA],
+    },
+}
+
+
+def json_schema() -> dict[str, Any]:
+    """The schema (draft 2020-12) as a dictionary; one definition for each form."""
+    definitions = {form.definition: _form(form) for form in FORMS}
+    return {
+        "$schema": _DRAFT,
+        "title": "Linkwork mechanism file",
+        "description": "A planar mechanism: by points and links, by loop equations, or by "
+        "plain equations",
+        "oneOf": [{"$ref": f"#/$defs/{name}"} for name in definitions],
+        "$defs": {**definitions, **_SHARED},
+    }
+
+
+def schema_text() -> str:
+    """The schema as it is published."""
+    return json.dumps(json_schema(), indent=2, ensure_ascii=False) + "\n"
+
+
+def _form(form: Form) -> dict[str, Any]:
+    return {"title": f"Linkwork {form.title} file", "description": form.doc, **_fields(form.keys)}
+
+
+def _fields(keys: tuple[Key, ...]) -> dict[str, Any]:
+    """A table whose keys are known."""
+    found: dict[str, Any] = {
+        "type": "object",
+        "properties": {key.name: _described(key) for key in keys},
+        "additionalProperties": False,
+    }
+    required = [key.name for key in keys if key.required]
+    return {**found, "required": required} if required else found
+
+
+def _described(key: Key) -> dict[str, Any]:
+    return {"title": key.name, "description": key.doc, **_schema(key.kind)}
+
+
+def _schema(kind: Kind) -> dict[str, Any]:
+    match kind:
+        case Constant(number):
+            return {"const": number}
+        case Text(words):
+            return {"type": "string", "enum": list(words)} if words else {"type": "string"}
+        case Number():
+            return {"$ref": "#/$defs/number"}
+        case Formula(equation):
+            return {"$ref": "#/$defs/equation" if equation else "#/$defs/formula"}
+        case Speed():
+            return {"$ref": "#/$defs/speed"}
+        case Flag():
+            return {"type": "boolean"}
+        case Table(keys):
+            return _fields(keys)
+        case Tables(keys, single):
+            many = {"type": "array", "items": _fields(keys)}
+            return {"anyOf": [_fields(keys), many]} if single else many
+        case ListOf(of, _, least, most):
+            found = {"type": "array", "items": _schema(of), "minItems": least}
+            return found if most is None else {**found, "maxItems": most}
+        case Named(of, words):
+            return {"type": "object", "additionalProperties": _schema(of), **_key_names(words)}
+
+
+def _key_names(words: int) -> dict[str, Any]:
+    """How the keys of a table are written, where they are several names."""
+    if words < 2:
+        return {}
+    return {"propertyNames": {"pattern": r"^\s*\S+" + r"\s+\S+" * (words - 1) + r"\s*$"}}

@@ -1,0 +1,218 @@
+"""Whether TOML data has the tables, keys and types of :mod:`~linkwork.textfile.keys`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import Any
+
+from linkwork.foundation.errors import Problem, choices
+from linkwork.foundation.names import canonical
+from linkwork.textfile.keys import (
+    FORMS,
+    Constant,
+    Flag,
+    Form,
+    Formula,
+    Key,
+    Kind,
+    ListOf,
+    Named,
+    Number,
+    Speed,
+    Table,
+    Tables,
+    Text,
+)
+from linkwork.textfile.lines import Path
+
+__all__ = ["Structure"]
+
+_LONGEST_SHOWN = 40  # characters of a value in a message
+
+
+class Structure:
+    """The checked content of a file.
+
+    ``problems`` lists what is wrong; ``lost`` names the top-level tables and keys of which
+    something had to be left out, so that checks of their meaning would blame the wrong place.
+    """
+
+    def __init__(self, data: dict[str, Any], form: Form) -> None:
+        self.form = form
+        self.problems: list[Problem] = []
+        self.lost: set[str] = set()
+        self.content = self._table(data, form.keys, ())
+
+    def _wrong(self, path: Path, message: str, lost: bool = True) -> None:
+        self.problems.append(Problem(key=path, message=message))
+        if lost:
+            self.lost.add(str(path[0]))
+
+    def _table(self, data: dict[str, Any], keys: Iterable[Key], path: Path) -> dict[str, Any]:
+        """The known keys of a table with their checked values."""
+        known = {key.name: key for key in keys}
+        checked = {}
+        for name, entry in data.items():
+            if name in known:
+                checked[name] = self._value(entry, known[name].kind, (*path, name))
+            else:
+                self._unknown_key(name, set(data), list(known), path)
+        for key in known.values():
+            if key.required and key.name not in data:
+                doc = key.doc[:1].lower() + key.doc[1:]
+                self._wrong((*path, key.name), f"is missing: {doc}")
+        return checked
+
+    def _unknown_key(self, name: str, present: set[str], known: list[str], path: Path) -> None:
+        table = _table_text(path)
+        others = [form for form in FORMS if name in _names_in_form(form, path)]
+        free = [key for key in known if key not in present]
+        if others and not path:
+            titles = " and ".join(f"{form.title} files" for form in others)
+            message = f"belongs to {titles}, this is a {self.form.title} file{_why(self.form)}"
+        elif others:
+            titles = " and ".join(f"{form.title} files" for form in others)
+            message = f"belongs to {titles} {choices(f'keys of {table} here', known, name)}"
+        else:
+            message = f"is not a key of {table} {choices('keys', known, name)}"
+        # A misspelt key would be reported again as missing, or as having no effect.
+        lost = bool(others or get_close_matches(name, free, n=1))
+        self._wrong((*path, name), message, lost)
+
+    def _value(self, entry: Any, kind: Kind, path: Path) -> Any:
+        """The entry if it is of its kind, converted; otherwise a problem is noted."""
+        match kind:
+            case Table(keys):
+                return self._sub_table(entry, keys, path)
+            case Tables():
+                return self._tables(entry, kind, path)
+            case Named():
+                return self._named(entry, kind, path)
+            case ListOf():
+                return self._list(entry, kind, path)
+            case Number():
+                self._check_number(entry, "a number or a formula in quotes", path)
+            case Speed():
+                self._check_number(entry, 'a number or text such as "300 rpm"', path)
+            case Text(words) if words and entry not in words:
+                wanted = " or ".join(f'"{word}"' for word in words)
+                self._wrong(path, f"must be {wanted}, got {_shown(entry)}")
+            case Text() if not isinstance(entry, str):
+                self._wrong(path, f"must be text in quotes, got {_shown(entry)}")
+            case Formula(equation) if not isinstance(entry, str):
+                what = "an equation" if equation else "a formula"
+                self._wrong(path, f"must be {what} in quotes, got {_shown(entry)}")
+            case Flag() if not isinstance(entry, bool):
+                self._wrong(path, f"must be true or false, got {_shown(entry)}")
+            case Constant(number) if type(entry) is not int or entry != number:
+                self._wrong(path, f"must be {number}, got {_shown(entry)}")
+        return entry
+
+    def _check_number(self, entry: Any, wanted: str, path: Path) -> None:
+        if isinstance(entry, str):
+            return
+        if isinstance(entry, bool) or not isinstance(entry, int | float):
+            self._wrong(path, f"must be {wanted}, got {_shown(entry)}")
+        elif not _finite(entry):
+            self._wrong(path, f"must be a finite number, got {_shown(entry)}")
+
+    def _sub_table(self, entry: Any, keys: tuple[Key, ...], path: Path) -> dict[str, Any]:
+        if isinstance(entry, dict):
+            return self._table(entry, keys, path)
+        self._wrong(path, f"must be a table {_table_text(path)}, got {_shown(entry)}")
+        return {}
+
+    def _tables(self, entry: Any, kind: Tables, path: Path) -> list[dict[str, Any]]:
+        if isinstance(entry, dict) and kind.single:
+            return [self._table(entry, kind.keys, path)]
+        if not isinstance(entry, list) or not all(isinstance(each, dict) for each in entry):
+            wanted = f"[[{path[-1]}]]" if not kind.single else f"[{path[-1]}] or [[{path[-1]}]]"
+            self._wrong(path, f"must be written as {wanted}, got {_shown(entry)}")
+            return []
+        return [self._table(each, kind.keys, (*path, k)) for k, each in enumerate(entry)]
+
+    def _named(self, entry: Any, kind: Named, path: Path) -> dict[str, Any]:
+        if not isinstance(entry, dict):
+            self._wrong(path, f"must be a table {_table_text(path)}, got {_shown(entry)}")
+            return {}
+        taken: dict[str, str] = {}
+        for name in entry:
+            folded = " ".join(canonical(name).split()) if kind.words != 1 else None
+            if kind.words and folded is not None and folded in taken:
+                self._wrong((*path, name), f'is the same as "{taken[folded]}": leave one out')
+            taken[folded or name] = name
+        return {name: self._value(each, kind.of, (*path, name)) for name, each in entry.items()}
+
+    def _list(self, entry: Any, kind: ListOf, path: Path) -> Any:
+        if not isinstance(entry, list):
+            self._wrong(path, f"must be a list {_list_text(kind)}, got {_shown(entry)}")
+            return []
+        short = len(entry) < kind.least
+        if short or (kind.most is not None and len(entry) > kind.most):
+            self._wrong(path, f"needs {_count_text(kind)}, got {len(entry)}")
+        return [self._value(each, kind.of, (*path, k)) for k, each in enumerate(entry)]
+
+
+def _finite(number: float) -> bool:
+    try:
+        return math.isfinite(number)
+    except OverflowError:  # a whole number beyond every float
+        return False
+
+
+def _names_in_form(form: Form, path: Path) -> set[str]:
+    """The keys that another form has at the same place."""
+    keys: tuple[Key, ...] = form.keys
+    for part in (part for part in path if isinstance(part, str)):
+        kind = next((key.kind for key in keys if key.name == part), None)
+        keys = kind.keys if isinstance(kind, Table | Tables) else ()
+    return {key.name for key in keys}
+
+
+def _why(form: Form) -> str:
+    return f" because it has [{form.marker}]" if form.marker else ": it has no [loops]"
+
+
+def _table_text(path: Path) -> str:
+    names = [part for part in path if isinstance(part, str)]
+    if not names:
+        return "the file"
+    inner = ".".join(names)
+    return f"[[{inner}]]" if isinstance(path[-1], int) else f"[{inner}]"
+
+
+def _list_text(kind: ListOf) -> str:
+    return "[x, y]" if isinstance(kind.of, Number) else '["A", "B"]'
+
+
+def _count_text(kind: ListOf) -> str:
+    words = {0: "no", 1: "one", 2: "two"}
+    least, most = words[kind.least], words.get(kind.most or 0)
+    plural = "" if kind.least == kind.most == 1 else "s"
+    if kind.most is None:
+        return f"at least {least} {kind.noun}"
+    return f"{least if least == most else f'{least} or {most}'} {kind.noun}{plural}"
+
+
+def _shown(entry: Any) -> str:
+    """A value as it would be written in TOML, cut short."""
+    match entry:
+        case bool():
+            return "true" if entry else "false"
+        case str():
+            short = entry if len(entry) <= _LONGEST_SHOWN else entry[:_LONGEST_SHOWN] + "…"
+            return f'"{short}"'
+        case dict():
+            return "a table"
+        case list():
+            return "a list"
+        case float():
+            return f"{entry}"
+        case int() if abs(entry) >= 10**_LONGEST_SHOWN:
+            return f"a whole number of {entry.bit_length()} bits"
+        case int():
+            return str(entry)
+        case _:
+            return f"the {type(entry).__name__} {entry}"

@@ -1,0 +1,177 @@
+"""From the bytes of a file to TOML data: hostile or broken ones are refused with a reason."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any, NoReturn
+
+from linkwork.foundation.errors import MechanismFileError, Problem, choices
+from linkwork.foundation.names import canonical
+from linkwork.textfile.tokens import Token, Tokens
+
+__all__ = ["LARGEST", "bytes_of", "data_of", "text_of"]
+
+#: Bytes of the largest file that is read.
+LARGEST = 1_000_000
+_DEEPEST = 20  # brackets inside each other; the format needs three
+_MOST_PARTS = 8  # of a dotted key; the parser's memory grows with their square
+_LONGEST_WORD = 400  # bare keys and numbers: longer numbers are refused by Python itself
+_PLACE = re.compile(r" \((?:at line (\d+), column (\d+)|at end of document)\)$")
+_TWICE = re.compile(r"cannot declare \('(.*)'(?:,)?\) twice")
+_SEPARATOR = "', '"
+_NOT_QUOTED = re.compile(r"[\w']+")
+
+
+def _refuse(name: str, message: str, line: int | None = None) -> NoReturn:
+    raise MechanismFileError([Problem(key=(), message=message, line=line)], name)
+
+
+def bytes_of(path: Path, name: str) -> bytes:
+    """The bytes of a file.
+
+    Raises
+    ------
+    MechanismFileError
+        If there is no such file, or it cannot be read or is too large.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST + 1)
+            if len(data) > LARGEST:
+                _refuse(name, _too_large(max(path.stat().st_size, len(data))))
+            return data
+    except FileNotFoundError:
+        _refuse(name, f"there is no such file {_files_beside(path)}")
+    except IsADirectoryError:
+        _refuse(name, f"is a folder: name one file in it {_files_beside(path / 'x')}")
+    except (OSError, ValueError) as error:
+        if path.is_dir():  # opening a folder is a PermissionError on Windows
+            _refuse(name, f"is a folder: name one file in it {_files_beside(path / 'x')}")
+        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+        _refuse(name, f"cannot be read: {reason}")
+
+
+def _files_beside(path: Path) -> str:
+    try:
+        found = sorted(other.name for other in path.parent.glob("*.toml"))
+    except (OSError, ValueError):
+        found = []
+    return choices("TOML files there", found, path.name)
+
+
+def _too_large(size: int) -> str:
+    return f"has {size / 1e6:.1f} MB: at most {LARGEST / 1e6:.0f} MB is read"
+
+
+def text_of(data: bytes, name: str) -> str:
+    """The text of UTF-8 bytes with or without BOM.
+
+    Raises
+    ------
+    MechanismFileError
+        If the bytes are too many or no UTF-8.
+    """
+    if len(data) > LARGEST:
+        _refuse(name, _too_large(len(data)))
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        _refuse(name, "is UTF-16 text: save it as UTF-8", 1)
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        _refuse(
+            name,
+            f"byte {error.start} (0x{data[error.start]:02x}) is not UTF-8: save the file as UTF-8",
+            line,
+        )
+
+
+def data_of(text: str, name: str) -> dict[str, Any]:
+    """The data of a TOML text.
+
+    Raises
+    ------
+    MechanismFileError
+        If the text is too long, too deeply nested, or no TOML; with line and column.
+    """
+    if len(text) > LARGEST:
+        _refuse(name, _too_large(len(text)))
+    text = text.removeprefix("\ufeff").replace("\r\n", "\n")
+    if "\0" in text:
+        at = text.index("\0")
+        _refuse(name, "contains a NUL character: not a text file", text.count("\n", 0, at) + 1)
+    if not text.strip():
+        _refuse(name, 'is empty: "linkwork examples" lists files to start from', 1)
+    _check_limits(Tokens(text), name)
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        _refuse(name, *_explained(str(error), text))
+    except (ValueError, RecursionError, OverflowError) as error:
+        # The limits leave none that is known; the parser may find others.
+        _refuse(name, f"is not TOML: {error}", 1)
+
+
+def _check_limits(tokens: Tokens, name: str) -> None:
+    """Refuse what would cost the parser memory or recursion out of all proportion."""
+    depth = parts = 0
+    previous: Token | None = None
+    for token in tokens.all:
+        dotted = previous is not None and previous.kind == "sign" and previous.text == "."
+        if token.kind == "sign":
+            depth += (token.text in "[{") - (token.text in "]}")
+        elif token.kind in ("word", "string"):
+            parts = parts + 1 if dotted else 1
+            if token.kind == "word" and len(token.text) > _LONGEST_WORD:
+                what = f"a word of {len(token.text)} characters: at most {_LONGEST_WORD} are read"
+                _refuse(name, what, tokens.line(token.at))
+        if depth > _DEEPEST:
+            _refuse(name, f"brackets nested deeper than {_DEEPEST} levels", tokens.line(token.at))
+        if parts > _MOST_PARTS:
+            what = f"a dotted key of more than {_MOST_PARTS} parts"
+            _refuse(name, what, tokens.line(token.at))
+        previous = token
+
+
+def _explained(message: str, text: str) -> tuple[str, int]:
+    """The parser's message with a hint, and its line."""
+    rows = text.split("\n")
+    place = _PLACE.search(message)
+    what = _PLACE.sub("", message)
+    what = what[:1].lower() + what[1:]
+    if twice := _TWICE.fullmatch(what):
+        what = f"the table [{twice[1].replace(_SEPARATOR, '.')}] begins twice"
+    if place is None or place[1] is None:
+        line = max((k for k, row in enumerate(rows, 1) if row.strip()), default=1)
+        return f"is not TOML: {what} (at the end){_hint(what, rows[line - 1], None)}", line
+    line, column = int(place[1]), int(place[2])
+    row = rows[line - 1]
+    return f"is not TOML: {what} (column {column}){_hint(what, row, column)}", line
+
+
+def _hint(what: str, row: str, column: int | None) -> str:
+    """What to do about it; empty if there is nothing certain to say."""
+    if what == "cannot overwrite a value":
+        return f": {row.split('=')[0].strip()} is given twice"
+    if what.startswith("unclosed"):
+        return ": a closing bracket or comma is missing before this"
+    if what == r"illegal character '\n'":
+        return ": the closing quote is missing"
+    if column is None or column > len(row):
+        return ""
+    if what == "invalid value":
+        return ": text, names and formulas stand in quotes"
+    if row[column - 1] == "," and re.search(r"=\s*[-+]?\d+,\d+\s*(#.*)?$", row):
+        return ": decimals have a point"
+    if row[column - 1] == "°":
+        return ': numbers stand without unit; angle = "deg" says what they mean'
+    word = next((w.group() for w in _NOT_QUOTED.finditer(row) if w.end() >= column), "")
+    if "=" in row[: column - 1] and "{" not in row:
+        return ": text, names and formulas stand in quotes"
+    if row[column - 1].isascii() or not word:
+        return ""
+    spelled = canonical(word)
+    other = f", or write {spelled}" if spelled.isascii() and spelled.isidentifier() else ""
+    return f': TOML wants quotes around names that are not ASCII: "{word}"{other}'

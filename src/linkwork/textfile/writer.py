@@ -1,0 +1,162 @@
+"""Writing mechanism files: what is written reads back as the same description."""
+
+from __future__ import annotations
+
+import os
+import secrets
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwork.foundation.errors import InputError
+from linkwork.mechanism.description import Description
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loops import Loops, PlainEquations
+from linkwork.mechanism.parts import Input
+from linkwork.textfile.keys import FORMAT
+
+if TYPE_CHECKING:
+    from tomlkit import TOMLDocument
+
+__all__ = ["save", "write_text"]
+
+_Tables = dict[str, dict[str, Any] | list[dict[str, Any]]]
+
+
+def write_text(description: Description) -> str:
+    """The mechanism as a TOML text; reads back as the same description.
+
+    Numbers keep every digit and names their spelling and order; what has its default value is
+    left out.
+    """
+    import tomlkit
+
+    document = tomlkit.document()
+    for key, entry in _head(description).items():
+        document.add(key, entry)
+    for name, table in _tables(description).items():
+        _add(document, name, table)
+    return tomlkit.dumps(document)
+
+
+def save(description: Description, path: Path | str) -> None:
+    """Write the mechanism to a file: wholly, or not at all.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written; an older file of that name is then unchanged.
+    """
+    text = write_text(description)
+    target = Path(path)
+    try:
+        target = target.resolve()
+        _replace(target, text.encode("utf-8"))
+    except (OSError, ValueError, RuntimeError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+        raise InputError(f'"{path}" cannot be written: {reason}') from None
+
+
+def _replace(target: Path, data: bytes) -> None:
+    """Write beside the target, then rename: readers see the old file or the new one."""
+    beside = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}")
+    try:
+        with beside.open("xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        if target.exists():
+            beside.chmod(target.stat().st_mode & 0o777)
+        os.replace(beside, target)
+    except BaseException:
+        beside.unlink(missing_ok=True)
+        raise
+
+
+def _head(description: Description) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "format": FORMAT,
+        "name": description.name,
+        "length": description.length,
+        "angle": description.angle.value,
+    }
+    if description.source:
+        found["source"] = description.source
+    if isinstance(description, Linkage) and description.sketch:
+        found["sketch"] = True
+    return found
+
+
+def _tables(description: Description) -> _Tables:
+    """Every table that has something to say, in the order in which people read."""
+    found: _Tables = {"dimensions": dict(description.dimensions)}
+    match description:
+        case Linkage():
+            for name in ("points", "links", "lengths", "angles"):
+                found[name] = dict(getattr(description, name))
+            for name in ("slots", "sliders", "cylinders"):
+                found[name] = [_given(part) for part in getattr(description, name)]
+            found |= _inputs(description)
+        case Loops():
+            found["loops"] = dict(description.loops)
+            found["guess"] = dict(description.guess)
+            found |= _inputs(description)
+            found["points"] = dict(description.points)
+            found["links"] = dict(description.links)
+        case PlainEquations():
+            found["equations"] = dict(description.equations)
+            found["guess"] = dict(description.guess)
+            found |= _inputs(description)
+        case _:
+            raise TypeError(f"a {type(description).__name__} has no file format")
+    found["trace"] = {"points": description.trace} if description.trace else {}
+    found["outputs"] = dict(description.outputs)
+    needed = ("guess",)  # the reader asks for it even where there is nothing to guess
+    return {name: table for name, table in found.items() if table or name in needed}
+
+
+def _inputs(description: Description) -> _Tables:
+    tables = [_input(which) for which in description.inputs]
+    return {"input": tables[0] if len(tables) == 1 else tables}
+
+
+def _input(which: Input) -> dict[str, Any]:
+    renamed = {"start": "from", "stop": "to"}
+    return {renamed.get(key, key): entry for key, entry in _given(which).items()}
+
+
+def _given(part: object) -> dict[str, Any]:
+    return {key: entry for key, entry in vars(part).items() if entry is not None}
+
+
+def _add(document: TOMLDocument, name: str, table: dict[str, Any] | list[dict[str, Any]]) -> None:
+    import tomlkit
+
+    document.add(tomlkit.nl())
+    if isinstance(table, dict):
+        document.add(name, _filled(table))
+        return
+    tables = tomlkit.aot()
+    for each in table:
+        tables.append(_filled(each))
+    document.add(name, tables)
+
+
+def _filled(entries: Mapping[str, Any]) -> Any:
+    import tomlkit
+
+    table = tomlkit.table()
+    for key, entry in entries.items():
+        table.add(key, _plain(entry))
+    return table
+
+
+def _plain(entry: Any) -> Any:
+    """Lists for tuples, and plain numbers for those of other packages."""
+    match entry:
+        case bool() | str() | int():
+            return entry
+        case list() | tuple():
+            return [_plain(each) for each in entry]
+        case _:
+            return float(entry)

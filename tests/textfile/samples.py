@@ -1,0 +1,172 @@
+"""Mechanism files that are right: one of each form, and one with every table."""
+
+from __future__ import annotations
+
+__all__ = ["SAMPLES"]
+
+FOUR_BAR = """\
+format = 1
+name = "Four-bar"
+length = "mm"
+angle = "deg"
+
+[points]
+O2 = [0, 0]
+A = [35, 20]
+B = [146, 66]
+O4 = [100, 0]
+
+[links]
+ground = ["O2", "O4"]
+crank = ["O2", "A"]
+coupler = ["A", "B"]
+rocker = ["O4", "B"]
+
+[lengths]
+"O2 A" = 40
+"A B" = 120
+"O4 B" = 80
+"O2 O4" = 100
+
+[input]
+link = "crank"
+from = 0
+to = 360
+step = 1
+"""
+
+QUICK_RETURN = """\
+format = 1
+name = "Shaper with everything"
+angle = "deg"
+source = "drawn for the tests"
+
+[dimensions]
+a = 40
+b = "2*a + 10"   # a formula
+
+[points]
+O2 = [0, 100]
+O4 = [0, 0]
+A = ["a", 100]
+P = [20, 150]
+Q = ["a", 300]
+D = [0, "b"]
+S = [-50, 300]
+T = [200, 300]
+K = [300, 0]
+
+[links]
+ground = ["O2", "O4", "S", "T", "K"]
+crank = ["O2", "A"]
+rocker = ["O4", "P", "D"]
+ram = ["Q"]
+
+[lengths]
+"O2 A" = "a"
+"O4 P" = 151.3
+
+[angles]
+"P O4 D" = 7.5
+
+[[slots]]
+name = "d"
+point = "A"
+on = "rocker"
+line = ["O4", "P"]
+
+[[sliders]]
+name = "s16"
+link = "ram"
+points = ["Q"]
+on = "ground"
+line = ["S", "T"]
+offset = 0
+angle = 0
+
+[[cylinders]]
+name = "boom_cylinder"
+between = ["K", "Q"]
+
+[[input]]
+link = "crank"
+relative_to = "ground"
+from = 0
+to = 90
+step = 1
+speed = "300 rpm"
+
+[[input]]
+cylinder = "boom_cylinder"
+from = "a"
+to = 85
+step = 0.5
+speed = 50
+
+[trace]
+points = ["P"]
+
+[outputs]
+mu = "rocker - crank"
+"""
+
+RAPIER = """\
+format = 1
+name = "Rapier drive of a loom"
+length = "mm"
+angle = "deg"
+
+[dimensions]
+a1 = 340
+a2 = 250
+a3 = "a1 + 10"
+b1 = 100
+
+[loops]
+"A0 A B" = "a2*e^(i*θ12) + a3*e^(i*θ13) = s16 + i*b1"
+
+[guess]
+"θ12" = 60
+"θ13" = 200
+s16 = 400
+
+[input]
+variable = "θ12"
+from = 0
+to = 360
+step = 1
+
+[points]
+A0 = "0"
+A = "a2*e^(i*theta12)"
+
+[links]
+crank = ["A0", "A"]
+
+[trace]
+points = ["A"]
+
+[outputs]
+lift = "s16 - a1"
+"""
+
+CUBIC = """\
+format = 1
+name = "A cubic that makes Newton cycle"
+
+[dimensions]
+c = 2
+
+[equations]
+f = "x^3 - c*x + c = 0"
+
+[guess]
+x = -2
+"""
+
+SAMPLES = {
+    "four_bar": FOUR_BAR,
+    "quick_return": QUICK_RETURN,
+    "rapier": RAPIER,
+    "cubic": CUBIC,
+}
