@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, Self
@@ -23,7 +24,17 @@ from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 from linkwork.textfile.reader import ReadFile, read_file, read_text
 
-__all__ = ["Mechanism", "example", "examples", "linkage", "load", "loads", "loops", "plain_equations"]
+__all__ = [
+    "Mechanism",
+    "example",
+    "example_text",
+    "examples",
+    "linkage",
+    "load",
+    "loads",
+    "loops",
+    "plain_equations",
+]
 
 
 class Mechanism:
@@ -79,6 +90,13 @@ class Mechanism:
     def with_dimensions(self, **changes: Number) -> Self:
         """A copy with named dimensions replaced."""
         return type(self)(self.description.with_dimensions(changes))
+
+    def changed(self, **parts: Any) -> Self:
+        """A copy with parts of the description replaced: ``changed(guess={...})``.
+
+        Arguments are those the mechanism was made with: ``points``, ``lengths``, ``guess``, …
+        """
+        return type(self)(replace(self.description, **parts))
 
     def check(self) -> CheckReport:
         """What was understood: loops, unknowns, blocks, mobility, the start."""
@@ -197,7 +215,9 @@ def example(name: str) -> Mechanism:
 
 
 def linkage(**parts: Any) -> Mechanism:
-    """A mechanism from points and links; arguments as :class:`~linkwork.mechanism.linkage.Linkage`."""
+    """A mechanism from points and links; arguments as
+    :class:`~linkwork.mechanism.linkage.Linkage`.
+    """
     return Mechanism(Linkage(**parts))
 
 
@@ -211,5 +231,3 @@ def plain_equations(**parts: Any) -> Mechanism:
     :class:`~linkwork.mechanism.loops.PlainEquations`.
     """
     return Mechanism(PlainEquations(**parts))
-
-

@@ -22,6 +22,7 @@ from linkwork.drawing import (
 )
 from linkwork.drawing.link_symbols import convex_outline, uncovered
 from linkwork.drawing.trace_path import drawn_once, found_runs
+from linkwork.foundation.status import Status
 
 MECHANISMS = [
     "four_bar", "slider_crank", "inverted_slider_crank", "collar", "six_link", "boom", "jansen",
@@ -209,6 +210,14 @@ def test_a_sliding_bar_with_two_guided_points_has_one_block_at_its_pin(six_link)
     assert close(middle, z(position.points["E"]), scene.measures.size)
 
 
+def test_a_sliding_bar_without_pins_has_one_block_at_its_first_point(six_link):
+    skeleton = replace(six_link.skeleton, pins=("A0", "A", "B", "C0", "D"))
+    position = replace(six_link.position(60), skeleton=skeleton)
+    [block] = scene_of(position).select(Polygon, Role.SLIDER)
+    middle = sum(map(z, block.points)) / 4
+    assert close(middle, z(position.points["E"]), 1000)
+
+
 def test_a_slot_runs_along_its_link_and_holds_the_pin_in_every_position(inverted_slider_crank):
     motion = inverted_slider_crank.motion()
     for value in (0, 50, 180, 270):
@@ -279,7 +288,9 @@ def test_a_collar_rides_on_a_rod_that_reaches_from_its_link_over_the_travel(coll
     assert max(w.real for w in rod) > 125
     half = scene.measures.block[0]
     at = abs(z(position.points["A"]))
-    assert not [w for w in rod if at - half * 0.99 < w.real < at + half * 0.99]
+    for start, end in zip(rod[::2], rod[1::2], strict=True):
+        low, high = sorted((start.real, end.real))
+        assert high < at - 0.99 * half or low > at + 0.99 * half
 
 
 def test_an_offset_collar_hangs_on_an_arm(collar):
@@ -314,7 +325,10 @@ def test_a_cylinder_has_its_barrel_on_the_line_and_a_rod_to_the_second_point(boo
         base, tip = (z(position.points[name]) for name in "KL")
         along = (tip - base) / abs(tip - base)
         corners = [(z(p) - base) / along for p in barrel.points]
-        assert sum(corners).imag == pytest.approx(0, abs=1e-9)
+        sides = [w.imag / scene.measures.barrel for w in corners]
+        assert sides == pytest.approx([-1, -1, 1, 1])
+        assert corners[0].real == pytest.approx(corners[3].real)
+        assert corners[1].real == pytest.approx(corners[2].real)
         assert 0 < min(w.real for w in corners) < max(w.real for w in corners) < 70
         lines = scene.select(Polyline, Role.LINK, of="ram")
         [rod] = [line for line in lines if abs(z(line.points[1]) - tip) < 1e-9]
@@ -322,15 +336,17 @@ def test_a_cylinder_has_its_barrel_on_the_line_and_a_rod_to_the_second_point(boo
         assert min(w.real for w in corners) < piston < max(w.real for w in corners)
 
 
-def test_a_barrel_keeps_its_length_while_the_cylinder_moves(boom):
-    motion = boom.motion()
+@pytest.mark.parametrize("values", [(70, 110, 150), (90, 95, 100)])
+def test_a_barrel_keeps_its_length_and_is_shorter_than_the_cylinder_ever_is(boom, values):
+    motion = replace(boom, inputs=values).motion()
     within = reach_of(motion)
     lengths = []
-    for value in (70, 95, 120):
+    for value in values:
         scene = scene_of(boom.position(value), motion, options=SceneOptions(within=within))
         [barrel] = scene.select(Polygon, Role.CYLINDER)
         lengths.append(abs(z(barrel.points[1]) - z(barrel.points[0])))
     assert lengths == pytest.approx([lengths[0]] * 3, rel=1e-12)
+    assert 0.3 * values[0] < lengths[0] < 0.9 * values[0]
 
 
 def test_the_input_arrow_turns_counter_clockwise_around_the_pivot_beside_the_links(four_bar):
@@ -363,6 +379,9 @@ def test_a_driven_slider_has_a_straight_arrow_along_its_line_off_the_block(slope
     beyond = [((z(p) - z(arrow.points[0])) / along).imag for p in (*block.points, *rail.points)]
     assert min(map(abs, beyond)) > scene.measures.pin
     assert len({b > 0 for b in beyond}) == 1
+    # The block lies between the arrow and the rail.
+    assert max(map(abs, beyond[4:])) == pytest.approx(max(map(abs, beyond[:4])))
+    assert min(map(abs, beyond[:4])) < min(map(abs, beyond[4:]))
 
 
 def test_a_driven_cylinder_has_a_straight_arrow_beside_it(boom):
@@ -395,6 +414,15 @@ def test_a_trace_is_broken_where_there_is_no_position(rocking_four_bar):
     assert all(math.isfinite(c) for trace in traces for p in trace.points for c in p)
     found = {p for p in zip(motion["P.x"], motion["P.y"], strict=True) if math.isfinite(p[0])}
     assert {p for trace in traces for p in trace.points} == found
+
+
+def test_a_row_that_failed_is_not_traced_even_if_it_holds_numbers(four_bar):
+    motion = four_bar.motion()
+    status = tuple(Status.LOST if k == 60 else s for k, s in enumerate(motion.status))
+    traces = scene_of(four_bar.position(50), replace(motion, status=status)).select(
+        Polyline, Role.TRACE
+    )
+    assert [len(trace.points) for trace in traces] == [60, 60]
 
 
 def test_runs_of_a_path_keep_lone_points_and_drop_nan():
@@ -443,5 +471,6 @@ def test_a_scaled_mechanism_has_the_same_picture_scaled(ternary):
     big = replace(ternary, at=lambda u: {n: 1000 * p for n, p in ternary.at(u).items()})
     one, other = scene_of(ternary.position(50)), scene_of(big.position(50))
     assert len(one.primitives) == len(other.primitives)
+    assert other.measures.stroke == pytest.approx(1000 * one.measures.stroke)
     for p, q in zip(one.primitives, other.primitives, strict=True):
         np.testing.assert_allclose(1000 * np.array(p.outline), q.outline, rtol=1e-9, atol=1e-6)

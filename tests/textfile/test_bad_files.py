@@ -34,7 +34,10 @@ def test_every_case_has_its_own_title() -> None:
 
 BAD_BYTES = {
     "10 MB": (b"# comment\n" * 1_000_000, "has 10.0 MB: at most 1 MB is read"),
-    "Latin-1": (b"# one\nname = \"M\xfcller\"\n", "byte 15 (0xfc) is not UTF-8: save the file as UTF-8"),
+    "Latin-1": (
+        b'# one\nname = "M\xfcller"\n',
+        "byte 15 (0xfc) is not UTF-8: save the file as UTF-8",
+    ),
     "UTF-16": ("format = 1".encode("utf-16"), "is UTF-16 text: save it as UTF-8"),
     "NUL": (b"format = 1\n\0", "contains a NUL character: not a text file"),
     "PNG": (b"\x89PNG\r\n\x1a\n\0\0", "byte 0 (0x89) is not UTF-8: save the file as UTF-8"),
@@ -88,7 +91,8 @@ def test_a_folder_is_no_file(tmp_path: Path) -> None:
     with pytest.raises(MechanismFileError) as caught:
         read_file(tmp_path)
     assert str(caught.value) == (
-        f"1 problem in {tmp_path}\n  is a folder: name one file in it (there are no TOML files there)"
+        f"1 problem in {tmp_path}\n"
+        "  is a folder: name one file in it (there are no TOML files there)"
     )
 
 

@@ -52,7 +52,7 @@ def drawn_once(path: Path, width: float) -> list[Path]:
     distance: npt.NDArray[np.float64] = np.abs(offset - share * step)
     # Neighbours along the path are always near: only pieces left behind for a while count.
     behind = reached[:, None] - reached[1:] > 4 * width
-    covered = ((distance <= width) & behind).any(axis=1)
+    covered = np.any((distance <= width) & behind, axis=1)
     kept = ~(covered[:-1] & covered[1:])
     edges = np.flatnonzero(np.diff(np.concatenate(([0], kept.astype(int), [0]))))
     return [path[a : b + 1] for a, b in zip(edges[::2], edges[1::2], strict=True)]

@@ -77,9 +77,7 @@ def phasor_rows(rows: Sequence[Iterable[Term]], index: Mapping[str, int]) -> Pha
     """Terms as arrays; ``index`` numbers the variables by symbol."""
     terms = [(k, term) for k, row in enumerate(rows) for term in row]
     phases = [
-        (t, index[name], weight)
-        for t, (_, term) in enumerate(terms)
-        for name, weight in term.phase
+        (t, index[name], weight) for t, (_, term) in enumerate(terms) for name, weight in term.phase
     ]
     return PhasorRows(
         rows=len(rows),
@@ -165,7 +163,9 @@ def _formula_row(
     left: object, right: object, equations: LoopEquations, index: Mapping[str, int]
 ) -> FormulaRow:
     used = dict.fromkeys(
-        node.name for side in (left, right) for node in names_in(side)  # type: ignore[arg-type]
+        node.name
+        for side in (left, right)
+        for node in names_in(side)  # type: ignore[arg-type]
     )
     names = tuple(name for name in used if name in index)
     return FormulaRow(

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from linkwork.equations.model import LinkAngle, Term
@@ -69,9 +68,7 @@ class Frames:
             a, b = cylinder.between
             frames.bodies.append(cylinder.name)
             frames.angle[cylinder.name] = LinkAngle(variable=cylinder.angle_name, constant=0.0)
-            rod = Term(
-                value=1.0 + 0j, length=cylinder.name, phase=((cylinder.angle_name, 1.0),)
-            )
+            rod = Term(value=1.0 + 0j, length=cylinder.name, phase=((cylinder.angle_name, 1.0),))
             frames.places[cylinder.name] = {a: Place(0j, base=a), b: Place(0j, (rod,), base=a)}
             span = linkage.sketched(b) - linkage.sketched(a)
             frames.lengths.append(cylinder.name)
@@ -95,9 +92,7 @@ class Frames:
         a, b, p = (linkage.sketched(q) for q in (*guide.line, point))
         self.start[guide.name] = ((p - a) * (b - a).conjugate()).real / abs(b - a)
 
-    def _turned(
-        self, z: complex, shown: Node | None, body: str, length: str | None = None
-    ) -> Term:
+    def _turned(self, z: complex, shown: Node | None, body: str, length: str | None = None) -> Term:
         """A vector of the body's frame as a term."""
         angle = self.angle[body]
         phase = ((angle.variable, 1.0),) if angle.variable is not None else ()
@@ -108,7 +103,8 @@ class Frames:
         a, b = self.places[body][start], self.places[body][end]
         terms = []
         if a.base != b.base:
-            terms.append(self._turned(b.fixed - a.fixed, self._distance(body, a.base, b.base), body))
+            shown = self._distance(body, a.base, b.base)
+            terms.append(self._turned(b.fixed - a.fixed, shown, body))
         terms += [term.negated() for term in a.sliding]
         terms += list(b.sliding)
         return terms

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import cmath
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,6 +14,7 @@ from linkwork.equations.model import (
     LinearEquation,
     LoopEquation,
     LoopEquations,
+    Output,
     PointPath,
     Term,
     Variable,
@@ -57,22 +59,21 @@ class _Writer:
         where = f'mechanism "{linkage.name}"'
         self.frames = frames = Frames.of(linkage, self.problems)
         self.problems.raise_any(where)
+        self.rank = {body: k for k, body in enumerate(frames.bodies)}
         self.start = dict(frames.start)
         for k, which in enumerate(linkage.inputs):
             self._drive(which, linkage.input_key(k))
         self.problems.raise_any(where)
         driven = {v.name for v in self.inputs}
         angles = [a for b in frames.bodies if (a := frames.angle[b].variable) == self._angle_of(b)]
-        unknowns = [
-            _variable(n, kind)
-            for n, kind in self._variables(angles)
-            if n not in driven
-        ]
+        unknowns = [_variable(n, kind) for n, kind in self._variables(angles) if n not in driven]
         structure = self._structure({v.name for v in unknowns})
         self._check_determined(structure)
         self.problems.raise_any(where)
         blocks = structure.blocks()
-        loops = [self._loop(walk) for block in blocks for walk in block.loops]
+        loops = [
+            self._loop(walk) for block in blocks for walk in sorted(block.loops, key=self._order)
+        ]
         self._place_points(blocks)
         variables = (*unknowns, *self.inputs)
         outputs = self._outputs(variables)
@@ -99,7 +100,7 @@ class _Writer:
         cylinder = {c.name: c.angle_name for c in self.linkage.cylinders}
         return cylinder.get(body, body)
 
-    def _variables(self, angles: list[str | None]) -> list[tuple[str, str]]:
+    def _variables(self, angles: Sequence[str | None]) -> list[tuple[str, str]]:
         named = [(a, "angle") for a in angles if a is not None]
         return named + [(length, "length") for length in self.frames.lengths]
 
@@ -160,8 +161,7 @@ class _Writer:
             found += [term.length for term in frames.places[body][point].sliding]
             variables[body, point] = tuple(n for n in found if n is not None and n in unknown)
         relations = [
-            tuple(name for name, _ in equation.terms if name in unknown)
-            for equation in self.linear
+            tuple(name for name, _ in equation.terms if name in unknown) for equation in self.linear
         ]
         return Structure(incidences, variables, relations, GROUND)
 
@@ -187,9 +187,13 @@ class _Writer:
                 f"remove an input or a link among {', '.join(tied) or 'those joined to ground'}",
             )
 
+    def _order(self, walk: tuple[Node, ...]) -> list[int]:
+        """Loops of one block are shown in the order in which the file names their links."""
+        return sorted(self.rank[name] for kind, name in walk if kind == "body")
+
     def _loop(self, walk: tuple[Node, ...]) -> LoopEquation:
         """The closed vector sum along a walk of bodies and points."""
-        crossings = _crossings(walk, self.frames.bodies)
+        crossings = _crossings(walk, self.rank)
         terms: list[Term] = []
         for start, body, end in crossings:
             terms += self.frames.between(body, start, end)
@@ -224,7 +228,7 @@ class _Writer:
         fixed = Term.vector(place.fixed, Name(place.base, place.base))
         return PointPath(parent=None, terms=(fixed, *place.sliding))
 
-    def _outputs(self, variables: tuple[Variable, ...]) -> Mapping[str, object]:
+    def _outputs(self, variables: tuple[Variable, ...]) -> dict[str, Output]:
         kinds = {v.symbol: v.kind for v in variables}
         kinds |= {canonical(link): "angle" for link in self.linkage.links if link != GROUND}
         known = self.linkage.numbers.known
@@ -240,7 +244,7 @@ def _variable(name: str, kind: str) -> Variable:
     )
 
 
-def _crossings(walk: tuple[Node, ...], bodies: list[str]) -> list[tuple[str, str, str]]:
+def _crossings(walk: tuple[Node, ...], order: Mapping[str, int]) -> list[tuple[str, str, str]]:
     """(entry point, body, exit point) along a walk; ground last, the driven side first."""
     count = len(walk)
     found = [
@@ -248,7 +252,6 @@ def _crossings(walk: tuple[Node, ...], bodies: list[str]) -> list[tuple[str, str
         for k, node in enumerate(walk)
         if node[0] == "body"
     ]
-    order = {body: k for k, body in enumerate(bodies)}
     lowest = min(range(len(found)), key=lambda k: order[found[k][1]])
     found = found[lowest + 1 :] + found[: lowest + 1]
     if len(found) > 2 and order[found[0][1]] > order[found[-2][1]]:
@@ -257,10 +260,9 @@ def _crossings(walk: tuple[Node, ...], bodies: list[str]) -> list[tuple[str, str
     return found
 
 
-def _subjects(columns: object) -> list[str]:
+def _subjects(columns: Iterable[str]) -> list[str]:
     """The bodies, else whatever there is, behind column labels."""
-    assert hasattr(columns, "__iter__")
-    labels = [str(label).split() for label in columns]
+    labels = [label.split() for label in columns]
     bodies = dict.fromkeys(parts[1] for parts in labels if parts[0] == "body")
     if bodies:
         return list(bodies)
@@ -268,11 +270,10 @@ def _subjects(columns: object) -> list[str]:
 
 
 def _longest(linkage: Linkage) -> float:
-    """The longest distance inside one link."""
-    spans = [
-        abs(a - b)
-        for local in linkage.shapes.local.values()
-        for a in local.values()
-        for b in local.values()
-    ]
-    return max(spans, default=0.0) or 1.0
+    """The longest link: the largest extent of a link's points, ground included."""
+    extents = []
+    for local in linkage.shapes.local.values():
+        x = [z.real for z in local.values()]
+        y = [z.imag for z in local.values()]
+        extents.append(math.hypot(max(x) - min(x), max(y) - min(y)))
+    return max(extents, default=0.0) or 1.0

@@ -42,7 +42,7 @@ def read_loops(mechanism: Loops) -> LoopEquations:
         numbers.known,
         numbers.unit,
         spelling.__contains__,
-        known=tuple([*spelling.values(), *mechanism.dimensions]),
+        known=(*spelling.values(), *mechanism.dimensions),
     )
     loops: list[LoopEquation] = []
     for label, text in mechanism.loops.items():
@@ -85,7 +85,9 @@ def read_loops(mechanism: Loops) -> LoopEquations:
         sliders={spelling[n]: n for n in spelling if kinds[n] == "length"},
         outputs=outputs,
         fixed=tuple(
-            name for name, path in points.items() if not any(t.phase or t.length for t in path.terms)
+            name
+            for name, path in points.items()
+            if not any(term.phase or term.length for term in path.terms)
         ),
         length_scale=_longest(loops),
     )
@@ -157,7 +159,8 @@ def _read_points(
             for node in names_in(tree):
                 if node.name in texts:
                     resolve(node.name, (*chain, name))
-            if state[name] == "open":
+            missing = any(n.name in texts and n.name not in reader.points for n in names_in(tree))
+            if state[name] == "open" and not missing:  # else the other point is reported
                 monomials = reader.read(tree, text)
                 reader.points[name] = monomials
                 terms = tuple(_term(m, text) for m in monomials if m.value)
@@ -287,4 +290,3 @@ def _check_plain(
         raise ExpressionError(f"column {node.column}: {message}", text, node.column)
     if "cis(" in text.replace(" ", ""):
         raise ExpressionError("cis is complex: for complex loop equations use [loops]", text, 1)
-

@@ -48,8 +48,8 @@ class Variable:
 class Term:
     """``sign · magnitude · s · exp(i (Σ weight θ + turn))``.
 
-    ``value`` is sign · magnitude · exp(i turn) as a number; ``magnitude`` is what is shown, ``None``
-    for 1. ``length`` names a variable length, ``phase`` variable angles with their weights.
+    ``value`` is sign · magnitude · exp(i turn) as a number; ``magnitude`` is what is shown,
+    ``None`` for 1. ``length`` names a variable length, ``phase`` variable angles with weights.
     """
 
     value: complex
@@ -195,4 +195,9 @@ class LoopEquations:
     @property
     def labels(self) -> tuple[str, ...]:
         """Names of all equations: loops, linear, real."""
-        return tuple(e.label for e in (*self.loops, *self.linear, *self.real))
+        named: tuple[LoopEquation | LinearEquation | RealEquation, ...] = (
+            *self.loops,
+            *self.linear,
+            *self.real,
+        )
+        return tuple(equation.label for equation in named)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from linkwork.equations.model import Output
 from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
 from linkwork.foundation.errors import ExpressionError, choices
-from linkwork.equations.model import Output
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Problems
 
@@ -33,7 +33,7 @@ def read_outputs(
         Points by their name; ``A.x`` and ``A.y`` are usable too.
     """
     coordinates = {canonical(f"{p}.{axis}"): "length" for p in points for axis in "xy"}
-    known = {**{name: "number" for name in dimensions}, **kinds, **coordinates}
+    known = {**dict.fromkeys(dimensions, "number"), **kinds, **coordinates}
     found: dict[str, Output] = {}
     for name, formula in formulas.items():
         try:

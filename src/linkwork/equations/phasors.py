@@ -196,7 +196,8 @@ class PhasorReader:
         """exp of i times a linear combination of angles."""
         if self.unit is AngleUnit.DEGREE and any(n.name == "pi" for n in names_in(shown)):
             raise self._error(
-                node, 'angles are in degrees here, so pi is out of place: write 180, or angle = "rad"'
+                node,
+                'angles are in degrees here, so pi is out of place: write 180, or angle = "rad"',
             )
         weights: dict[str, float] = {}
         turn = 0.0
@@ -226,8 +227,8 @@ class PhasorReader:
             if used.name not in self.numbers and self.variables(used.name):
                 raise self._error(
                     node,
-                    f"{node.function} of the unknown {used.spelling} has no place in a loop equation: "
-                    f"write e^(i*{used.spelling}), or use [equations]",
+                    f"{node.function} of the unknown {used.spelling} has no place in a loop "
+                    f"equation: write e^(i*{used.spelling}), or use [equations]",
                 )
         number = value(node, self.numbers, self.unit, self.text)
         return [Monomial(complex(number), node)]
@@ -240,9 +241,7 @@ def _negated(m: Monomial) -> Monomial:
         if not isinstance(shown, Negative)
         else shown.operand
     )
-    return Monomial(
-        -m.value, None if flipped == Number(1.0) else flipped, m.factors, m.phase
-    )
+    return Monomial(-m.value, None if flipped == Number(1.0) else flipped, m.factors, m.phase)
 
 
 def _whole(terms: list[Monomial], node: Node) -> Monomial:

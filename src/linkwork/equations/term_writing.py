@@ -118,7 +118,7 @@ class TermWriter:
         return abs(rotated.imag) > 1e-12 * abs(rotated)
 
     def _split(self, term: Term, wanted: str, sign: int, factors: list[str]) -> list[Signed]:
-        """A genuinely complex factor p + iq: (p + iq) e^{ix} has parts p cos - q sin, p sin + q cos."""
+        """(p + iq) e^{ix} has the parts p cos x - q sin x and p sin x + q cos x."""
         z = term.value * term.sign
         if wanted == "cos":
             pairs = ((z.real, "cos", 1), (z.imag, "sin", -1))

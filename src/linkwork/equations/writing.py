@@ -49,10 +49,8 @@ class EquationSheet:
         rows = []
         for imaginary in (False, True):
             for loop in self.equations.loops:
-                parts = [
-                    s for term in loop.terms for s in write.real_form(term, imaginary=imaginary)
-                ]
-                rows.append(joined(parts))
+                forms = [write.real_form(term, imaginary=imaginary) for term in loop.terms]
+                rows.append(joined(signed for form in forms for signed in form))
         for line in self.equations.linear:
             parts = [
                 Signed(-1 if w < 0 else 1, self._weighted(abs(w), notation.name(self._names[n])))
@@ -63,8 +61,7 @@ class EquationSheet:
                     Signed(-1 if line.constant < 0 else 1, notation.degrees(abs(line.constant)))
                 )
             rows.append(joined(parts))
-        for equation in self.equations.real:
-            rows.append(notation.formula(_difference(equation.left, equation.right)))
+        rows += [notation.formula(_difference(e.left, e.right)) for e in self.equations.real]
         return rows
 
     @staticmethod
@@ -99,15 +96,13 @@ class EquationSheet:
         write = self._writer(notation)
         rows = []
         for imaginary in (False, True):
-            for loop in self.equations.loops:
-                rows.append(
-                    [self._real_entry(write, loop, u, imaginary) for u in self.equations.unknowns]
-                )
+            rows += [
+                [self._real_entry(write, loop, u, imaginary) for u in self.equations.unknowns]
+                for loop in self.equations.loops
+            ]
         for line in self.equations.linear:
             weights = dict(line.terms)
-            rows.append(
-                [number_text(weights.get(u.symbol, 0.0)) for u in self.equations.unknowns]
-            )
+            rows.append([number_text(weights.get(u.symbol, 0.0)) for u in self.equations.unknowns])
         for equation in self.equations.real:
             whole = _difference(equation.left, equation.right)
             row = []
@@ -139,7 +134,8 @@ class EquationSheet:
 
     def _text_lines(self, width: int) -> Iterator[str]:
         notation, equations = PlainText(), self.equations
-        yield from _wrapped("unknowns  ", ", ".join(map(self._described, equations.unknowns)), width)
+        described = ", ".join(map(self._described, equations.unknowns))
+        yield from _wrapped("unknowns  ", described, width)
         if equations.inputs:
             yield from _wrapped(
                 "inputs    ", ", ".join(map(self._described, equations.inputs)), width
@@ -151,11 +147,11 @@ class EquationSheet:
             yield ""
             yield f'Loop {k + 1} "{loop.label}"'
             yield from _wrapped("  ", self.loop(loop, notation), width, "      ")
-        for line in (*equations.linear, *equations.real):
+        for k in range(len(equations.loops), len(equations.labels)):
             yield ""
-            yield f'Equation "{line.label}"'
-            row = equations.labels.index(line.label) + len(equations.loops)
-            yield from _wrapped("  ", f"{self.real_rows(notation)[row]} = 0", width, "      ")
+            yield f'Equation "{equations.labels[k]}"'
+            row = self.real_rows(notation)[k + len(equations.loops)]
+            yield from _wrapped("  ", f"{row} = 0", width, "      ")
         if equations.loops:
             yield from ("", "Real form")
             for k, row_text in enumerate(self.real_rows(notation)):
@@ -184,9 +180,7 @@ class EquationSheet:
         """The loop equations and both Jacobians as LaTeX displays."""
         notation, equations = Latex(), self.equations
         parts = []
-        displays = [
-            self.loop(loop, notation).replace(" = ", " &= ", 1) for loop in equations.loops
-        ]
+        displays = [self.loop(loop, notation).replace(" = ", " &= ", 1) for loop in equations.loops]
         offset = 2 * len(equations.loops)
         displays += [f"{row} &= 0" for row in self.real_rows(notation)[offset:]]
         parts.append(_environment("align*", " \\\\\n".join(f"  {row}" for row in displays)))

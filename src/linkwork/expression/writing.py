@@ -37,7 +37,7 @@ def _spelled(node: Name) -> str:
 
 
 def text(node: Node, name: Callable[[Name], str] = _spelled) -> str:
-    """Plain text that reads back to the same tree."""
+    """Plain text that reads back to the same formula; -(a*b) becomes -a*b, which is (-a)*b."""
     match node:
         case Number():
             return number_text(node.value)
@@ -77,9 +77,7 @@ def latex(node: Node) -> str:
             known = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "log10": "log_{10}"}
             shown = known.get(node.function, node.function)
             head = (
-                rf"\operatorname{{{shown}}}"
-                if shown in ("atan2", "hypot", "cis")
-                else "\\" + shown
+                rf"\operatorname{{{shown}}}" if shown in ("atan2", "hypot", "cis") else "\\" + shown
             )
             arguments = ", ".join(map(latex, node.arguments))
             return rf"{head}\left({arguments}\right)"

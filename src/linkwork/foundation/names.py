@@ -24,7 +24,7 @@ def canonical(name: str) -> str:
 
 
 def is_name(text: str) -> bool:
-    """Whether ``text`` can name something: a letter or ``_``, then letters, digits, ``_``, ``'``."""
+    """Whether ``text`` can name something: a letter or ``_``, then letters, digits, _ and '."""
     folded = unicodedata.normalize("NFKC", text)
     body = folded.rstrip("'")
     return body.isidentifier() and len(folded) <= 80
@@ -38,8 +38,8 @@ def _stem_and_index(name: str) -> tuple[str, str]:
 def pretty(name: str) -> str:
     """The name with a Greek letter where it starts with a spelled one: ``theta12`` → ``θ12``."""
     stem, index = _stem_and_index(name)
-    head, _, tail = stem.partition("_")
-    return _LETTER.get(head, head) + (f"_{tail}" if tail else "") + index
+    head, bar, tail = stem.partition("_")
+    return _LETTER.get(head, head) + bar + tail + index
 
 
 def latex_name(name: str) -> str:

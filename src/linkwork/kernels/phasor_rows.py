@@ -79,7 +79,8 @@ class PhasorRows:
         return m.reshape(terms + len(sliding), self.rows * self.variables)
 
     def _phasors(self, v: Array) -> ComplexArray:
-        return self.coefficient * np.exp(1j * (v @ self._weights))
+        phasors: ComplexArray = self.coefficient * np.exp(1j * (v @ self._weights))
+        return phasors
 
     def _terms(self, v: Array, phasors: ComplexArray) -> ComplexArray:
         sliding = self._sliding

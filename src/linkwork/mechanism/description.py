@@ -136,9 +136,14 @@ class Description:
                 f'mechanism "{self.name}" has {len(self.inputs)} inputs: '
                 "a range can be replaced only for a single one"
             )
-        given = {"start": start, "stop": stop, "step": step}
-        changes = {field: number for field, number in given.items() if number is not None}
-        return replace(self, inputs=(replace(self.inputs[0], **changes),))
+        old = self.inputs[0]
+        changed = replace(
+            old,
+            start=old.start if start is None else start,
+            stop=old.stop if stop is None else stop,
+            step=old.step if step is None else step,
+        )
+        return replace(self, inputs=(changed,))
 
     def unit_of_input(self, which: Input) -> str:
         """``deg``, ``rad`` or the length unit."""
@@ -239,9 +244,7 @@ def _reads_as(name: str, folded: str) -> bool:
         return False
 
 
-def _check_rows(
-    description: Description, which: Input, key: Key, problems: Problems
-) -> None:
+def _check_rows(description: Description, which: Input, key: Key, problems: Problems) -> None:
     _check_speed(description, which, (*key, "speed"), problems)
     fields = (("from", which.start), ("to", which.stop), ("step", which.step))
     amounts = [

@@ -113,12 +113,8 @@ def _check_ground(
             )
 
 
-def _measured(
-    link: str, shape: LinkShape, linkage: Linkage, problems: Problems
-) -> list[Measured]:
-    found = [
-        Measured(link=link, points=(d.a, d.b), length=d.length) for d in shape.measured
-    ]
+def _measured(link: str, shape: LinkShape, linkage: Linkage, problems: Problems) -> list[Measured]:
+    found = [Measured(link=link, points=(d.a, d.b), length=d.length) for d in shape.measured]
     if linkage.sketch and found:
         wanted = ", ".join(f'"{m.points[0]} {m.points[1]}"' for m in found)
         problems.add(

@@ -80,10 +80,7 @@ class Skeleton:
             ),
             pins=tuple(p for p, links in carriers.items() if len(links) > 1 or p in guided),
             guides=tuple(
-                [
-                    Guide(name=s.name, point=s.point, on=s.on, line=s.line)
-                    for s in linkage.slots
-                ]
+                [Guide(name=s.name, point=s.point, on=s.on, line=s.line) for s in linkage.slots]
                 + [
                     Guide(
                         name=s.name,
@@ -115,9 +112,7 @@ class Skeleton:
             Bar(name=name, points=points) for name, points in links.items() if name != GROUND
         )
         joined = [p for points in links.values() for p in points]
-        pins = tuple(
-            p for p in dict.fromkeys(joined) if joined.count(p) + (p in fixed) > 1
-        )
+        pins = tuple(p for p in dict.fromkeys(joined) if joined.count(p) + (p in fixed) > 1)
         return cls(fixed=fixed, bars=bars, pins=pins, driven=driven, traced=traced)
 
 

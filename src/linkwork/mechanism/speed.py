@@ -50,4 +50,3 @@ def speed_per_second(speed: Number, kind: str, numbers: Numbers, length: str) ->
         raise ExpressionError(
             f'must be a number and a unit ({known}), got "{speed[:40]}"', speed, 1
         ) from None
-

@@ -41,7 +41,8 @@ def explain(model: Model, v: Array, status: Status, failed_block: int) -> tuple[
     if not loops or not equations.loops:
         worst = int(np.argmax(np.abs(f)))
         return status, (
-            f'{status.value}; "{labels[worst % len(labels)]}" stays at {f[worst]:.6g} at best nearby'
+            f'{status.value}; "{labels[worst % len(labels)]}" stays at {f[worst]:.6g} '
+            "at best nearby"
         )
     count = len(loops)
     gaps = np.hypot(f[:count], f[count : 2 * count])

@@ -122,9 +122,7 @@ def model_of(description: Description) -> Model:
         case Loops():
             equations = read_loops(description)
             fixed = description.links.get("ground", equations.fixed)
-            driven = tuple(
-                DrivenPart(kind="variable", name=v.name) for v in equations.inputs
-            )
+            driven = tuple(DrivenPart(kind="variable", name=v.name) for v in equations.inputs)
             skeleton = Skeleton.of_points(description.links, fixed, description.trace, driven)
         case PlainEquations():
             equations = read_plain_equations(description)

@@ -79,10 +79,7 @@ def named_series(
         for variable in equations.unknowns
     }
     return Named(
-        inputs={
-            variable.name: inputs[:, k]
-            for k, variable in enumerate(equations.inputs)
-        },
+        inputs={variable.name: inputs[:, k] for k, variable in enumerate(equations.inputs)},
         unknowns=own,
         links={link: series(link, jet, Kind.ANGLE) for link, jet in links.items()},
         sliders={

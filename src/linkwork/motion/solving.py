@@ -58,9 +58,7 @@ def solve(
     options = options or NewtonOptions()
     target = _target(model, at)
     inputs = target * model.input_scale
-    start = first_position(
-        model, inputs if from_guess else model.start_inputs, options, with_steps
-    )
+    start = first_position(model, inputs if from_guess else model.start_inputs, options, with_steps)
     if not start.status.ok:
         position = _failed(model, target, start.status, start.message, start)
     elif from_guess or np.array_equal(inputs, model.start_inputs):
@@ -165,11 +163,18 @@ def _stopped(model: Model, target: Array, track: Track, lead: int, start: Start)
 def _failed(model: Model, target: Array, status: Status, message: str, start: Start) -> Position:
     n = model.compiled.solver.variables
     nothing = np.full((1, n), np.nan)
-    named = named_series(
-        model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool)
+    named = named_series(model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool))
+    return _position(
+        model,
+        named,
+        status,
+        message,
+        start.residual,
+        start.iterations,
+        np.inf,
+        np.full(len(model.equations.unknowns), np.nan),
+        start.trails,
     )
-    return _position(model, named, status, message, start.residual, start.iterations, np.inf,
-                     np.full(len(model.equations.unknowns), np.nan), start.trails)
 
 
 def position_of(

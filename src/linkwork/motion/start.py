@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -49,7 +49,8 @@ def first_position(
     for k, watcher in enumerate(watchers):
         if watcher.steps:
             failed = k == done.failed_block[0]
-            trails.append(watcher.trail(Status.of_code(int(done.status[0])) if failed else Status.CONVERGED))
+            code = int(done.status[0]) if failed else Status.CONVERGED.code
+            trails.append(watcher.trail(Status.of_code(code)))
     return Start(
         v=done.v[0],
         status=status,
@@ -91,8 +92,3 @@ class _Watcher:
     def trail(self, status: Status) -> NewtonTrail:
         """The iterates with how they ended."""
         return NewtonTrail(equations=self.equations, steps=tuple(self.steps), status=status)
-
-
-def bare(options: NewtonOptions) -> NewtonOptions:
-    """The textbook's method without a limit on the step."""
-    return replace(options, largest_turn=float("inf"))

@@ -97,9 +97,7 @@ class _Report:
             self.progress(0.5 + 0.5 * fraction)
 
 
-def _onto_path(
-    model: Model, path: InputPath, start: Start, t: Array, lead: int
-) -> Node | None:
+def _onto_path(model: Model, path: InputPath, start: Start, t: Array, lead: int) -> Node | None:
     """The start as a node of the table's path; several inputs are first led onto it."""
     solver = model.compiled.solver
     own = model.start_inputs
@@ -187,17 +185,15 @@ def _motion(
     model: Model, rows: Array, t: Array, solved: _Solved, track: Track, start: Start
 ) -> Motion:
     found = solved.status == Status.CONVERGED.code
-    named = named_series(
-        model, solved.v, solved.first, solved.second, model.everyday_rows, found
-    )
+    named = named_series(model, solved.v, solved.first, solved.second, model.everyday_rows, found)
     lead = int(np.argmax((rows == t[:, None]).all(axis=0)))
     scale = model.input_scale[lead]
     limits = tuple(
         Limit(
-            input=end.reached / scale,
+            input=float(end.reached / scale),
             bracket=(
-                min(end.reached, end.failed) / scale,
-                max(end.reached, end.failed) / scale,
+                float(min(end.reached, end.failed) / scale),
+                float(max(end.reached, end.failed) / scale),
             ),
             status=end.status,
         )

@@ -49,6 +49,4 @@ def track_to(
     low, high = min([*goals, start.t]), max([*goals, start.t])
     above, above_end = follow(solver, path, start, high, scale, progress=progress)
     below, below_end = follow(solver, path, start, low, scale, progress=progress)
-    return Track(
-        nodes=(*reversed(below), start, *above), below=below_end, above=above_end
-    )
+    return Track(nodes=(*reversed(below), start, *above), below=below_end, above=above_end)

@@ -185,7 +185,7 @@ def _inverse(jacobian: Array) -> tuple[Array, npt.NDArray[np.int8]]:
             except np.linalg.LinAlgError:
                 continue
     sign = np.sign(np.linalg.det(jacobian))
-    return inverse, np.where(np.isfinite(sign), sign, 0).astype(np.int8)
+    return np.asarray(inverse, dtype=float), np.where(np.isfinite(sign), sign, 0).astype(np.int8)
 
 
 def _condition(system: System, jacobian: Array, inverse: Array) -> Array:

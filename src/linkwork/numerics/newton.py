@@ -15,8 +15,7 @@ from linkwork.numerics.system import Array, System
 __all__ = ["NewtonOptions", "NewtonResult", "newton"]
 
 _CONVERGED = Status.CONVERGED.code
-_RUNNING = -1
-_FAR = 1e9  # weighted size of an unknown beyond which the iteration has run away
+_FAR = 1e9  # weighted size of a correction beyond which the iteration has run away
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +36,7 @@ class NewtonOptions:
     """
 
     equation_tolerance: float = 1e-14
-    solution_tolerance: float = 1e-11
+    solution_tolerance: float = 1e-9
     max_steps: int = 50
     largest_turn: float = math.radians(40.0)
 
@@ -89,66 +88,102 @@ def newton(
     Quadratic at regular solutions. Rows that are done leave the batch.
     """
     opt = options or NewtonOptions()
-    count, n = len(start), system.unknowns
-    v = start.copy()
-    status = np.full(count, _RUNNING, dtype=np.int8)
-    iterations = np.zeros(count, dtype=np.int64)
-    residual = np.full(count, np.inf)
-    first = np.zeros(count)
-    contraction = np.zeros(count)
-    last = np.full(count, np.inf)  # weighted size of the latest correction
-    live = np.arange(count)
-    weights, scale = system.variable_scale[:n], system.equation_scale
-    turns = system.turns[:n]
-    for k in range(opt.max_steps + 1):
-        here = v[live] if len(live) < count else v
-        with np.errstate(all="ignore"):
-            f, jacobian = system.residual_and_jacobian(here)
-        error = np.abs(f / scale).max(axis=1, initial=0.0)
-        residual[live] = error
-        bad = ~np.isfinite(error) | (np.abs(here[:, :n] / weights).max(axis=1, initial=0.0) > _FAR)
-        done = (error <= opt.equation_tolerance) | (last[live] <= opt.solution_tolerance)
-        if bad.any() or done.any() or k == opt.max_steps:
-            status[live[done]] = _CONVERGED
-            status[live[bad]] = Status.DIVERGED.code
-            stay = ~(bad | done)
-            if k == opt.max_steps:
-                status[live[stay]] = Status.STEP_LIMIT.code
-                stay[:] = False
-            if watch is not None and not stay[0]:
-                watch(k, here, f, None)
-            if not stay.any():
+    with np.errstate(all="ignore"):
+        return _Iteration(system, start, opt, watch).run()
+
+
+class _Iteration:
+    """The state of a batch: rows that are done leave ``live``."""
+
+    def __init__(
+        self, system: System, start: Array, options: NewtonOptions, watch: Watch | None
+    ) -> None:
+        count, n = len(start), system.unknowns
+        self.system, self.options, self.watch = system, options, watch
+        self.v = start.copy()
+        self.status = np.full(count, _CONVERGED, dtype=np.int8)
+        self.iterations = np.zeros(count, dtype=np.int64)
+        self.residual = np.full(count, np.inf)
+        self.first = np.zeros(count)
+        self.contraction = np.zeros(count)
+        self.live = np.arange(count)
+        self.last = np.full(count, np.inf)  # weighted size of each live row's latest correction
+        self.weights = system.variable_scale[:n]
+        turns = system.turns[:n]
+        self.turns = turns if turns.any() and not math.isinf(options.largest_turn) else None
+
+    def run(self) -> NewtonResult:
+        """Iterate until every row has left."""
+        for k in range(self.options.max_steps + 1):
+            self._step(k)
+            if not len(self.live):
                 break
-            live, here, f, jacobian = live[stay], here[stay], f[stay], jacobian[stay]
-        change, singular = _corrections(jacobian[:, :, :n], f)
-        if singular.any():
-            status[live[singular]] = Status.SINGULAR_JACOBIAN.code
-            if watch is not None:
-                watch(k, here, f, None)
-            keep = ~singular
-            live, here, f, change = live[keep], here[keep], f[keep], change[keep]
-            if not len(live):
-                break
-        change = _shortened(change, turns, opt.largest_turn)
-        if watch is not None:
-            watch(k, here, f, change)
-        v[live, :n] += change
-        iterations[live] += 1
-        size = np.abs(change / weights).max(axis=1, initial=0.0)
-        if k == 0:
-            first[live] = size
+        return NewtonResult(
+            v=self.v,
+            status=self.status,
+            iterations=self.iterations,
+            residual=self.residual,
+            first_step=self.first,
+            contraction=self.contraction,
+        )
+
+    def _step(self, k: int) -> None:
+        system, opt, n = self.system, self.options, self.system.unknowns
+        whole = len(self.live) == len(self.v)
+        here = self.v if whole else self.v[self.live]
+        if (self.last <= opt.solution_tolerance).all():  # all done: only the evidence is missing
+            f, jacobian = system.residual(here), None
         else:
-            ratio = np.where(size > 1e-9, size / last[live], 0.0)
-            contraction[live] = np.maximum(contraction[live], ratio)
-        last[live] = size
-    return NewtonResult(
-        v=v,
-        status=status,
-        iterations=iterations,
-        residual=residual,
-        first_step=first,
-        contraction=contraction,
-    )
+            f, jacobian = system.residual_and_jacobian(here)
+        error = np.abs(f / system.equation_scale).max(axis=1, initial=0.0)
+        self.residual[self.live] = error
+        lost = ~(error < np.inf) | (self.last > _FAR) & (k > 0)
+        done = (error <= opt.equation_tolerance) | (self.last <= opt.solution_tolerance)
+        if jacobian is None or k == opt.max_steps or lost.any() or done.any():
+            self._leave(lost, Status.DIVERGED)
+            late = ~(lost | done) & (k == opt.max_steps)
+            self._leave(late, Status.STEP_LIMIT)
+            stay = ~(lost | done | late)
+            if self.watch is not None and not stay[0]:
+                self.watch(k, here, f, None)
+            self._keep(stay)
+            if jacobian is None or not len(self.live):
+                return
+            here, f, jacobian = here[stay], f[stay], jacobian[stay]
+        change = self._corrected(k, here, f, jacobian[:, :, :n])
+        if not len(self.live):
+            return
+        self.v[self.live, :n] += change
+        self.iterations[self.live] += 1
+        size = np.abs(change / self.weights).max(axis=1, initial=0.0)
+        if k == 0:
+            self.first[self.live] = size
+        else:
+            ratio = np.where(size > 1e-9, size / self.last, 0.0)
+            self.contraction[self.live] = np.maximum(self.contraction[self.live], ratio)
+        self.last = size
+
+    def _corrected(self, k: int, here: Array, f: Array, jacobian: Array) -> Array:
+        """The corrections of the live rows; rows with a singular Jacobian leave."""
+        change, singular = _corrections(jacobian, f)
+        if singular.any():
+            self._leave(singular, Status.SINGULAR_JACOBIAN)
+            if self.watch is not None:
+                self.watch(k, here, f, None)
+            self._keep(~singular)
+            change = change[~singular]
+        if self.turns is not None:
+            change = _shortened(change, self.turns, self.options.largest_turn)
+        if self.watch is not None and len(change):
+            self.watch(k, here, f, change)
+        return change
+
+    def _leave(self, rows: npt.NDArray[np.bool_], status: Status) -> None:
+        if rows.any():
+            self.status[self.live[rows]] = status.code
+
+    def _keep(self, rows: npt.NDArray[np.bool_]) -> None:
+        self.live, self.last = self.live[rows], self.last[rows]
 
 
 def _corrections(jacobian: Array, f: Array) -> tuple[Array, npt.NDArray[np.bool_]]:
@@ -162,14 +197,14 @@ def _corrections(jacobian: Array, f: Array) -> tuple[Array, npt.NDArray[np.bool_
                 change[lane] = -np.linalg.solve(jacobian[lane], f[lane])
             except np.linalg.LinAlgError:
                 continue
-    return change, ~np.isfinite(change).all(axis=1)
+    singular: npt.NDArray[np.bool_] = ~np.isfinite(change).all(axis=1)
+    return np.asarray(change, dtype=float), singular
 
 
 def _shortened(change: Array, turns: npt.NDArray[np.bool_], largest: float) -> Array:
     """Corrections scaled down so that no angle turns further than allowed."""
-    if not turns.any() or math.isinf(largest):
-        return change
     turn = np.abs(change[:, turns]).max(axis=1)
     if not (turn > largest).any():
         return change
-    return change * np.minimum(1.0, largest / np.maximum(turn, 1e-300))[:, None]
+    shortened: Array = change * np.minimum(1.0, largest / np.maximum(turn, 1e-300))[:, None]
+    return shortened

@@ -22,6 +22,7 @@ from linkwork.numerics.system import Array
 __all__ = ["End", "InputPath", "Node", "Track", "TrackOptions", "follow", "rows_on_track"]
 
 _CONVERGED = Status.CONVERGED.code
+_NODE_TOLERANCE = 1e-7  # a correction this small leaves an error of its square
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,7 +34,8 @@ class InputPath:
 
     def at(self, t: float | Array) -> Array:
         """u(t), (p,) or (B, p)."""
-        return self.origin + np.multiply.outer(np.asarray(t), self.rate)
+        inputs: Array = self.origin + np.multiply.outer(np.asarray(t), self.rate)
+        return inputs
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,7 +138,9 @@ def follow(
         The nodes after ``start`` in the order reached; ``None`` if the goal was reached.
     """
     opt = options or TrackOptions()
-    quick = replace(solver.options, max_steps=6, largest_turn=math.inf)
+    quick = replace(
+        solver.options, max_steps=6, largest_turn=math.inf, solution_tolerance=_NODE_TOLERANCE
+    )
     sign = math.copysign(1.0, goal - start.t)
     nodes: list[Node] = []
     here = start
@@ -237,9 +241,7 @@ def rows_on_track(
     moved = np.abs((v - guess) / weights).max(axis=1)
     expected = np.stack([track.nodes[k].orientation for k in left])
     doubtful = (
-        (status != _CONVERGED)
-        | ~(moved <= 0.1)
-        | (rates.orientation != expected).any(axis=1)
+        (status != _CONVERGED) | ~(moved <= 0.1) | (rates.orientation != expected).any(axis=1)
     )
     residual, iterations = found.residual.copy(), found.iterations.copy()
     for row in np.flatnonzero(doubtful):

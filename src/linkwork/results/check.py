@@ -66,8 +66,7 @@ class CheckReport:
             "inputs": [{"name": n, "unit": u} for n, u in self.inputs],
             "rows": self.rows,
             "blocks": [
-                {"equations": list(b.equations), "unknowns": list(b.unknowns)}
-                for b in self.blocks
+                {"equations": list(b.equations), "unknowns": list(b.unknowns)} for b in self.blocks
             ],
             "mobility": {"count": self.mobility_count, "rank": self.mobility_rank},
             "measured": [{"link": k, "points": p, "length": v} for k, p, v in self.measured],

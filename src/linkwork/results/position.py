@@ -76,7 +76,7 @@ class Position:
     outputs : Mapping[str, float]
         The named formulas.
     first, second : Mapping[str, float]
-        Derivatives by the input of unknowns, links, sliders, outputs and ``<point>.x``, ``<point>.y``.
+        Derivatives by the input of unknowns, links, sliders, outputs, ``<point>.x``, ``<point>.y``.
     velocity, acceleration : Mapping[str, float]
         The same by time, if the input has a speed.
     residual : float

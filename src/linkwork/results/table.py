@@ -41,7 +41,7 @@ class Table:
     def to_pandas(self) -> Any:
         """A pandas DataFrame with the input as index; units in ``attrs["units"]``."""
         try:
-            import pandas  # noqa: ICN001, PLC0415 - optional and heavy
+            import pandas
         except ImportError:
             raise MissingPackageError(
                 'data frames need pandas: pip install "linkwork[tables]"'
@@ -53,7 +53,7 @@ class Table:
     def to_xarray(self) -> Any:
         """An xarray Dataset over the input; every variable has ``attrs["units"]``."""
         try:
-            import xarray  # noqa: PLC0415 - optional and heavy
+            import xarray
         except ImportError:
             raise MissingPackageError(
                 'labelled arrays need xarray: pip install "linkwork[tables]"'

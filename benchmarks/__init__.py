@@ -1,0 +1,1 @@
+"""Measurements: time as ratios in one run, with success and accuracy beside it."""

@@ -1,0 +1,27 @@
+"""Run the measurements: ``python -m benchmarks [name …]``; every figure is a ratio in one run."""
+
+from __future__ import annotations
+
+import sys
+
+from benchmarks import chain_growth, cycle_time, process_start
+
+MEASUREMENTS = {
+    "start": process_start.measure,
+    "cycle": cycle_time.measure,
+    "chain": chain_growth.measure,
+}
+
+
+def main(names: list[str]) -> int:
+    """Print one table per measurement; exit 1 if a bar is missed."""
+    unknown = [name for name in names if name not in MEASUREMENTS]
+    if unknown:
+        print(f"unknown: {', '.join(unknown)} (there are: {', '.join(MEASUREMENTS)})")
+        return 2
+    passed = [MEASUREMENTS[name]() for name in names or MEASUREMENTS]
+    return 0 if all(passed) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,33 @@
+"""How building and solving grow with the length of a chain of dyads."""
+
+from __future__ import annotations
+
+from benchmarks.dyad_chain import dyad_chain
+from benchmarks.timing import bar, seconds
+
+__all__ = ["measure"]
+
+
+def measure(repeats: int = 5) -> bool:
+    """Bar: time per dyad of 1,000 dyads at most 1.5 × that of 100."""
+    print("chain of dyads: milliseconds per dyad (build, solve at the start, follow by 10°)")
+    per_dyad: dict[int, list[list[float]]] = {}
+    for count in (10, 100, 1000):
+        rows = []
+        for _ in range(repeats):
+            build = seconds(lambda n=count: dyad_chain(n))
+            mechanism = dyad_chain(count)
+            position = mechanism.solve()
+            assert position.status.ok
+            solve = seconds(mechanism.solve)
+            follow = seconds(lambda m=mechanism: m.solve(at=100, throw=True))
+            rows.append([1e3 * t / count for t in (build, solve, follow)])
+        per_dyad[count] = rows
+        best = [min(row[k] for row in rows) for k in range(3)]
+        print(f"  {count:5d} dyads   {best[0]:7.3f}  {best[1]:7.3f}  {best[2]:7.3f}")
+    held = True
+    for k, what in enumerate(("build", "solve", "follow")):
+        base = min(row[k] for row in per_dyad[100])
+        ratios = [row[k] / base for row in per_dyad[1000]]
+        held = bar(f"{what}: per dyad, 1,000 against 100", ratios, 1.5) and held
+    return held

@@ -1,0 +1,38 @@
+"""Fair timing: interleaved repeats, medians, ratios; one line per figure with its bar."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable, Sequence
+
+__all__ = ["bar", "interleaved", "seconds"]
+
+
+def seconds(run: Callable[[], object]) -> float:
+    """Wall time of one call."""
+    begin = time.perf_counter()
+    run()
+    return time.perf_counter() - begin
+
+
+def interleaved(runs: Sequence[Callable[[], object]], repeats: int) -> list[list[float]]:
+    """Times of several calls measured in turn, A B A B …, after one warm-up of each."""
+    for run in runs:
+        run()
+    times: list[list[float]] = [[] for _ in runs]
+    for _ in range(repeats):
+        for k, run in enumerate(runs):
+            times[k].append(seconds(run))
+    return times
+
+
+def bar(text: str, ratios: Sequence[float], limit: float) -> bool:
+    """Print the median of ratios with its spread against a limit; tell whether it holds."""
+    middle = statistics.median(ratios)
+    held = middle <= limit
+    print(
+        f"  {text:<52} {middle:8.3f}  ({min(ratios):.3f} … {max(ratios):.3f})"
+        f"  bar {limit:g}  {'ok' if held else 'MISSED'}"
+    )
+    return held

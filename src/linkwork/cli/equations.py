@@ -1,0 +1,40 @@
+"""``linkwork equations``"""
+
+from __future__ import annotations
+
+import click
+
+from linkwork.cli.mechanism_source import read_mechanism
+from linkwork.cli.options import debug_option, file_argument, json_option, set_option
+from linkwork.cli.terminal import print_json, print_lines, title_lines
+from linkwork.cli.text_table import WIDTH
+from linkwork.foundation.errors import InputError
+
+__all__ = ["equations"]
+
+
+@click.command
+@file_argument
+@click.option("--latex", "as_latex", is_flag=True, help="Print LaTeX.")
+@set_option
+@json_option
+@debug_option
+def equations(file: str, as_latex: bool, changes: tuple[str, ...], as_json: bool) -> None:
+    """Show the loop-closure equations and the Jacobian.
+
+    Linkwork writes them from the points and links of the file, or reads them from it.
+
+    \b
+      linkwork equations rapier.toml
+      linkwork equations rapier.toml --latex > equations.tex
+    """
+    if as_latex and as_json:
+        raise InputError("--latex and --json exclude each other: choose one")
+    mechanism = read_mechanism(file, changes)
+    sheet = mechanism.equations()
+    if as_json:
+        print_json({"mechanism": mechanism.name, **sheet.to_dict()})
+    elif as_latex:
+        click.echo(sheet.latex().rstrip("\n"))
+    else:
+        print_lines([*title_lines(mechanism.name), "", sheet.text(WIDTH).rstrip("\n")])

@@ -1,0 +1,110 @@
+"""The program ``linkwork``: its commands, and how every run of it ends."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+
+import click
+
+from linkwork.cli.check import check
+from linkwork.cli.draw import draw
+from linkwork.cli.equations import equations
+from linkwork.cli.examples import examples
+from linkwork.cli.options import DEBUG, debug_option
+from linkwork.cli.problems import problem_lines
+from linkwork.cli.schema import schema
+from linkwork.cli.solve import solve
+from linkwork.cli.sweep import sweep
+from linkwork.cli.terminal import abandon_output, print_lines, ready_streams
+from linkwork.foundation.errors import LinkworkError
+
+__all__ = ["linkwork", "main"]
+
+_WRONG_INPUT = 2
+_OUR_FAULT = 3
+_INTERRUPTED = 128 + 2  # as a shell says of a program that SIGINT ended
+_READER_GONE = 128 + 13  # and of one that SIGPIPE ended
+
+
+class _Program(click.Group):
+    """The commands in the order of work; every way a run can end, in one place."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names in the order in which they were added."""
+        return list(self.commands)
+
+    def invoke(self, ctx: click.Context) -> object:
+        """Run a command and turn what goes wrong into a message and an exit code."""
+        try:
+            done = super().invoke(ctx)
+            sys.stdout.flush()
+        except (click.ClickException, click.exceptions.Exit, click.Abort):
+            raise
+        except (Exception, KeyboardInterrupt) as error:
+            ctx.exit(_ended_by(error, ctx.meta.get(DEBUG, False)))
+        return done
+
+
+def _ended_by(error: BaseException, debug: bool) -> int:
+    """Tell what went wrong; returns the exit code."""
+    if isinstance(error, BrokenPipeError):
+        abandon_output()
+        return _READER_GONE
+    if debug:
+        click.echo(traceback.format_exc(), err=True)
+    match error:
+        case KeyboardInterrupt():
+            lines, code = ["", "Interrupted."], _INTERRUPTED
+        case LinkworkError():
+            lines, code = problem_lines(error), error.exit_code
+        case MemoryError():
+            lines, code = ["Error: there is not enough memory: ask for fewer rows"], _WRONG_INPUT
+        case OSError():
+            abandon_output()  # a full disk must not fail a second time at the end
+            lines, code = [f"Error: {error.strerror or error}"], _WRONG_INPUT
+        case _:
+            lines, code = _apology(error, debug), _OUR_FAULT
+    print_lines(lines, err=True)
+    return code
+
+
+def _apology(error: BaseException, debug: bool) -> list[str]:
+    lines = [
+        f"Linkwork failed: {type(error).__name__}: {error}",
+        "This is a mistake in Linkwork, not in your input. Please report it, with the",
+        "mechanism file and the command you typed.",
+    ]
+    return lines if debug else [*lines, "The option --debug shows where it happened."]
+
+
+@click.group(cls=_Program, invoke_without_command=True)
+@click.version_option(package_name="linkwork", message="%(prog)s %(version)s")
+@debug_option
+@click.pass_context
+def linkwork(context: click.Context) -> None:
+    """Planar mechanisms, solved from their loop-closure equations.
+
+    A first result in two commands:
+
+    \b
+      linkwork examples rapier-drive -o rapier.toml
+      linkwork sweep rapier.toml --csv rapier.csv --draw rapier.png
+
+    Then change rapier.toml into a mechanism of your own.
+
+    Wherever a command wants a FILE, a dash reads standard input. Exit codes:
+    0 done, 1 a position was not found, 2 wrong input, 3 our mistake.
+    """
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())
+
+
+for _command in (check, equations, solve, sweep, draw, examples, schema):
+    linkwork.add_command(_command)
+
+
+def main() -> None:
+    """Entry point of the installed program."""
+    ready_streams()
+    linkwork(prog_name="linkwork")

@@ -1,0 +1,59 @@
+"""Where a command's mechanism comes from: a file, standard input, and changed dimensions."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from linkwork.cli.options import number_or_formula
+from linkwork.everyday import Mechanism, examples
+from linkwork.foundation.errors import InputError, MechanismError
+from linkwork.foundation.names import canonical
+from linkwork.mechanism.parts import Number
+from linkwork.textfile.reader import ReadFile, read_bytes, read_file
+
+__all__ = ["read_mechanism"]
+
+
+def read_mechanism(file: str, changes: tuple[str, ...] = ()) -> Mechanism:
+    """The mechanism of FILE (``-``: standard input) with the dimensions of ``--set``.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, it cannot be understood, or a dimension does not exist.
+    """
+    read = _read(file)
+    if not changes:
+        return Mechanism(read.description, read)
+    try:
+        return Mechanism(read.description.with_dimensions(_dimensions(changes)))
+    except MechanismError as error:
+        located = read.located(error)
+        where = f"{located.where} with {', '.join(changes)}"
+        raise type(located)(located.problems, where) from None
+
+
+def _read(file: str) -> ReadFile:
+    if file == "-":
+        return read_bytes(sys.stdin.buffer.read())
+    path = Path(file)
+    if path.stem in examples() and path.parent == Path() and not path.exists():
+        raise InputError(
+            f'there is no file "{file}"; to get the example of this name: '
+            f"linkwork examples {path.stem} -o {path.stem}.toml"
+        )
+    return read_file(path)
+
+
+def _dimensions(changes: tuple[str, ...]) -> dict[str, Number]:
+    found: dict[str, Number] = {}
+    for text in changes:
+        name, equals, number = text.partition("=")
+        name = canonical(name.strip())
+        if not (name and equals and number.strip()):
+            raise InputError(f"--set {text}: write a dimension and its value, as in --set a2=260")
+        if name in found:
+            raise InputError(f"--set {text}: this dimension has a value already, {found[name]}")
+        found[name] = number_or_formula(number)
+    return found

@@ -1,0 +1,135 @@
+"""A motion as a page of text: how many positions, where it ends, how good it is, its ranges."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwork.cli.position_page import Row, value_cells
+from linkwork.cli.terminal import bad, fields, sentence, title_lines
+from linkwork.cli.text_table import Column, short, table_lines
+from linkwork.foundation.status import Status
+from linkwork.results.motion import Motion, Series
+
+__all__ = ["failure_line", "motion_lines"]
+
+_MOST_RUNS = 4  # stretches of failed rows that are named
+
+
+def motion_lines(motion: Motion, measure: str) -> list[str]:
+    """The summary of a motion; ``measure`` stands behind residuals."""
+    head = f"{_range_text(motion)}: {len(motion)} positions"
+    lines = [*title_lines(motion.mechanism), *sentence(str, head, "")]
+    pairs = [*_counts(motion), *_limits(motion)]
+    if motion.found.any():
+        pairs += _evidence(motion, measure)
+    lines += fields(pairs, {_label(s): bad for s in motion.counts if not s.ok})
+    ranges = _ranges(motion) if motion.found.any() else []
+    return [*lines, "", *ranges] if ranges else lines
+
+
+def failure_line(motion: Motion) -> list[str]:
+    """How many rows were not found, in one sentence."""
+    missing = len(motion) - int(motion.found.sum())
+    return sentence(bad, f"{missing} of {len(motion)} positions were not found", "")
+
+
+def _range_text(motion: Motion) -> str:
+    """``θ12 from 0 to 360 deg by 1``; several inputs one after the other."""
+    parts = []
+    for name, values in motion.inputs.items():
+        unit = motion.input_units[name]
+        text = f"{name} from {short(values[0])} to {short(values[-1])} {unit}".rstrip()
+        by = f" by {short((values[-1] - values[0]) / (len(values) - 1))}" if len(values) > 1 else ""
+        parts.append(text + by)
+    return ", ".join(parts)
+
+
+def _counts(motion: Motion) -> Iterator[tuple[str, str]]:
+    """How many rows ended in which status; those that failed with their rows and the reason."""
+    counts = motion.counts
+    yield "found", str(counts[Status.CONVERGED])
+    for status in Status:
+        if status.ok or not counts[status]:
+            continue
+        reason = motion.message if status is Status.NO_START else status.value
+        yield _label(status), f"{counts[status]} at {_runs(motion, status)}: {reason}"
+
+
+def _label(status: Status) -> str:
+    return status.name.lower().replace("_", " ")
+
+
+def _runs(motion: Motion, status: Status) -> str:
+    """The input values of all rows with this status: ``118 to 121, 200 deg``."""
+    name, values = _lead(motion)
+    here = np.array([s is status for s in motion.status])
+    edges = np.flatnonzero(np.diff(here, prepend=False, append=False))
+    runs = list(zip(edges[0::2], edges[1::2] - 1, strict=True))
+    shown = [
+        short(values[a]) if a == b else f"{short(values[a])} to {short(values[b])}"
+        for a, b in runs[:_MOST_RUNS]
+    ]
+    more = f" and {len(runs) - _MOST_RUNS} more stretches" if len(runs) > _MOST_RUNS else ""
+    return f"{', '.join(shown)} {motion.input_units[name]}".rstrip() + more
+
+
+def _limits(motion: Motion) -> Iterator[tuple[str, str]]:
+    name, _ = _lead(motion)
+    unit = motion.input_units[name]
+    places = [short(limit.input) for limit in motion.limits]
+    what = "limit" if len(places) == 1 else "limits"
+    if places:
+        yield what, f"{name} = {' and '.join(places)} {unit}".rstrip()
+
+
+def _evidence(motion: Motion, measure: str) -> Iterator[tuple[str, str]]:
+    yield "worst residual", _worst(motion, motion.residual, measure)
+    yield "worst condition", _worst(motion, motion.condition, "")
+
+
+def _worst(motion: Motion, values: npt.NDArray[np.float64], measure: str) -> str:
+    name, inputs = _lead(motion)
+    row = int(np.nanargmax(values))
+    size = f"{values[row]:.2g}{measure}"
+    return f"{size}, at {name} = {short(inputs[row])} {motion.input_units[name]}".rstrip()
+
+
+def _ranges(motion: Motion) -> list[str]:
+    """Smallest and largest value of every unknown, output and traced point, and where."""
+    found: list[Series] = [*motion.unknowns.values(), *motion.outputs.values()]
+    for point in motion.skeleton.traced:
+        found += motion.points[point]
+    if not found:
+        return []
+    _, inputs = _lead(motion)
+    low = [int(np.nanargmin(series.value)) for series in found]
+    high = [int(np.nanargmax(series.value)) for series in found]
+
+    def values(header: str, rows: list[int]) -> Column:
+        numbers = [
+            Row(name=s.quantity.name, kind=s.quantity.kind, value=float(s.value[row]))
+            for s, row in zip(found, rows, strict=True)
+        ]
+        return Column(header=header, cells=value_cells(numbers), align="point")
+
+    def places(rows: list[int]) -> Column:
+        return Column(header="at", cells=[short(inputs[row]) for row in rows], align="point")
+
+    return table_lines(
+        [
+            Column(header="range", cells=[s.quantity.name for s in found]),
+            values("minimum", low),
+            places(low),
+            values("maximum", high),
+            places(high),
+            Column(header="unit", cells=[motion.units.of(s.quantity.kind) for s in found]),
+        ]
+    )
+
+
+def _lead(motion: Motion) -> tuple[str, npt.NDArray[np.float64]]:
+    """The first input: rows are named by its values."""
+    return next(iter(motion.inputs.items()))

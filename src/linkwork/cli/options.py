@@ -1,0 +1,116 @@
+"""Options and arguments that several commands share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from linkwork.everyday import Mechanism
+from linkwork.foundation.errors import ExpressionError, InputError
+
+__all__ = [
+    "DEBUG",
+    "NUMBER",
+    "at_option",
+    "debug_option",
+    "file_argument",
+    "input_values",
+    "json_option",
+    "number_or_formula",
+    "set_option",
+]
+
+#: Key of ``click.Context.meta`` under which ``--debug`` is noted.
+DEBUG = "linkwork.debug"
+
+Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+def number_or_formula(text: str) -> float | str:
+    """The number that a text is, or the text itself as a formula."""
+    try:
+        return float(text)
+    except ValueError:
+        return text.strip()
+
+
+class _Number(click.ParamType):  # type: ignore[type-arg]  # generic since click 8.4 only
+    """A number, or a formula of the file's dimensions."""
+
+    name = "number"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> float | str:
+        """A number where the text is one; formulas are judged with the mechanism at hand."""
+        return number_or_formula(value) if isinstance(value, str) else float(value)
+
+
+NUMBER = _Number()
+
+
+def _note_debug(context: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if wanted:
+        context.meta[DEBUG] = True
+
+
+debug_option: Decorator = click.option(
+    "--debug",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_note_debug,
+    help="Show the traceback of an error.",
+)
+
+file_argument: Decorator = click.argument("file", metavar="FILE")
+
+json_option: Decorator = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+set_option: Decorator = click.option(
+    "--set",
+    "changes",
+    metavar="NAME=VALUE",
+    multiple=True,
+    help="Replace a dimension of the file; may be repeated.",
+)
+
+at_option: Decorator = click.option(
+    "--at",
+    "at",
+    metavar="VALUE",
+    multiple=True,
+    help="Input value in the file's unit; NAME=VALUE for each of several inputs. "
+    "Left out: where the file's guess or sketch stands.",
+)
+
+
+def input_values(mechanism: Mechanism, asked: tuple[str, ...]) -> dict[str, float] | None:
+    """The input values of ``--at`` by name; ``None`` if there are none.
+
+    Raises
+    ------
+    InputError
+        If one is no number, given twice, or does not say which input it is for.
+    """
+    if not asked:
+        return None
+    names = [variable.name for variable in mechanism.loop_equations.inputs]
+    if not names:
+        raise InputError(f'"{mechanism.name}" has no input: leave out --at')
+    found: dict[str, float] = {}
+    for text in asked:
+        name, equals, number = text.rpartition("=")
+        name = name.strip() if equals else names[0]
+        if not equals and len(names) > 1:
+            each = " ".join(f"--at {name}=…" for name in names)
+            raise InputError(
+                f'--at {text}: "{mechanism.name}" has {len(names)} inputs, name each: {each}'
+            )
+        if name in found:
+            raise InputError(f"--at {text}: {name} has a value already, {found[name]:g}")
+        try:
+            found[name] = mechanism.description.numbers(number_or_formula(number))
+        except ExpressionError as error:
+            raise InputError(f"--at {text}: {error}") from None
+    return found

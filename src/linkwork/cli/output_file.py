@@ -1,0 +1,61 @@
+"""Files that appear whole or not at all, and never in place of the mechanism."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from linkwork.foundation.errors import InputError
+
+__all__ = ["check_outputs", "write_text"]
+
+
+def check_outputs(source: str, *outputs: str | None) -> None:
+    """Refuse files that cannot be written, before anything is computed.
+
+    Raises
+    ------
+    InputError
+        If a folder is missing, two outputs are one file, or one is the mechanism file itself.
+    """
+    taken = {} if source == "-" else {_real(source): f'"{source}" is the mechanism itself'}
+    for name in outputs:
+        if name is None or name == "-":
+            continue
+        path = Path(name)
+        if path.is_dir():
+            raise InputError(f'cannot write "{name}": it is a folder')
+        if not path.parent.is_dir():
+            raise InputError(f'cannot write "{name}": there is no folder "{path.parent}"')
+        real = _real(name)
+        if real in taken:
+            raise InputError(f"{taken[real]}: write to another file")
+        taken[real] = f'"{name}" is named twice'
+
+
+def write_text(name: str, pieces: Iterable[str]) -> None:
+    """Write UTF-8 text to a file; a link is followed, a device is written to.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written; what was there before is kept.
+    """
+    target = Path(_real(name))
+    regular = target.is_file() or not target.exists()
+    part = target.with_name(f".{target.name}.{os.getpid()}.part") if regular else target
+    try:
+        with part.open("w", encoding="utf-8", newline="\n") as file:
+            file.writelines(pieces)
+        if regular:
+            part.replace(target)
+    except OSError as error:
+        raise InputError(f'cannot write "{name}": {error.strerror or error}') from None
+    finally:
+        if regular:
+            part.unlink(missing_ok=True)
+
+
+def _real(name: str) -> str:
+    return os.path.realpath(name)

@@ -1,0 +1,197 @@
+"""A position as a page of text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
+from linkwork.cli.text_table import Column, fixed, lengths, short, significant, table_lines
+from linkwork.everyday import Mechanism
+from linkwork.motion.solving import lock_step
+from linkwork.results.position import NewtonTrail, Position
+from linkwork.results.quantity import Kind, Units
+
+__all__ = ["Row", "driven_by", "position_lines", "residual_measure", "value_cells"]
+
+_NOISE = 1e-13  # of the largest derivative: rounding, shown as 0
+_NUMBER_DIGITS = 10  # of a plain number, of which nothing is known
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """One named number of a table and what it measures."""
+
+    name: str
+    kind: Kind
+    value: float
+
+
+def position_lines(mechanism: Mechanism, position: Position, *, from_guess: bool) -> list[str]:
+    """The lines of a position: values, derivatives, points, evidence, and the steps if kept."""
+    where = _inputs_text(mechanism, position.input)
+    lines = title_lines(position.mechanism)
+    if not position.status.ok:
+        lines += sentence(bad, "No position found", f"{where}:")
+        lines += fields([("why", position.message)])
+        return [*lines, *_steps(mechanism, position, from_guess)]
+    lines += sentence(good, "Position found", where)
+    lines += _quantities(mechanism, position)
+    if position.points:
+        lines += ["", *_points(position)]
+    lines += ["", *fields(_evidence(mechanism, position))]
+    return [*lines, *_steps(mechanism, position, from_guess)]
+
+
+def value_cells(rows: Sequence[Row]) -> list[str]:
+    """Values as text: angles with six decimals, lengths to six digits, numbers to ten."""
+    sizes = iter(lengths(row.value for row in rows if row.kind is Kind.LENGTH))
+    texts = []
+    for row in rows:
+        match row.kind:
+            case Kind.LENGTH:
+                texts.append(next(sizes))
+            case Kind.ANGLE:
+                texts.append(fixed(row.value))
+            case Kind.NUMBER:
+                texts.append(significant(row.value, _NUMBER_DIGITS))
+    return texts
+
+
+def driven_by(mechanism: Mechanism) -> tuple[str, str] | None:
+    """Name of the input that derivatives are taken by, and its unit there; None without input."""
+    inputs = mechanism.loop_equations.inputs
+    if not mechanism.description.inputs:
+        return None
+    lead = inputs[lock_step(mechanism.model.rows)[0]]
+    return lead.name, mechanism.model.units.of_rate(Kind(lead.kind))
+
+
+def _tables(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, list[Row]]]:
+    """The numbers of a position, by what they are."""
+    equations = mechanism.loop_equations
+    unknowns = {v.name: Kind(v.kind) for v in equations.unknowns}
+    outputs = {name: Kind(output.kind) for name, output in equations.outputs.items()}
+    known = {*unknowns, *position.input}
+    links = {
+        name: Kind.ANGLE
+        for name, angle in equations.links.items()
+        if name not in known and angle.variable is not None
+    }
+    yield "unknown", [Row(name=n, kind=k, value=position.unknowns[n]) for n, k in unknowns.items()]
+    yield "link", [Row(name=n, kind=k, value=position.links[n]) for n, k in links.items()]
+    yield "output", [Row(name=n, kind=k, value=position.outputs[n]) for n, k in outputs.items()]
+
+
+def _quantities(mechanism: Mechanism, position: Position) -> Iterator[str]:
+    """Values with derivatives by the input, and by time if the input has a speed."""
+    by = driven_by(mechanism)
+    units = position.units
+    for title, rows in _tables(mechanism, position):
+        if not rows:
+            continue
+        names = Column(header=title, cells=[row.name for row in rows])
+        own = [units.of(row.kind) for row in rows]
+        columns = [Column(header="value", cells=value_cells(rows), align="point", units=own)]
+        if by is not None:
+            columns += [
+                _rates(rows, position.first, "1st deriv.", units, f"/{by[1]}"),
+                _rates(rows, position.second, "2nd deriv.", units, f"/{by[1]}^2"),
+            ]
+        yield from ("", *table_lines([names, *columns]))
+        if position.velocity:
+            columns = [
+                _rates(rows, position.velocity, "velocity", units, "/s"),
+                _rates(rows, position.acceleration, "acceleration", units, "/s^2"),
+            ]
+            yield from ("", *table_lines([names, *columns]))
+
+
+def _rates(
+    rows: Sequence[Row], rates: Mapping[str, float], header: str, units: Units, per: str
+) -> Column:
+    numbers = [rates[row.name] for row in rows]
+    noise = _NOISE * max(map(abs, numbers), default=0.0)
+    return Column(
+        header=header,
+        cells=[significant(number, 6, noise) for number in numbers],
+        align="point",
+        units=[units.of_rate(row.kind) + per for row in rows],
+    )
+
+
+def _points(position: Position) -> list[str]:
+    unit = f" [{position.units.length}]"
+    places = position.points.values()
+    both = lengths(number for place in places for number in place)
+    return table_lines(
+        [
+            Column(header="point", cells=list(position.points)),
+            Column(header=f"x{unit}", cells=both[0::2], align="point"),
+            Column(header=f"y{unit}", cells=both[1::2], align="point"),
+        ]
+    )
+
+
+def _evidence(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, str]]:
+    by = driven_by(mechanism)
+    if by is not None:
+        yield "derivatives", f"by {by[0]} in {by[1]}"
+    yield "residual", significant(position.residual, 2) + residual_measure(mechanism)
+    yield "iterations", str(position.iterations)
+    yield "condition", significant(position.condition, 3)
+
+
+def residual_measure(mechanism: Mechanism) -> str:
+    """What residuals are measured by, to stand behind the number."""
+    return " of the longest link" if mechanism.loop_equations.loops else ""
+
+
+def _inputs_text(mechanism: Mechanism, values: Mapping[str, float]) -> str:
+    """``at θ12 = 60 deg``, or nothing without an input."""
+    kinds = {v.name: Kind(v.kind) for v in mechanism.loop_equations.inputs}
+    parts = [
+        f"{name} = {short(value)} {mechanism.model.units.of(kinds[name])}".rstrip()
+        for name, value in values.items()
+    ]
+    return f"at {', '.join(parts)}" if parts else ""
+
+
+def _steps(mechanism: Mechanism, position: Position, from_guess: bool) -> Iterator[str]:
+    """The iterations of every block, and where they were made."""
+    if not position.steps:
+        return
+    model = mechanism.model
+    names = [variable.name for variable in mechanism.loop_equations.inputs]
+    own = dict(zip(names, (model.start_inputs / model.input_scale).tolist(), strict=True))
+    here = dict(position.input) if from_guess else own
+    where = _inputs_text(mechanism, here)
+    yield ""
+    yield from sentence(str, f"Newton-Raphson from the guess {where}".rstrip(), "")
+    if position.status.ok and here != dict(position.input):
+        yield from sentence(
+            str, f"(then followed to the position {_inputs_text(mechanism, position.input)})", ""
+        )
+    for trail in position.steps:
+        yield from ("", *_trail(mechanism, trail))
+
+
+def _trail(mechanism: Mechanism, trail: NewtonTrail) -> Iterator[str]:
+    kinds = {v.name: Kind(v.kind) for v in mechanism.loop_equations.unknowns}
+    units = mechanism.model.units
+    if len(mechanism.model.compiled.solver.blocks) > 1:
+        yield from sentence(str, ", ".join(f'"{label}"' for label in trail.equations), "")
+    steps = trail.steps
+    columns = [Column(header="k", cells=[str(step.k) for step in steps], align="right")]
+    for name in steps[0].unknowns:
+        kind = kinds[name]
+        unit = f" [{units.of(kind)}]" if units.of(kind) else ""
+        rows = [Row(name=name, kind=kind, value=step.unknowns[name]) for step in steps]
+        columns.append(Column(header=f"{name}{unit}", cells=value_cells(rows), align="point"))
+    residuals = [f"{step.residual:.2e}" for step in steps]
+    changes = ["" if step.step is None else f"{step.step:.2e}" for step in steps]
+    columns.append(Column(header="|F|", cells=residuals, align="right"))
+    columns.append(Column(header="step", cells=changes, align="right"))
+    yield from table_lines(columns)
+    if not trail.status.ok:
+        yield from sentence(bad, trail.status.value, "")

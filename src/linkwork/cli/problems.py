@@ -1,0 +1,44 @@
+"""What went wrong, as lines for a terminal."""
+
+from __future__ import annotations
+
+from linkwork.cli.terminal import wrapped
+from linkwork.foundation.errors import LinkworkError, MechanismError, Problem, key_text
+
+__all__ = ["problem_lines"]
+
+_WIDEST_KEY = 28  # longer keys have a line to themselves
+_FORMULA = "    "  # what is indented so much is a formula with a caret below: never wrapped
+
+
+def problem_lines(error: LinkworkError) -> list[str]:
+    """The message of an error in lines that fit the terminal; formulas keep their shape."""
+    first, *rest = str(error).split("\n")
+    lines = wrapped(first, "Error: ", "  ")
+    if isinstance(error, MechanismError):
+        return [*lines, *_listed(error.problems)]
+    return lines + [line for text in rest for line in _wrapped_or_formula(text, "  ")]
+
+
+def _listed(problems: tuple[Problem, ...]) -> list[str]:
+    """Line, key and message of every problem, in columns."""
+    places = ["" if p.line is None else f"line {p.line}" for p in problems]
+    keys = [key_text(p.key) for p in problems]
+    place_width = max(map(len, places), default=0)
+    key_width = max((len(key) for key in keys if len(key) <= _WIDEST_KEY), default=0)
+    lines: list[str] = []
+    for place, key, problem in zip(places, keys, problems, strict=True):
+        head = f"  {place:<{place_width}}  " if place_width else "  "
+        below = " " * (len(head) + (key_width + 2 if key_width else 0))
+        message, *rest = problem.message.split("\n")
+        if len(key) > key_width:
+            lines += [head + key, *wrapped(message, below)]
+        else:
+            lines += wrapped(message, f"{head}{key:<{key_width}}  " if key_width else head, below)
+        for text in rest:
+            lines += _wrapped_or_formula(text, below)
+    return lines
+
+
+def _wrapped_or_formula(text: str, indent: str) -> list[str]:
+    return [text] if text.startswith(_FORMULA) else wrapped(text, indent)

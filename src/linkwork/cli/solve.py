@@ -1,0 +1,100 @@
+"""``linkwork solve``"""
+
+from __future__ import annotations
+
+import math
+
+import click
+
+from linkwork.cli.mechanism_source import read_mechanism
+from linkwork.cli.options import (
+    at_option,
+    debug_option,
+    file_argument,
+    input_values,
+    json_option,
+    set_option,
+)
+from linkwork.cli.position_page import position_lines
+from linkwork.cli.terminal import print_json, print_lines
+from linkwork.numerics.newton import NewtonOptions
+
+__all__ = ["solve"]
+
+_DEFAULT = NewtonOptions()
+_POSITIVE = click.FloatRange(min=0.0, min_open=True, max=math.inf, max_open=True)
+
+
+@click.command
+@file_argument
+@at_option
+@click.option(
+    "--from-guess",
+    is_flag=True,
+    help="Start Newton-Raphson from the guess at the asked value, instead of solving at the "
+    "guess's own value and following the motion from there.",
+)
+@click.option("--show-steps", is_flag=True, help="Show every Newton-Raphson iteration.")
+@click.option(
+    "--equation-tolerance",
+    type=_POSITIVE,
+    default=_DEFAULT.equation_tolerance,
+    show_default=True,
+    help="Stop when every equation is satisfied to this.",
+)
+@click.option(
+    "--solution-tolerance",
+    type=_POSITIVE,
+    default=_DEFAULT.solution_tolerance,
+    show_default=True,
+    help="Stop when no unknown changes by more than this.",
+)
+@click.option(
+    "--max-steps",
+    type=click.IntRange(1),
+    default=_DEFAULT.max_steps,
+    show_default=True,
+    help="Stop without a position after so many iterations.",
+)
+@click.option("--full-steps", is_flag=True, help="Do not shorten steps that turn a link far.")
+@set_option
+@json_option
+@debug_option
+@click.pass_context
+def solve(
+    context: click.Context,
+    file: str,
+    at: tuple[str, ...],
+    from_guess: bool,
+    show_steps: bool,
+    equation_tolerance: float,
+    solution_tolerance: float,
+    max_steps: int,
+    full_steps: bool,
+    changes: tuple[str, ...],
+    as_json: bool,
+) -> None:
+    """Solve one position by Newton-Raphson.
+
+    \b
+      linkwork solve rapier.toml --at 90
+      linkwork solve rapier.toml --from-guess --show-steps
+      linkwork solve gripper.toml --at left=90 --at right=45
+    """
+    mechanism = read_mechanism(file, changes)
+    options = NewtonOptions(
+        equation_tolerance=equation_tolerance,
+        solution_tolerance=solution_tolerance,
+        max_steps=max_steps,
+        largest_turn=math.inf if full_steps else _DEFAULT.largest_turn,
+    )
+    values = input_values(mechanism, at)
+    position = mechanism.solve(
+        values, from_guess=from_guess, options=options, with_steps=show_steps
+    )
+    if as_json:
+        print_json(position.to_dict())
+    else:
+        print_lines(position_lines(mechanism, position, from_guess=from_guess))
+    if not position.status.ok:
+        context.exit(1)

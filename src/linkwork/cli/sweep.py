@@ -1,0 +1,123 @@
+"""``linkwork sweep``"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from linkwork.cli import picture
+from linkwork.cli.mechanism_source import read_mechanism
+from linkwork.cli.motion_page import failure_line, motion_lines
+from linkwork.cli.options import NUMBER, debug_option, file_argument, json_option, set_option
+from linkwork.cli.output_file import check_outputs, write_text
+from linkwork.cli.position_page import residual_measure
+from linkwork.cli.terminal import print_json, print_lines, progress, wrapped
+from linkwork.drawing.scene import Scene
+from linkwork.everyday import Mechanism
+from linkwork.export.csv_file import csv_lines
+from linkwork.foundation.errors import InputError
+from linkwork.mechanism.parts import Number
+from linkwork.results.motion import Motion
+from linkwork.results.table import table_of
+
+__all__ = ["sweep"]
+
+
+@click.command
+@file_argument
+@click.option("--from", "start", type=NUMBER, help="First input value, in the file's unit.")
+@click.option("--to", "stop", type=NUMBER, help="Last input value.")
+@click.option("--step", type=NUMBER, help="Distance between input values.")
+@click.option("--csv", metavar="PATH", help="Write the whole table; - is standard output.")
+@click.option("--draw", metavar="PATH", help="Draw the start position: .png, .svg or .pdf.")
+@set_option
+@json_option
+@debug_option
+@click.pass_context
+def sweep(
+    context: click.Context,
+    file: str,
+    start: Number | None,
+    stop: Number | None,
+    step: Number | None,
+    csv: str | None,
+    draw: str | None,
+    changes: tuple[str, ...],
+    as_json: bool,
+) -> None:
+    """Solve the whole cycle, following the motion of the guess.
+
+    Prints a summary; rows that were not found are kept in the table, with
+    the reason.
+
+    \b
+      linkwork sweep rapier.toml
+      linkwork sweep rapier.toml --csv rapier.csv --draw rapier.png
+      linkwork sweep rapier.toml --from 90 --to 180 --step 0.5 --csv - | head
+    """
+    if as_json and csv == "-":
+        raise InputError("--json and --csv - both want standard output: name a file for the table")
+    if draw is not None:
+        picture.check_picture(draw)
+    check_outputs(file, csv, draw)
+    mechanism = read_mechanism(file, changes)
+    with progress("sweeping") as tell:
+        motion = mechanism.sweep(start=start, stop=stop, step=step, progress=tell)
+    page = None if draw is None else _start_scene(mechanism, motion)
+    written = _written(motion, page, csv, draw)
+    if as_json:
+        print_json(_data(motion))
+    elif csv != "-":
+        page_lines = motion_lines(motion, residual_measure(mechanism))
+        print_lines([*page_lines, "", *(written or _hint(file, motion))])
+    if not motion.found.all():
+        if as_json or csv == "-":
+            print_lines(failure_line(motion), err=True)
+        context.exit(1)
+
+
+def _start_scene(mechanism: Mechanism, motion: Motion) -> Scene | None:
+    """The picture of the start; None if there is no start to draw."""
+    position = mechanism.solve()
+    return picture.scene(position, motion) if position.status.ok else None
+
+
+def _written(motion: Motion, page: Scene | None, csv: str | None, draw: str | None) -> list[str]:
+    """Write the files that were asked for and say so."""
+    said = []
+    if csv == "-":
+        for line in csv_lines(table_of(motion)):
+            click.echo(line, nl=False)
+    elif csv is not None:
+        write_text(csv, csv_lines(table_of(motion)))
+        said.append(f"Wrote {csv}: {len(motion)} rows.")
+    if draw is not None and page is not None:
+        picture.write(page, draw)
+        said.append(f"Wrote {draw}: the start position.")
+    elif draw is not None:
+        said.append(f"Did not write {draw}: there is no position to draw.")
+    return said
+
+
+def _hint(file: str, motion: Motion) -> list[str]:
+    """What to do next."""
+    if not motion.found.any():
+        return ["How it went: linkwork solve FILE --show-steps"]
+    stem = "cycle" if file == "-" else Path(file).stem
+    return wrapped(f"The whole table: --csv {stem}.csv. A picture: --draw {stem}.png.")
+
+
+def _data(motion: Motion) -> dict[str, Any]:
+    table = table_of(motion)
+    return {
+        "mechanism": motion.mechanism,
+        "units": dict(table.units),
+        "columns": {name: column.tolist() for name, column in table.columns.items()},
+        "limits": [
+            {"input": limit.input, "bracket": list(limit.bracket), "status": limit.status.name}
+            for limit in motion.limits
+        ],
+        "counts": {status.name: count for status, count in motion.counts.items()},
+    }
