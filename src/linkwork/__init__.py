@@ -2,35 +2,77 @@
 
 from __future__ import annotations
 
-from linkwork.everyday import (
-    Mechanism,
-    example,
-    examples,
-    linkage,
-    load,
-    loads,
-    loops,
-    plain_equations,
-)
-from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.errors import (
-    ExpressionError,
-    InputError,
-    LinkworkError,
-    MechanismError,
-    MechanismFileError,
-    MissingPackageError,
-    NotConvergedError,
-    Problem,
-    UnknownNameError,
-)
-from linkwork.foundation.status import Status
-from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
-from linkwork.numerics.newton import NewtonOptions
-from linkwork.results.check import CheckReport
-from linkwork.results.motion import Limit, Motion, Series
-from linkwork.results.position import Certificate, Position
-from linkwork.results.table import Table
+from typing import TYPE_CHECKING
+
+from linkwork.foundation.lazy import loader
+
+if TYPE_CHECKING:
+    from linkwork.everyday import (
+        Mechanism,
+        example,
+        example_text,
+        examples,
+        linkage,
+        load,
+        loads,
+        loops,
+        plain_equations,
+    )
+    from linkwork.foundation.angles import AngleUnit
+    from linkwork.foundation.errors import (
+        ExpressionError,
+        InputError,
+        LinkworkError,
+        MechanismError,
+        MechanismFileError,
+        MissingPackageError,
+        NotConvergedError,
+        Problem,
+        UnknownNameError,
+    )
+    from linkwork.foundation.status import Status
+    from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
+    from linkwork.numerics.newton import NewtonOptions
+    from linkwork.results.check import CheckReport
+    from linkwork.results.motion import Limit, Motion, Series
+    from linkwork.results.position import Certificate, Position
+    from linkwork.results.table import Table
+else:
+    __getattr__ = loader(
+        __name__,
+        {
+            "everyday": (
+                "Mechanism",
+                "example",
+                "example_text",
+                "examples",
+                "linkage",
+                "load",
+                "loads",
+                "loops",
+                "plain_equations",
+            ),
+            "foundation.angles": ("AngleUnit",),
+            "foundation.errors": (
+                "ExpressionError",
+                "InputError",
+                "LinkworkError",
+                "MechanismError",
+                "MechanismFileError",
+                "MissingPackageError",
+                "NotConvergedError",
+                "Problem",
+                "UnknownNameError",
+            ),
+            "foundation.status": ("Status",),
+            "mechanism.parts": ("Cylinder", "Input", "Slider", "Slot"),
+            "numerics.newton": ("NewtonOptions",),
+            "results.check": ("CheckReport",),
+            "results.motion": ("Limit", "Motion", "Series"),
+            "results.position": ("Certificate", "Position"),
+            "results.table": ("Table",),
+        },
+    )
 
 __all__ = [
     "AngleUnit",
@@ -58,6 +100,7 @@ __all__ = [
     "Table",
     "UnknownNameError",
     "example",
+    "example_text",
     "examples",
     "linkage",
     "load",

@@ -8,21 +8,17 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, Self
 
-from linkwork.drawing.mechanism_scene import scene_of
-from linkwork.drawing.scene import Scene
-from linkwork.equations.model import LoopEquations
-from linkwork.equations.writing import EquationSheet
+from linkwork import drawing, motion, textfile
+from linkwork import equations as closure
 from linkwork.foundation.errors import MechanismError, UnknownNameError, choices
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.parts import Number
-from linkwork.motion import check, model, solving, sweep
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.check import CheckReport
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
-from linkwork.textfile.reader import ReadFile, read_file, read_text
 
 __all__ = [
     "Mechanism",
@@ -54,10 +50,10 @@ class Mechanism:
         If the equations cannot be written or do not determine the motion.
     """
 
-    def __init__(self, description: Description, read: ReadFile | None = None) -> None:
+    def __init__(self, description: Description, read: textfile.ReadFile | None = None) -> None:
         self.description = description
         try:
-            self.model = model.model_of(description)
+            self.model = motion.model_of(description)
         except MechanismError as error:
             if read is None:
                 raise
@@ -83,7 +79,7 @@ class Mechanism:
         return self.description.name
 
     @property
-    def loop_equations(self) -> LoopEquations:
+    def loop_equations(self) -> closure.LoopEquations:
         """The closure equations as symbols."""
         return self.model.equations
 
@@ -100,11 +96,11 @@ class Mechanism:
 
     def check(self) -> CheckReport:
         """What was understood: loops, unknowns, blocks, mobility, the start."""
-        return check.check(self.model)
+        return motion.check(self.model)
 
-    def equations(self) -> EquationSheet:
+    def equations(self) -> closure.EquationSheet:
         """The loop equations and the Jacobian, to be shown as text or LaTeX."""
-        return EquationSheet(self.model.equations)
+        return closure.EquationSheet(self.model.equations)
 
     def solve(
         self,
@@ -115,8 +111,8 @@ class Mechanism:
         with_steps: bool = False,
         throw: bool = False,
     ) -> Position:
-        """The position at one input value; see :func:`linkwork.motion.solving.solve`."""
-        return solving.solve(
+        """The position at one input value; see :func:`linkwork.motion.solve`."""
+        return motion.solve(
             self.model,
             at,
             from_guess=from_guess,
@@ -134,7 +130,7 @@ class Mechanism:
         options: NewtonOptions | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> Motion:
-        """The whole cycle; see :func:`linkwork.motion.sweep.sweep`.
+        """The whole cycle; see :func:`linkwork.motion.sweep`.
 
         Parameters
         ----------
@@ -143,26 +139,22 @@ class Mechanism:
         """
         asked = self.model
         if not (start is None and stop is None and step is None):
-            asked = model.model_of(self.description.with_range(start, stop, step))
-        return sweep.sweep(asked, options=options, progress=progress)
+            asked = motion.model_of(self.description.with_range(start, stop, step))
+        return motion.sweep(asked, options=options, progress=progress)
 
-    def scene(self, at: float | Mapping[str, float] | None = None) -> Scene:
+    def scene(self, at: float | Mapping[str, float] | None = None) -> drawing.Scene:
         """A picture of one position with the traces of the traced points over the cycle."""
         position = self.solve(at, throw=True)
-        motion = self.sweep() if self.description.inputs else None
-        return scene_of(position, motion)
+        cycle = self.sweep() if self.description.inputs else None
+        return drawing.scene_of(position, cycle)
 
     def draw(self, path: str | Path, at: float | Mapping[str, float] | None = None) -> None:
         """Draw one position to a PNG, SVG or PDF file."""
-        from linkwork.drawing.matplotlib_writer import write  # noqa: PLC0415
-
-        write(self.scene(at), Path(path))
+        drawing.write(self.scene(at), Path(path))
 
     def save(self, path: str | Path) -> None:
         """Write the mechanism as a TOML file."""
-        from linkwork.textfile.writer import save  # noqa: PLC0415
-
-        save(self.description, Path(path))
+        textfile.save(self.description, Path(path))
 
 
 def load(path: str | Path) -> Mechanism:
@@ -173,18 +165,18 @@ def load(path: str | Path) -> Mechanism:
     MechanismFileError
         With every problem found: file, line, key.
     """
-    read = read_file(Path(path))
+    read = textfile.read_file(Path(path))
     return Mechanism(read.description, read)
 
 
 def loads(text: str, name: str = "text") -> Mechanism:
     """Read a mechanism from the text of a file."""
-    read = read_text(text, name)
+    read = textfile.read_text(text, name)
     return Mechanism(read.description, read)
 
 
 def _library() -> Iterator[tuple[str, Any]]:
-    for entry in sorted(files("linkwork.library").iterdir(), key=lambda e: e.name):
+    for entry in sorted(files("linkwork").joinpath("library").iterdir(), key=lambda e: e.name):
         if entry.name.endswith(".toml"):
             yield entry.name.removesuffix(".toml"), entry
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from hypothesis import strategies as st
 
 from linkwork.foundation.angles import AngleUnit
@@ -30,7 +32,7 @@ primes = st.sampled_from(["", "'", "''"])
 
 
 @st.composite
-def heads(draw: st.DrawFn, dimension_names: list[str]) -> dict:
+def heads(draw: st.DrawFn, dimension_names: list[str]) -> dict[str, Any]:
     """What every form has; the first dimension is a number, others may be formulas of it."""
     dimensions: dict[str, float | str] = {}
     for name in dimension_names:
@@ -46,7 +48,7 @@ def heads(draw: st.DrawFn, dimension_names: list[str]) -> dict:
 
 
 @st.composite
-def ranges(draw: st.DrawFn) -> dict:
+def ranges(draw: st.DrawFn) -> dict[str, Any]:
     """A range of twelve rows, in one of its spellings."""
     start = draw(st.integers(-500, 500))
     step = draw(st.sampled_from([1, 2, 0.5, -3]))
@@ -102,7 +104,7 @@ def linkages(draw: st.DrawFn) -> Linkage:
 
 
 @st.composite
-def guesses(draw: st.DrawFn, names: list[str]) -> dict:
+def guesses(draw: st.DrawFn, names: list[str]) -> dict[str, Any]:
     return {name: draw(plain_numbers) for name in names}
 
 

@@ -166,6 +166,7 @@ x = -2
 
 SAMPLES = {
     "four_bar": FOUR_BAR,
+    "sketched": FOUR_BAR.replace("\n\n[points]", "\nsketch = true\n\n[points]"),
     "quick_return": QUICK_RETURN,
     "rapier": RAPIER,
     "cubic": CUBIC,

@@ -34,6 +34,7 @@ def test_every_case_has_its_own_title() -> None:
 
 BAD_BYTES = {
     "10 MB": (b"# comment\n" * 1_000_000, "has 10.0 MB: at most 1 MB is read"),
+    "1.2 MB of 600 000 letters": ("é".encode() * 600_000, "has 1.2 MB: at most 1 MB is read"),
     "Latin-1": (
         b'# one\nname = "M\xfcller"\n',
         "byte 15 (0xfc) is not UTF-8: save the file as UTF-8",
@@ -48,7 +49,7 @@ BAD_BYTES = {
     "quoted deep key": (b'"a".' * 200_000 + b"a = 1", "a dotted key of more than 8 parts"),
     "huge number": (b"a = " + b"1" * 900_000, "a word of 900000 characters: at most 400 are read"),
 }
-LINES = {"Latin-1": 2, "NUL": 2, "10 MB": None}
+LINES = {"Latin-1": 2, "NUL": 2, "10 MB": None, "1.2 MB of 600 000 letters": None}
 
 
 @pytest.mark.parametrize("title", BAD_BYTES)

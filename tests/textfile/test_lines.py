@@ -41,6 +41,7 @@ k = 1
 k = 2
 [input.table]
 deep = 1
+quotes = ["""a"""", \'\'\'b\'\'\'\', 3]
 '''
 WHERE: dict[Path, int] = {
     ("format",): 2,
@@ -65,6 +66,7 @@ WHERE: dict[Path, int] = {
     ("input", 1, "sub", 1): 24,
     ("input", 1, "sub", 1, "k"): 25,
     ("input", 1, "table", "deep"): 27,
+    ("input", 1, "table", "quotes", 2): 28,
 }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from importlib.resources import files
+from typing import Any
 
 import jsonschema
 import pytest
@@ -66,7 +67,7 @@ def test_wrong_structure_is_refused_by_schema_and_reader(title: str) -> None:
 
 
 def test_every_key_explains_itself() -> None:
-    def described(schema: dict) -> list[str]:
+    def described(schema: dict[str, Any]) -> list[str]:
         found = []
         for key, entry in schema.get("properties", {}).items():
             found += [key] if not entry.get("description") or not entry.get("title") else []

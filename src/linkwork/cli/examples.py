@@ -53,7 +53,7 @@ def _listing() -> list[str]:
     lines: list[str] = []
     for name in example_names():
         data = tomllib.loads(example_text(name))
-        lines += sentence(bold, name, f" {data.get('name', '')}")
+        lines += sentence(bold, name, f" {data.get('name', '')}", "    ")
         if source := data.get("source"):
             lines.append(shorten(source, WIDTH, initial_indent="    ", placeholder=" …"))
     return [*lines, "", "To start from one: linkwork examples NAME -o FILE.toml"]

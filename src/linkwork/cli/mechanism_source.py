@@ -40,8 +40,8 @@ def _read(file: str) -> ReadFile:
     path = Path(file)
     if path.stem in examples() and path.parent == Path() and not path.exists():
         raise InputError(
-            f'there is no file "{file}"; to get the example of this name: '
-            f"linkwork examples {path.stem} -o {path.stem}.toml"
+            f'there is no file "{file}"; to get the example of this name:\n'
+            f"    linkwork examples {path.stem} -o {path.stem}.toml"
         )
     return read_file(path)
 

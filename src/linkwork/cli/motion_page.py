@@ -21,7 +21,7 @@ _MOST_RUNS = 4  # stretches of failed rows that are named
 def motion_lines(motion: Motion, measure: str) -> list[str]:
     """The summary of a motion; ``measure`` stands behind residuals."""
     head = f"{_range_text(motion)}: {len(motion)} positions"
-    lines = [*title_lines(motion.mechanism), *sentence(str, head, "")]
+    lines = [*title_lines(motion.mechanism), *sentence(str, head)]
     pairs = [*_counts(motion), *_limits(motion)]
     if motion.found.any():
         pairs += _evidence(motion, measure)
@@ -33,7 +33,7 @@ def motion_lines(motion: Motion, measure: str) -> list[str]:
 def failure_line(motion: Motion) -> list[str]:
     """How many rows were not found, in one sentence."""
     missing = len(motion) - int(motion.found.sum())
-    return sentence(bad, f"{missing} of {len(motion)} positions were not found", "")
+    return sentence(bad, f"{missing} of {len(motion)} positions were not found")
 
 
 def _range_text(motion: Motion) -> str:

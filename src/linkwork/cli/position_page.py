@@ -167,7 +167,7 @@ def _steps(mechanism: Mechanism, position: Position, from_guess: bool) -> Iterat
     here = dict(position.input) if from_guess else own
     where = _inputs_text(mechanism, here)
     yield ""
-    yield from sentence(str, f"Newton-Raphson from the guess {where}".rstrip(), "")
+    yield from sentence(str, f"Newton-Raphson from the guess {where}".rstrip())
     if position.status.ok and here != dict(position.input):
         yield from sentence(
             str, f"(then followed to the position {_inputs_text(mechanism, position.input)})", ""
@@ -180,7 +180,7 @@ def _trail(mechanism: Mechanism, trail: NewtonTrail) -> Iterator[str]:
     kinds = {v.name: Kind(v.kind) for v in mechanism.loop_equations.unknowns}
     units = mechanism.model.units
     if len(mechanism.model.compiled.solver.blocks) > 1:
-        yield from sentence(str, ", ".join(f'"{label}"' for label in trail.equations), "")
+        yield from sentence(str, ", ".join(f'"{label}"' for label in trail.equations))
     steps = trail.steps
     columns = [Column(header="k", cells=[str(step.k) for step in steps], align="right")]
     for name in steps[0].unknowns:
@@ -194,4 +194,4 @@ def _trail(mechanism: Mechanism, trail: NewtonTrail) -> Iterator[str]:
     columns.append(Column(header="step", cells=changes, align="right"))
     yield from table_lines(columns)
     if not trail.status.ok:
-        yield from sentence(bad, trail.status.value, "")
+        yield from sentence(bad, trail.status.value)

@@ -125,9 +125,9 @@ def wrapped(text: str, first: str = "", rest: str | None = None) -> list[str]:
     ) or [first.rstrip()]
 
 
-def sentence(style: Style, head: str, rest: str) -> list[str]:
-    """A wrapped sentence whose beginning is styled."""
-    first, *more = wrapped(f"{head} {rest}")
+def sentence(style: Style, head: str, rest: str = "", indent: str = "") -> list[str]:
+    """A wrapped sentence whose beginning is styled; ``indent`` is that of its later lines."""
+    first, *more = wrapped(f"{head} {rest}", "", indent)
     return [first.replace(head, style(head), 1), *more]
 
 

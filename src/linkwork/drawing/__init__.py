@@ -1,9 +1,36 @@
 """Pictures of positions: a pose becomes a scene of primitives, writers only translate it."""
 
-from linkwork.drawing.matplotlib_writer import figure, render, write
-from linkwork.drawing.mechanism_scene import SceneOptions, reach_of, scene_of
-from linkwork.drawing.scene import Arc, Box, Disc, Hatch, Polygon, Polyline, Role, Scene, Text
-from linkwork.drawing.theme import LIGHT, Style, Theme
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwork.foundation.lazy import loader
+
+if TYPE_CHECKING:
+    from linkwork.drawing.matplotlib_writer import figure, render, write
+    from linkwork.drawing.mechanism_scene import SceneOptions, reach_of, scene_of
+    from linkwork.drawing.scene import Arc, Box, Disc, Hatch, Polygon, Polyline, Role, Scene, Text
+    from linkwork.drawing.theme import LIGHT, Style, Theme
+else:
+    __getattr__ = loader(
+        __name__,
+        {
+            "matplotlib_writer": ("figure", "render", "write"),
+            "mechanism_scene": ("SceneOptions", "reach_of", "scene_of"),
+            "scene": (
+                "Arc",
+                "Box",
+                "Disc",
+                "Hatch",
+                "Polygon",
+                "Polyline",
+                "Role",
+                "Scene",
+                "Text",
+            ),
+            "theme": ("LIGHT", "Style", "Theme"),
+        },
+    )
 
 __all__ = [
     "LIGHT",

@@ -68,7 +68,7 @@ def _track(
     carrying = [g for g in guides if g.point in pose.skeleton.pins] or guides[:1]
     places = tuple(pose.points[g.point] for g in carrying)
     travels = [pose.displacement(g) for g in carrying]
-    first = pose.points[guide.point] - travels[0].now * along
+    first = pose.points[carrying[0].point] - travels[0].now * along
     low, high = min(t.low for t in travels), max(t.high for t in travels)
     if not guide.block and not fixed and not pose.paths:
         low, high = _slot_without_motion(pose, guide, low, high, measures)

@@ -1,1 +1,24 @@
 """Loop-closure equations: written from a mechanism or read from a person, shown, compiled."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwork.foundation.lazy import loader
+
+if TYPE_CHECKING:
+    from linkwork.equations.model import LoopEquations
+    from linkwork.equations.writing import EquationSheet
+else:
+    __getattr__ = loader(
+        __name__,
+        {
+            "model": ("LoopEquations",),
+            "writing": ("EquationSheet",),
+        },
+    )
+
+__all__ = [
+    "EquationSheet",
+    "LoopEquations",
+]

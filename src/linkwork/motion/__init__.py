@@ -1,1 +1,31 @@
 """Positions, whole cycles and rates of a mechanism."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwork.foundation.lazy import loader
+
+if TYPE_CHECKING:
+    from linkwork.motion.checking import check
+    from linkwork.motion.model import Model, model_of
+    from linkwork.motion.solving import solve
+    from linkwork.motion.sweeping import sweep
+else:
+    __getattr__ = loader(
+        __name__,
+        {
+            "checking": ("check",),
+            "model": ("Model", "model_of"),
+            "solving": ("solve",),
+            "sweeping": ("sweep",),
+        },
+    )
+
+__all__ = [
+    "Model",
+    "check",
+    "model_of",
+    "solve",
+    "sweep",
+]

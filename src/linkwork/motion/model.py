@@ -11,13 +11,14 @@ import numpy.typing as npt
 from linkwork.equations.compiling import Compiled, compile_equations
 from linkwork.equations.from_linkage import write_loops
 from linkwork.equations.from_loops import read_loops, read_plain_equations
-from linkwork.equations.model import LoopEquations
+from linkwork.equations.model import LoopEquations, Variable
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.skeleton import DrivenPart, Skeleton
+from linkwork.motion.lock_step import lock_step
 from linkwork.motion.speeds import input_speed
 from linkwork.results.quantity import Kind, Units
 
@@ -72,6 +73,18 @@ class Model:
         ]
         return np.array(values, dtype=float)
 
+    @property
+    def input_units(self) -> dict[str, str]:
+        """The everyday unit of every input."""
+        return {v.name: self.units.of(Kind(v.kind)) for v in self.equations.inputs}
+
+    @cached_property
+    def derivative_unit(self) -> str:
+        """What derivatives are taken by: ``rad`` or the length unit of the leading input."""
+        if not self.equations.inputs:
+            return ""
+        return self.units.of_rate(Kind(self.equations.inputs[lock_step(self.rows)[0]].kind))
+
     @cached_property
     def speed(self) -> float | None:
         """Rate of the leading input, [rad/s] or [length/s]."""
@@ -122,11 +135,36 @@ def model_of(description: Description) -> Model:
         case Loops():
             equations = read_loops(description)
             fixed = description.links.get("ground", equations.fixed)
-            driven = tuple(DrivenPart(kind="variable", name=v.name) for v in equations.inputs)
+            driven = tuple(_driven_part(description, equations, v) for v in equations.inputs)
             skeleton = Skeleton.of_points(description.links, fixed, description.trace, driven)
         case PlainEquations():
             equations = read_plain_equations(description)
             skeleton = Skeleton()
         case _:
             raise TypeError(f"no equations are known for {type(description).__name__}")
-    return Model(description, equations, compile_equations(equations, where), skeleton)
+    model = Model(description, equations, compile_equations(equations, where), skeleton)
+    _ = model.speed  # a speed that cannot be read is an error of the file, found with the others
+    return model
+
+
+def _driven_part(loops: Loops, equations: LoopEquations, variable: Variable) -> DrivenPart:
+    """The drawn link that turns with an input angle, if there is one: its direction is e^(iφ)."""
+    for link, points in loops.links.items():
+        if link == GROUND or variable.kind != "angle" or len(points) < 2:
+            continue
+        for start, end in ((points[0], points[1]), (points[1], points[0])):
+            if _turns_with(equations, start, end, variable.symbol):
+                return DrivenPart(kind="link", name=link, pivot=start)
+    return DrivenPart(kind="variable", name=variable.name)
+
+
+def _turns_with(equations: LoopEquations, start: str, end: str, symbol: str) -> bool:
+    """Whether the vector between two points is a positive length times e^(i symbol)."""
+    total: dict[tuple[object, ...], complex] = {}
+    for point, sign in ((end, 1), (start, -1)):
+        for term in equations.points[point].terms:
+            key = (term.length, term.phase)
+            total[key] = total.get(key, 0j) + sign * term.value
+    left = {key: value for key, value in total.items() if abs(value) > 1e-12}
+    value = left.pop((None, ((symbol, 1.0),)), 0j)
+    return not left and value.real > 0 and abs(value.imag) <= 1e-12 * value.real

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
+from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.reading import Named, named_series
 from linkwork.motion.start import Start, first_position
@@ -83,20 +84,6 @@ def _rate(model: Model) -> Array:
     """How all inputs move by the leading one, (p,)."""
     rows = model.rows if model.description.inputs else np.zeros((1, 0))
     return lock_step(rows)[1]
-
-
-def lock_step(rows: Array) -> tuple[int, Array]:
-    """The leading input and the rate of every input by it."""
-    if not rows.shape[1]:
-        return 0, np.zeros(0)
-    changes = rows[1] - rows[0] if len(rows) > 1 else np.zeros(rows.shape[1])
-    moving = np.flatnonzero(changes)
-    lead = int(moving[0]) if len(moving) else 0
-    if not len(moving):
-        rate = np.zeros(rows.shape[1])
-        rate[0] = 1.0
-        return 0, rate
-    return lead, changes / changes[lead]
 
 
 def _arrived(model: Model, target: Array, start: Start) -> Position:
@@ -231,6 +218,8 @@ def _position(
         status=status,
         message=message,
         input={name: float(value[0]) for name, value in named.inputs.items()},
+        input_units=model.input_units,
+        derivative_unit=model.derivative_unit,
         unknowns=_values(named.unknowns),
         links=_values(named.links),
         sliders=_values(named.sliders),

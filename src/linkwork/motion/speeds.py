@@ -11,18 +11,10 @@ import numpy.typing as npt
 from linkwork.equations.model import Variable
 from linkwork.foundation.errors import ExpressionError, MechanismError, Problem
 from linkwork.mechanism.description import Description
+from linkwork.mechanism.speed import speed_per_second
+from linkwork.motion.lock_step import lock_step
 
-__all__ = ["input_speed", "leading"]
-
-_ANGULAR = {"rpm": math.pi / 30.0, "rad/s": 1.0, "deg/s": math.pi / 180.0}
-
-
-def leading(rows: npt.NDArray[np.float64]) -> int:
-    """The input that parametrises the table: the first one that changes."""
-    for k in range(rows.shape[1]):
-        if len(rows) > 1 and rows[1, k] != rows[0, k]:
-            return k
-    return 0
+__all__ = ["input_speed"]
 
 
 def input_speed(
@@ -42,11 +34,10 @@ def input_speed(
     ]
     if not given:
         return None
-    lead = leading(rows)
-    step = rows[1] - rows[0] if len(rows) > 1 else np.ones(rows.shape[1])
-    rates = [speed * step[lead] / step[k] if step[k] else math.nan for k, speed in given]
-    for (k, _), rate in zip(given, rates, strict=True):
-        if not math.isclose(rate, rates[0], rel_tol=1e-9):
+    _, rate = lock_step(rows)
+    rates = [speed / rate[k] if rate[k] else math.nan for k, speed in given]
+    for (k, _), leading in zip(given, rates, strict=True):
+        if not math.isclose(leading, rates[0], rel_tol=1e-9):
             message = "contradicts the first speed: in lock-step, speeds are as the steps"
             problem = Problem(key=(*description.input_key(k), "speed"), message=message)
             raise MechanismError([problem], f'mechanism "{description.name}"')
@@ -54,26 +45,13 @@ def input_speed(
 
 
 def _speed(description: Description, k: int, kind: str) -> float:
-    speed = description.inputs[k].speed
-    key = (*description.input_key(k), "speed")
-    units = (
-        {f"{description.length}/s": 1.0}
-        if kind == "length"
-        else _ANGULAR
-        if kind == "angle"
-        else {"1/s": 1.0}
-    )
-    own = description.angle.radians if kind == "angle" else 1.0
-    where = f'mechanism "{description.name}"'
-    text = str(speed).strip()
-    amount, _, unit = text.rpartition(" ")
-    if unit in units:
-        text, factor = amount, units[unit]
-    else:
-        factor = own
+    """The speed of the k-th input, internal units per second."""
+    which = description.inputs[k]
+    assert which.speed is not None
+    driven = {"angle": "link", "length": "slider"}.get(kind, "variable")
     try:
-        number = description.numbers(text)
-    except ExpressionError:
-        message = f'"{speed}" is no speed: write a number and one of {", ".join(units)}'
-        raise MechanismError([Problem(key=key, message=message)], where) from None
-    return number * factor
+        own = speed_per_second(which.speed, driven, description.numbers, description.length)
+    except ExpressionError as error:
+        problem = Problem(key=(*description.input_key(k), "speed"), message=error.message)
+        raise MechanismError([problem], f'mechanism "{description.name}"') from None
+    return own * (description.angle.radians if kind == "angle" else 1.0)

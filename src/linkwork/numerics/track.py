@@ -45,6 +45,9 @@ class TrackOptions:
     ``largest_correction`` [weighted]: how far Newton may move a prediction. ``aim`` is the
     correction the step size aims at. ``contraction``: largest ratio of successive corrections.
     ``rate_error``: how far the rate times the step may be from its prediction [weighted].
+    ``largest_condition``: of the Jacobian. Beyond, rounding hides on which of two crossing
+    branches a position lies: ‖J⁻¹‖² times the rounding of the equations must stay small
+    (Newton-Kantorovich), and 3e6² · 1e-14 is a tenth.
     ``smallest_step``: relative to the path's natural length, below which the track ends.
     """
 
@@ -52,6 +55,7 @@ class TrackOptions:
     aim: float = 0.03
     contraction: float = 0.25
     rate_error: float = 0.2
+    largest_condition: float = 3e6
     first_step: float = 0.1
     largest_step: float = 0.8
     smallest_step: float = 1e-13
@@ -67,6 +71,7 @@ class Node:
     first: Array
     second: Array
     orientation: npt.NDArray[np.int8]
+    condition: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,6 +118,7 @@ def _node(t: float, v: Array, rates: Rates) -> Node:
         first=rates.first[0],
         second=rates.second[0],
         orientation=rates.orientation[0],
+        condition=float(rates.condition[0]),
     )
 
 
@@ -146,7 +152,7 @@ def follow(
     here = start
     if goal == start.t:
         return nodes, None
-    if not here.orientation.all() or not np.isfinite(here.second).all():
+    if not (here.condition <= opt.largest_condition and np.isfinite(here.second).all()):
         return nodes, End(reached=here.t, failed=here.t, status=Status.LOST)
     h = opt.first_step * scale
     failed_at = goal
@@ -195,6 +201,8 @@ def _step(
         return None, factor if correction > opt.largest_correction else None
     rates = solver.rates(found.v, path.rate)
     if not (rates.orientation[0] == here.orientation).all():
+        return None, None
+    if not rates.condition[0] <= opt.largest_condition:
         return None, None
     drift = (rates.first[0] - here.first - h * here.second) / solver.variable_scale
     turn = float(np.abs(drift * h).max())

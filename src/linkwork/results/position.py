@@ -65,6 +65,10 @@ class Position:
         How the search ended, and the sentence for a person.
     input : Mapping[str, float]
         Input values.
+    input_units : Mapping[str, str]
+        Their units.
+    derivative_unit : str
+        What derivatives are taken by: ``rad``, or the length unit; of the first moving input.
     unknowns : Mapping[str, float]
         The solved unknowns; angles unwrapped.
     links : Mapping[str, float]
@@ -93,6 +97,8 @@ class Position:
     status: Status
     message: str
     input: Mapping[str, float]
+    input_units: Mapping[str, str] = FrozenDict()
+    derivative_unit: str = ""
     unknowns: Mapping[str, float]
     links: Mapping[str, float] = FrozenDict()
     sliders: Mapping[str, float] = FrozenDict()

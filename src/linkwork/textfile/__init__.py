@@ -1,9 +1,26 @@
 """Mechanism files: TOML in, with every problem at its line; TOML out, and the JSON Schema."""
 
-from linkwork.textfile.lines import Lines
-from linkwork.textfile.reader import ReadFile, read_bytes, read_file, read_text
-from linkwork.textfile.schema import json_schema, schema_text
-from linkwork.textfile.writer import save, write_text
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwork.foundation.lazy import loader
+
+if TYPE_CHECKING:
+    from linkwork.textfile.lines import Lines
+    from linkwork.textfile.reader import ReadFile, read_bytes, read_file, read_text
+    from linkwork.textfile.schema import json_schema, schema_text
+    from linkwork.textfile.writer import save, write_text
+else:
+    __getattr__ = loader(
+        __name__,
+        {
+            "lines": ("Lines",),
+            "reader": ("ReadFile", "read_bytes", "read_file", "read_text"),
+            "schema": ("json_schema", "schema_text"),
+            "writer": ("save", "write_text"),
+        },
+    )
 
 __all__ = [
     "Lines",

@@ -46,9 +46,8 @@ class Lines:
         return 1
 
     def _exact(self, path: Path) -> int | None:
-        for candidate in (path, (path[0], 0, *path[1:])):
-            if candidate in self.at:
-                return self.at[candidate]
+        if path in self.at:
+            return self.at[path]
         for candidate in (path, (path[0], 0, *path[1:])):
             if _folded(candidate) in self._by_folded:
                 return self._by_folded[_folded(candidate)]

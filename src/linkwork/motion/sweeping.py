@@ -9,15 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from linkwork.foundation.status import Status
+from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.reading import Named, named_series
-from linkwork.motion.solving import lock_step
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.tracking import leading_scale, track_to, turns_freely
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.track import InputPath, Node, Rows, Track, follow, node_at, rows_on_track
 from linkwork.results.motion import Limit, Motion
-from linkwork.results.quantity import Kind
 
 __all__ = ["sweep"]
 
@@ -230,10 +229,8 @@ def _assembled(
         units=model.units,
         skeleton=model.skeleton,
         inputs=named.inputs,
-        input_units={v.name: model.units.of(Kind(v.kind)) for v in model.equations.inputs},
-        derivative_unit=model.units.of_rate(
-            Kind(model.equations.inputs[lock_step(model.rows)[0]].kind)
-        ),
+        input_units=model.input_units,
+        derivative_unit=model.derivative_unit,
         unknowns=named.unknowns,
         links=named.links,
         sliders=named.sliders,

@@ -1,0 +1,34 @@
+"""Several inputs that move in lock-step along one parameter, the first of them that moves."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["lock_step"]
+
+Array = npt.NDArray[np.float64]
+
+
+def lock_step(rows: Array) -> tuple[int, Array]:
+    """The leading input, and the rate of every input by it.
+
+    Parameters
+    ----------
+    rows : (rows, p)
+        The table of input values.
+
+    Returns
+    -------
+    lead : int
+        The first input that changes from row to row, 0 if none does.
+    rate : (p,)
+        1 for the leading input.
+    """
+    inputs = rows.shape[1]
+    changes = rows[1] - rows[0] if len(rows) > 1 else np.zeros(inputs)
+    moving = np.flatnonzero(changes)
+    if not len(moving):
+        return 0, np.eye(1, inputs)[0]
+    lead = int(moving[0])
+    return lead, changes / changes[lead]

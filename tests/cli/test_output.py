@@ -1,0 +1,225 @@
+"""What programs read: JSON, CSV, pictures, files."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from linkwork.cli import output_file
+from linkwork.everyday import example_text, load
+from linkwork.foundation.errors import InputError
+from linkwork.results.table import table_of
+from tests.cli.conftest import Run
+
+
+def _json(text: str) -> Any:
+    def refuse(constant: str) -> None:
+        raise AssertionError(f"{constant} is not JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def test_a_position_as_json(run: Run) -> None:
+    data = _json(run("solve", "slider-crank.toml", "--at", "90", "--json").stdout)
+    assert data["schema"] == 1
+    assert data["units"] == {"angle": "deg", "length": "mm"}
+    assert (data["status"], data["message"]) == ("CONVERGED", "position found")
+    assert data["input"] == {"crank": 90.0}
+    assert data["unknowns"]["stroke"] == pytest.approx(math.sqrt(120**2 - 40**2), rel=1e-12)
+    assert data["sliders"]["stroke"] == data["unknowns"]["stroke"]
+    assert data["points"]["A"] == pytest.approx([0, 40], abs=1e-12)
+    assert {"residual", "iterations", "condition", "certificate", "links"} <= set(data)
+
+
+def test_a_position_that_was_not_found_has_null_for_numbers(run: Run) -> None:
+    data = _json(run("solve", "open.toml", "--json").stdout)
+    assert data["status"] == "CANNOT_CLOSE"
+    assert set(data["unknowns"].values()) == {None}
+    assert data["condition"] is None
+
+
+def test_steps_as_json(run: Run) -> None:
+    data = _json(run("solve", "cubic.toml", "--json", "--show-steps").stdout)
+    assert data["steps"][0]["steps"][1]["unknowns"] == {"x": pytest.approx(-1.8, rel=1e-12)}
+
+
+def test_a_check_as_json(run: Run) -> None:
+    data = _json(run("check", "four-bar.toml", "--json").stdout)
+    assert data["schema"] == 1
+    assert data["mobility"] == {"count": 1, "rank": 1}
+    assert data["start"]["status"] == "CONVERGED"
+    assert _json(run("check", "open.toml", "--json").stdout)["start"]["status"] == "CANNOT_CLOSE"
+
+
+def test_equations_as_json(run: Run) -> None:
+    data = _json(run("equations", "four-bar.toml", "--json").stdout)
+    assert (data["schema"], data["mechanism"]) == (1, "Four-bar")
+    assert data["unknowns"] == ["coupler", "rocker"]
+
+
+def test_a_motion_as_json(run: Run) -> None:
+    done = run("sweep", "double-rocker.toml", "--json")
+    data = _json(done.stdout)
+    assert done.stderr == "38 of 361 positions were not found\n"
+    assert (data["schema"], data["mechanism"]) == (1, "Four-bar")
+    assert set(data["units"]) == set(data["columns"])
+    assert (data["units"]["P.x"], data["units"]["coupler.d1"]) == ("mm", "rad/rad")
+    assert {len(column) for column in data["columns"].values()} == {361}
+    assert data["columns"]["coupler"][0] is None
+    assert data["columns"]["status"][0] == "OUT_OF_REACH"
+    assert data["columns"]["status"][180] == "CONVERGED"
+    assert data["counts"] == {"OUT_OF_REACH": 38, "CONVERGED": 323}
+    assert [limit["status"] for limit in data["limits"]] == ["OUT_OF_REACH"] * 2
+    low, high = data["limits"][0]["bracket"]
+    assert low <= data["limits"][0]["input"] <= high
+
+
+def _rows(text: str) -> tuple[list[str], list[list[str]]]:
+    header, *rows = csv.reader(io.StringIO(text))
+    return header, rows
+
+
+@pytest.mark.parametrize("name", ["four-bar", "double-rocker"])
+def test_csv_gives_every_float_back_exactly(run: Run, folder: Path, name: str) -> None:
+    text = run("sweep", f"{name}.toml", "--csv", "-").stdout
+    header, rows = _rows(text)
+    table = table_of(load(f"{name}.toml").sweep())
+    assert header == list(table.columns)
+    for column, cells in zip(header, zip(*rows, strict=True), strict=True):
+        expected = table[column]
+        if expected.dtype == np.float64:
+            back = np.array([float(cell) if cell else math.nan for cell in cells])
+            np.testing.assert_array_equal(back, expected, err_msg=column)
+    assert run("sweep", f"{name}.toml", "--csv", "table.csv").stdout.endswith(
+        "\nWrote table.csv: 361 rows.\n"
+    )
+    assert (folder / "table.csv").read_bytes() == text.encode()
+
+
+def test_the_table_is_written_although_rows_failed(run: Run, folder: Path) -> None:
+    done = run("sweep", "open.toml", "--csv", "a.csv", "--draw", "a.svg")
+    assert done.exit_code == 1
+    assert len((folder / "a.csv").read_text(encoding="utf-8").splitlines()) == 362
+    assert not (folder / "a.svg").exists()
+    assert "Did not write a.svg: there is no position to draw.\n" in done.stdout
+
+
+def test_range_options_replace_the_range_of_the_file(run: Run) -> None:
+    words = ("--from", "90", "--to", "180/2 + 2*a/40", "--step", "0.5", "--csv", "-")
+    _, rows = _rows(run("sweep", "four-bar.toml", *words).stdout)
+    assert [row[0] for row in rows] == ["90", "90.5", "91", "91.5", "92"]
+
+
+@pytest.mark.parametrize("value", ["50", "5*10", " 50.0 "])
+def test_set_replaces_a_dimension(run: Run, value: str) -> None:
+    words = ("solve", "four-bar.toml", "--at", "0", "--json")
+    data = _json(run(*words, "--set", f"a={value}").stdout)
+    assert data["points"]["A"] == pytest.approx([50, 0], abs=1e-9)
+    assert _json(run(*words).stdout)["points"]["A"] == pytest.approx([40, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize("command", ["check", "equations", "solve", "sweep"])
+def test_every_command_that_reads_a_file_can_set_dimensions(run: Run, command: str) -> None:
+    assert run(command, "four-bar.toml", "--set", "a=41").exit_code == 0
+    assert run(command, "four-bar.toml", "--set", "b=41").exit_code == 2
+
+
+def test_set_finds_a_dimension_in_any_spelling(run: Run, folder: Path) -> None:
+    text = (folder / "four-bar.toml").read_text(encoding="utf-8")
+    renamed = text.replace("a = 40", '"ρ" = 40').replace('= "a"', '= "rho"')
+    (folder / "rho.toml").write_text(renamed, encoding="utf-8")
+    data = _json(run("solve", "rho.toml", "--at", "0", "--json", "--set", "rho=50").stdout)
+    assert data["points"]["A"] == pytest.approx([50, 0], abs=1e-9)
+
+
+def test_at_takes_one_value_for_each_of_several_inputs(run: Run) -> None:
+    words = ("solve", "five-bar.toml", "--at", "left=100", "--at", "right = 2*40", "--json")
+    assert _json(run(*words).stdout)["input"] == {"left": 100.0, "right": 80.0}
+    assert run("solve", "five-bar.toml", "--at", "left=100").exit_code == 2
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+def test_draw_writes_a_picture(run: Run, folder: Path, suffix: str) -> None:
+    done = run("draw", "four-bar.toml", "-o", f"x.{suffix}", "--at", "90")
+    assert (done.exit_code, done.stdout) == (0, f"Wrote x.{suffix}.\n")
+    begin = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[suffix]
+    assert (folder / f"x.{suffix}").read_bytes().startswith(begin)
+
+
+def test_draw_shows_the_position_that_was_asked(run: Run, folder: Path) -> None:
+    for name, at in (("a", "90"), ("b", "90"), ("c", "100")):
+        assert run("draw", "four-bar.toml", "-o", f"{name}.svg", "--at", at).exit_code == 0
+    a, b, c = ((folder / f"{name}.svg").read_bytes() for name in "abc")
+    assert a == b
+    assert a != c
+
+
+def test_sweep_draws_the_start_with_its_traces(run: Run, folder: Path) -> None:
+    done = run("sweep", "four-bar.toml", "--csv", "a.csv", "--draw", "a.svg")
+    assert done.stdout.endswith("\nWrote a.csv: 361 rows.\nWrote a.svg: the start position.\n")
+    assert run("draw", "four-bar.toml", "-o", "b.svg").exit_code == 0
+    assert (folder / "a.svg").read_bytes() == (folder / "b.svg").read_bytes()
+
+
+def test_a_dash_reads_standard_input(run: Run, folder: Path) -> None:
+    text = (folder / "four-bar.toml").read_text(encoding="utf-8")
+    assert run("solve", "-", stdin=text).stdout == run("solve", "four-bar.toml").stdout
+    wrong = run("solve", "-", stdin=text.replace("= 120", "= -120"))
+    assert wrong.exit_code == 2
+    assert wrong.stderr.startswith("Error: 1 problem in standard input\n  line 17  ")
+
+
+def test_an_example_is_printed_as_it_is_and_written_once(run: Run, folder: Path) -> None:
+    text = example_text("rapier-drive")
+    assert run("examples", "rapier-drive").stdout == text
+    done = run("examples", "rapier-drive", "-o", "r.toml")
+    assert done.stdout == "Wrote r.toml. Next: linkwork sweep r.toml\n"
+    assert (folder / "r.toml").read_bytes() == text.encode()
+    (folder / "r.toml").write_text("mine", encoding="utf-8")
+    again = run("examples", "rapier-drive", "-o", "r.toml")
+    assert again.exit_code == 2
+    assert again.stderr == ('Error: "r.toml" exists already: choose another name, or add --force\n')
+    assert (folder / "r.toml").read_text(encoding="utf-8") == "mine"
+    assert run("examples", "rapier-drive", "-o", "r.toml", "--force").exit_code == 0
+    assert (folder / "r.toml").read_bytes() == text.encode()
+
+
+def test_the_schema_is_json(run: Run) -> None:
+    assert _json(run("schema").stdout)["title"] == "Linkwork mechanism file"
+
+
+def test_a_file_that_fails_half_way_leaves_the_old_one(folder: Path) -> None:
+    def pieces() -> Any:
+        yield "new"
+        raise OSError(28, "No space left on device")
+
+    (folder / "a.csv").write_text("old", encoding="utf-8")
+    with pytest.raises(InputError, match=r'^cannot write "a\.csv": No space left on device$'):
+        output_file.write_text("a.csv", pieces())
+    assert (folder / "a.csv").read_text(encoding="utf-8") == "old"
+    assert not list(folder.glob(".*"))
+
+
+def test_a_link_is_followed_and_a_device_is_not_replaced(folder: Path) -> None:
+    (folder / "real.csv").write_text("old", encoding="utf-8")
+    (folder / "link.csv").symlink_to("real.csv")
+    output_file.write_text("link.csv", ["new"])
+    assert (folder / "link.csv").is_symlink()
+    assert (folder / "real.csv").read_text(encoding="utf-8") == "new"
+    pipe = folder / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        output_file.write_text("pipe", ["new"])
+        assert os.read(reader, 10) == b"new"
+    finally:
+        os.close(reader)
+    assert pipe.is_fifo()

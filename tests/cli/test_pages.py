@@ -1,0 +1,281 @@
+"""What a person sees in a terminal of eighty columns."""
+
+from __future__ import annotations
+
+import unicodedata
+from pathlib import Path
+
+import pytest
+
+from linkwork.cli.main import linkwork
+from linkwork.everyday import examples
+from tests.cli.conftest import FILES, Run
+
+COMMANDS = tuple(linkwork.commands)
+PAGES = (("check",), ("solve",), ("solve", "--show-steps"), ("sweep",), ("equations",))
+
+SOLVED = """\
+Slider-crank
+Position found at crank = 90 deg
+
+  unknown       value      1st deriv.          2nd deriv.
+  rod      -19.471221 deg      0      rad/rad    0.353553 rad/rad^2
+  stroke   113.137    mm     -40.0000 mm/rad    14.1421   mm/rad^2
+
+  point   x [mm]   y [mm]
+  O        0.000    0.000
+  X      100.000    0.000
+  A        0.000   40.000
+  B      113.137    0.000
+
+  derivatives  by crank in rad
+"""
+
+CUBIC_STEPS = """\
+A cubic
+Position found
+
+  unknown         value
+  x        -1.769292354
+
+  residual    0
+  iterations  5
+  condition   1.00
+
+Newton-Raphson from the guess
+
+  k             x       |F|      step
+  0  -2            2.00e+00  2.00e-01
+  1  -1.800000000  2.32e-01  3.01e-02
+  2  -1.769948187  4.84e-03  6.55e-04
+  3  -1.769292663  2.28e-06  3.09e-07
+  4  -1.769292354  5.07e-13  6.86e-14
+  5  -1.769292354  0.00e+00
+"""
+
+SWEPT = """\
+Four-bar
+crank from 0 to 360 deg by 1: 361 positions
+  found            323
+  out of reach     38 at 0 to 18, 342 to 360 deg: this branch does not reach the
+                   input value: the motion ends at the limit reported, ask for
+                   values before it
+  limits           crank = 18.19487234 and 341.8051277 deg
+"""
+
+CHECKED = """\
+Four-bar
+  written as  points and links
+  parts       4 links, 4 joints
+  loop        "O2 A B O4"
+  unknowns    coupler [deg], rocker [deg]
+  input       crank [deg]
+  sweep       361 positions
+  blocks      1, all unknowns are solved together
+  mobility    1 by Grübler's count, 1 by rank
+
+"""
+
+MEASURED = """
+Lengths measured between [points], because [lengths] leaves them open
+  link     points  length [mm]
+  coupler  A P         89.0225
+  coupler  B P         60.9262
+"""
+
+FIRST_WORDS = """\
+Usage: linkwork [OPTIONS] [COMMAND] [ARGS]...
+
+  Planar mechanisms, solved from their loop-closure equations.
+
+  A first result in two commands:
+
+    linkwork examples rapier-drive -o rapier.toml
+    linkwork sweep rapier.toml --csv rapier.csv --draw rapier.png
+"""
+
+
+def _too_wide(text: str) -> list[str]:
+    return [
+        line
+        for line in text.splitlines()
+        if sum(2 if unicodedata.east_asian_width(c) in "WF" else 1 for c in line) > 80
+    ]
+
+
+@pytest.mark.parametrize("name", examples())
+def test_every_page_of_the_library_fits_eighty_columns(run: Run, folder: Path, name: str) -> None:
+    assert run("examples", name, "-o", "mechanism.toml").exit_code == 0
+    for command, *options in PAGES:
+        done = run(command, "mechanism.toml", *options)
+        assert done.exit_code in (0, 1) or "no input" in done.stderr, done.output
+        assert _too_wide(done.output) == []
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_every_page_and_message_fits_eighty_columns(run: Run, name: str) -> None:
+    for command, *options in PAGES:
+        assert _too_wide(run(command, f"{name}.toml", *options).output) == []
+
+
+@pytest.mark.parametrize("command", [(), *((name,) for name in COMMANDS)])
+def test_help_fits_and_shows_examples(run: Run, command: tuple[str, ...]) -> None:
+    done = run(*command, "--help")
+    assert done.exit_code == 0
+    assert _too_wide(done.stdout) == []
+    shown = done.stdout.count("\n    linkwork ")
+    assert shown >= (1 if command == ("schema",) else 2)
+
+
+def test_long_names_are_cut_so_that_tables_fit(run: Run, folder: Path) -> None:
+    long = "a_name_that_is_much_longer_than_a_table_of_eighty_columns_has_room_for"
+    text = FILES["slider-crank"].replace("rod", long).replace("Slider-crank", "Name " * 30)
+    (folder / "long.toml").write_text(text, encoding="utf-8")
+    for command, *options in PAGES[:-1]:  # an equation has no place to break within a name
+        done = run(command, "long.toml", *options)
+        assert done.exit_code == 0
+        assert _too_wide(done.stdout) == []
+    assert "a_name_that_is_m…" in run("solve", "long.toml").stdout
+
+
+def test_without_a_command_help_starts_with_the_way_to_a_first_result(run: Run) -> None:
+    done = run()
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert done.stdout.startswith(FIRST_WORDS)
+
+
+def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
+    listed = run("--help").stdout.partition("Commands:\n")[2].splitlines()
+    names = [line.split()[0] for line in listed]
+    assert names == ["check", "equations", "solve", "sweep", "draw", "examples", "schema"]
+
+
+def test_solve_prints_values_derivatives_points_and_evidence(run: Run) -> None:
+    done = run("solve", "slider-crank.toml", "--at", "90")
+    assert done.stdout.startswith(SOLVED)
+    assert "  residual     " in done.stdout
+    assert "of the longest link\n  iterations   " in done.stdout
+
+
+def test_solve_prints_rates_by_time_if_there_is_a_speed(run: Run) -> None:
+    text = run("solve", "four-bar.toml").stdout
+    assert "\n  unknown  velocity        acceleration\n  coupler  " in text
+    assert " rad/s^2\n" in text
+    assert "\n  output   velocity" in text or "\n  output  velocity" in text
+
+
+def test_show_steps_prints_the_newton_table(run: Run) -> None:
+    assert run("solve", "cubic.toml", "--show-steps").stdout == CUBIC_STEPS
+
+
+def test_show_steps_tells_where_the_iteration_was_made(run: Run) -> None:
+    followed = run("solve", "slider-crank.toml", "--at", "60", "--show-steps").stdout
+    assert (
+        "\nNewton-Raphson from the guess at crank = 90 deg\n"
+        "(then followed to the position at crank = 60 deg)\n"
+    ) in followed
+    direct = run("solve", "slider-crank.toml", "--at", "60", "--show-steps", "--from-guess").stdout
+    assert "\nNewton-Raphson from the guess at crank = 60 deg\n\n" in direct
+
+
+def test_max_steps_and_full_steps_reach_the_solver(run: Run) -> None:
+    few = run("solve", "cubic.toml", "--max-steps", "2", "--show-steps")
+    assert few.exit_code == 1
+    assert "\n  2  -1.769948187  4.84e-03\n" in few.stdout
+    short, whole = (
+        run("solve", "double-rocker.toml", "--at", "170", "--from-guess", "--show-steps", *option)
+        for option in ((), ("--full-steps",))
+    )
+    assert "6.98e-01" in short.stdout  # forty degrees, the largest turn
+    assert "6.98e-01" not in whole.stdout
+
+
+@pytest.mark.parametrize("option", ["--equation-tolerance", "--solution-tolerance"])
+def test_a_loose_tolerance_stops_earlier(run: Run, option: str) -> None:
+    text = run("solve", "cubic.toml", option, "0.01").stdout
+    assert "\n  iterations  5\n" not in text
+    assert "Position found" in text
+
+
+def test_sweep_summary_names_what_failed_and_where_the_motion_ends(run: Run) -> None:
+    done = run("sweep", "double-rocker.toml")
+    assert done.stdout.startswith(SWEPT)
+    assert done.stdout.endswith(
+        "\nThe whole table: --csv double-rocker.csv. A picture: --draw double-rocker.png.\n"
+    )
+
+
+def test_sweep_gives_the_range_of_unknowns_outputs_and_traced_points(run: Run) -> None:
+    lines = run("sweep", "slider-crank.toml").stdout.splitlines()
+    assert "  range      minimum   at     maximum   at  unit" in lines
+    assert "  rod     -19.471221   90   19.471221  270  deg" in lines
+    assert "  stroke   80.000     180  160.000       0  mm" in lines
+    rows = [line.split()[0] for line in run("sweep", "four-bar.toml").stdout.splitlines() if line]
+    assert rows[-6:-1] == ["coupler", "rocker", "mu", "P.x", "P.y"]
+
+
+def test_sweep_without_a_start_says_why_and_what_to_do(run: Run) -> None:
+    text = " ".join(run("sweep", "open.toml").stdout.split())
+    assert 'no start 361 at 0 to 360 deg: loop "O2 A B O4" cannot be closed' in text
+    assert text.endswith("How it went: linkwork solve FILE --show-steps")
+
+
+def test_check_tells_what_was_understood(run: Run) -> None:
+    text = run("check", "four-bar.toml").stdout
+    assert text.startswith(CHECKED)
+    assert text.endswith(MEASURED)
+    assert "\nPosition found at crank = 29.7448813 deg, residual " in text
+
+
+def test_check_says_when_grubler_and_rank_differ(run: Run, folder: Path) -> None:
+    text = """\
+format = 1
+name = "Three parallel cranks"
+[points]
+A = [0, 0]
+B = [100, 0]
+C = [200, 0]
+D = [20, 30]
+E = [120, 30]
+F = [220, 30]
+[links]
+ground = ["A", "B", "C"]
+crank = ["A", "D"]
+second = ["B", "E"]
+third = ["C", "F"]
+bar = ["D", "E", "F"]
+[input]
+link = "crank"
+"""
+    (folder / "cranks.toml").write_text(text, encoding="utf-8")
+    done = run("check", "cranks.toml")
+    if done.exit_code == 2:
+        pytest.skip("overdetermined mechanisms are refused")
+    assert "0 by Grübler's count, 1 by rank. They differ: " in done.stdout
+
+
+def test_check_without_a_position_says_why(run: Run) -> None:
+    text = run("check", "open.toml").stdout
+    assert "\nNo position found at crank = 29.7448813 deg:\n  why  loop " in text
+    assert "1 by Grübler's count, not known by rank, which needs a position" in text
+
+
+def test_equations_are_shown_as_text_and_as_latex(run: Run) -> None:
+    assert run("equations", "four-bar.toml").stdout.startswith("Four-bar\n\nunknowns  ")
+    latex = run("equations", "four-bar.toml", "--latex").stdout
+    assert latex.startswith("\\begin{align*}\n")
+    assert latex.endswith("\\]\n")
+
+
+def test_control_characters_of_a_file_do_not_reach_the_terminal(run: Run, folder: Path) -> None:
+    text = FILES["cubic"].replace("A cubic", "A \\u001b[31mcubic")
+    (folder / "escape.toml").write_text(text, encoding="utf-8")
+    assert run("solve", "escape.toml").stdout.startswith("A ?[31mcubic\n")
+
+
+def test_the_library_is_listed_with_titles(run: Run) -> None:
+    text = run("examples").stdout
+    assert "\nrapier-drive  Rapier drive of a loom\n    Section 3.9 of a textbook " in text
+    assert text.endswith("\n\nTo start from one: linkwork examples NAME -o FILE.toml\n")
+    assert all(f"\n{name}  " in f"\n{text}" for name in examples())
+    assert _too_wide(text) == []

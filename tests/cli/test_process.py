@@ -1,0 +1,155 @@
+"""Real processes: pipes, encodings, signals, and what is loaded."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Start
+
+HEAVY = {"matplotlib", "numba", "pandas", "rich", "scipy", "xarray"}
+
+
+def test_solve_loads_nothing_heavy(environment: dict[str, str]) -> None:
+    program = (
+        "import json, sys\n"
+        "from linkwork.cli.main import linkwork\n"
+        "linkwork(['solve', 'four-bar.toml', '--show-steps'], standalone_mode=False)\n"
+        "json.dump([name.partition('.')[0] for name in sys.modules], sys.stderr)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], env=environment, capture_output=True, check=True
+    )
+    loaded = set(json.loads(done.stderr))
+    assert "numpy" in loaded
+    assert not loaded & HEAVY
+
+
+def test_a_reader_that_goes_away_is_no_trouble(environment: dict[str, str]) -> None:
+    words = [sys.executable, "-m", "linkwork", "sweep", "four-bar.toml", "--step", "0.05"]
+    with subprocess.Popen(
+        [*words, "--csv", "-"], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        assert process.stdout.readline().startswith(b"crank,coupler,rocker,")
+        process.stdout.close()
+        assert process.stderr.read() == b""
+        assert process.wait(60) == 141
+
+
+def test_an_interrupt_is_quiet(environment: dict[str, str]) -> None:
+    words = [sys.executable, "-m", "linkwork", "solve", "-"]
+    with subprocess.Popen(
+        words, env=environment, stdin=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        _wait_until_it_reads(process.pid)
+        process.send_signal(signal.SIGINT)
+        assert process.stderr is not None
+        assert process.stderr.read() == b"\nInterrupted.\n"
+        assert process.wait(60) == 130
+
+
+def _wait_until_it_reads(pid: int) -> None:
+    """Until the process sleeps in a read of its standard input."""
+    channel = Path(f"/proc/{pid}/wchan")
+    if not channel.exists():
+        pytest.skip("needs /proc")
+    for _ in range(600):
+        if "pipe_read" in channel.read_text(encoding="ascii"):
+            return
+        time.sleep(0.05)
+    pytest.skip("the kernel does not tell what the process waits for")
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "utf-8"])
+def test_pipes_get_utf8_whatever_the_locale(start: Start, encoding: str) -> None:
+    text = start("examples", "rapier-drive").stdout
+    for words in (("solve", "-"), ("sweep", "-", "--csv", "-")):
+        done = start(*words, stdin=text, PYTHONIOENCODING=encoding)
+        assert (done.returncode, done.stderr) == (0, b"")
+        assert "θ12" in done.stdout.decode("utf-8")
+
+
+def _in_terminal(words: list[str], environment: dict[str, str]) -> bytes:
+    """What a terminal shows of a command."""
+    inside, outside = pty.openpty()
+    with subprocess.Popen(
+        [sys.executable, "-m", "linkwork", *words], env=environment, stdout=outside, stderr=outside
+    ) as process:
+        os.close(outside)
+        shown = b""
+        while True:
+            try:
+                piece = os.read(inside, 65536)
+            except OSError:  # the other side is closed
+                break
+            if not piece:
+                break
+            shown += piece
+        process.wait(60)
+    os.close(inside)
+    return shown.replace(b"\r\n", b"\n")
+
+
+def test_a_terminal_without_greek_shows_question_marks(
+    start: Start, folder: Path, environment: dict[str, str]
+) -> None:
+    start("examples", "rapier-drive", "-o", "r.toml")
+    poor = {**environment, "PYTHONIOENCODING": "latin-1", "NO_COLOR": "1"}
+    shown = _in_terminal(["solve", "r.toml"], poor)
+    assert shown.startswith(b"Rapier drive of a loom\nPosition found at ?12 = 60 deg\n")
+
+
+def test_colour_appears_on_a_terminal_only_and_not_if_unwelcome(
+    start: Start, environment: dict[str, str]
+) -> None:
+    welcome = {k: v for k, v in environment.items() if k != "NO_COLOR"} | {"TERM": "xterm"}
+    assert b"\x1b[32mPosition found\x1b[0m" in _in_terminal(["solve", "four-bar.toml"], welcome)
+    for changes in ({"NO_COLOR": "1"}, {"TERM": "dumb"}):
+        shown = _in_terminal(["solve", "four-bar.toml"], welcome | changes)
+        assert b"Position found" in shown
+        assert b"\x1b" not in shown
+    assert b"\x1b" not in start("solve", "four-bar.toml").stdout
+
+
+def test_progress_is_shown_on_a_terminal_after_a_second_only(
+    start: Start, environment: dict[str, str]
+) -> None:
+    terminal = environment | {"TERM": "xterm"}
+    slow = ["sweep", "four-bar.toml", "--step", "0.001"]
+    assert b"sweeping  [" in _in_terminal(slow, terminal)
+    assert b"sweeping" not in _in_terminal(["sweep", "four-bar.toml"], terminal)
+    assert start(*slow).stderr == b""
+
+
+def test_the_version_is_that_of_the_installed_package(start: Start, folder: Path) -> None:
+    metadata = folder / "linkwork-7.8.9.dist-info"
+    metadata.mkdir()
+    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: linkwork\nVersion: 7.8.9\n")
+    source = Path(__file__).parents[2] / "src"
+    done = start("--version", PYTHONPATH=f"{folder}{os.pathsep}{source}")
+    assert done.stdout == b"linkwork 7.8.9\n"
+
+
+def test_a_full_disk_is_said_once(environment: dict[str, str]) -> None:
+    full = Path("/dev/full")
+    if not full.exists():
+        pytest.skip("needs /dev/full")
+    with full.open("wb") as disk:
+        done = subprocess.run(
+            [sys.executable, "-m", "linkwork", "schema"],
+            env=environment,
+            stdout=disk,
+            stderr=subprocess.PIPE,
+            check=False,
+        )
+    assert (done.returncode, done.stderr) == (2, b"Error: No space left on device\n")

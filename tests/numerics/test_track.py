@@ -1,0 +1,216 @@
+"""Following a branch: it arrives, it ends at dead and change points, it never changes branch."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from linkwork import Input, Mechanism, Status, linkage
+from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.track import InputPath, Node, Track, follow, node_at, rows_on_track
+from tests.numerics.systems import blocks_of, four_bar_table
+from tests.oracles.four_bar import FourBar, random_crank_rockers
+
+Array = npt.NDArray[np.float64]
+PATH = InputPath(origin=np.zeros(1), rate=np.ones(1))
+ROCKER = FourBar(4.0, 2.0, 5.0, 3.5)
+FOLDING = FourBar(4.0, 2.0, 5.0, 2.0)
+# A position of a well-conditioned four-bar is exact to its residual, 1e-14, times its condition.
+CLOSE = 1e-11
+
+
+def start_of(bar: FourBar, theta: float, side: int) -> tuple[BlockSolver, Node]:
+    solver = blocks_of(four_bar_table(bar))
+    e3, e4 = bar.phasors(np.array(theta), side)
+    v = np.array([np.angle(e3), np.angle(e4), theta])
+    return solver, node_at(solver, PATH, theta, v)
+
+
+def off_branch(bar: FourBar, v: Array, side: int) -> float:
+    """Largest distance of exp(i θ3), exp(i θ4) from the closed form."""
+    e3, e4 = bar.phasors(v[:, 2], side)
+    return float(max(np.abs(np.exp(1j * v[:, 0]) - e3).max(), np.abs(np.exp(1j * v[:, 1]) - e4).max()))
+
+
+@pytest.mark.parametrize("goal", [7.0, -9.5, 1.0 + 1e-9, 25.0])
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_track_arrives_exactly_at_its_goal_on_its_branch(goal: float, side: int) -> None:
+    solver, start = start_of(ROCKER, 1.0, side)
+    seen: list[float] = []
+    nodes, end = follow(solver, PATH, start, goal, 1.0, progress=seen.append)
+    assert end is None
+    assert nodes[-1].t == goal
+    assert seen == [node.t for node in nodes]
+    assert np.all(np.diff([start.t, *seen]) * math.copysign(1.0, goal - 1.0) > 0)
+    assert off_branch(ROCKER, np.stack([node.v for node in nodes]), side) < CLOSE
+
+
+def test_a_track_to_where_it_stands_has_no_steps() -> None:
+    solver, start = start_of(ROCKER, 1.0, 1)
+    assert follow(solver, PATH, start, 1.0, 1.0) == ([], None)
+
+
+def test_nodes_carry_the_derivatives_of_the_branch() -> None:
+    solver, start = start_of(ROCKER, 1.0, 1)
+    h = 1e-2
+    places = 1.0 + h * np.arange(-4, 5)
+    angle = np.unwrap(np.angle(ROCKER.phasors(places, 1)[1]))
+    # central differences of eighth and sixth order: truncation below 1e-12 at this step
+    slope = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
+    bend = np.array([0, 1 / 90, -3 / 20, 3 / 2, -49 / 18, 3 / 2, -3 / 20, 1 / 90, 0])
+    assert start.first[1] == pytest.approx(slope @ angle / h, abs=1e-11)
+    assert start.second[1] == pytest.approx(bend @ angle / h**2, abs=1e-9)
+    assert start.first[2] == 1.0
+    assert start.second[2] == 0.0
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_track_ends_at_the_dead_point(side: int) -> None:
+    (dead,) = FOLDING.dead_points()
+    assert dead == pytest.approx(math.acos(11 / 16), rel=1e-15)
+    solver, start = start_of(FOLDING, 2.0, side)
+    for goal, limit in ((0.0, dead), (2 * math.pi, 2 * math.pi - dead)):
+        nodes, end = follow(solver, PATH, start, goal, 1.0)
+        assert end is not None
+        assert end.status is Status.OUT_OF_REACH
+        assert end.reached == pytest.approx(limit, abs=1e-10)
+        assert end.reached == nodes[-1].t
+        assert abs(end.failed - end.reached) < 1e-12
+        # a small part of the square root of the distance that is left
+        assert off_branch(FOLDING, np.stack([node.v for node in nodes]), side) < 1e-8
+
+
+def test_a_track_from_a_dead_point_says_that_it_is_lost() -> None:
+    (dead,) = FOLDING.dead_points()
+    solver = blocks_of(four_bar_table(FOLDING))
+    a = 2.0 * np.exp(1j * dead)
+    v = np.array([np.angle(4.0 - a), np.angle(4.0 - a), dead])
+    nodes, end = follow(solver, PATH, node_at(solver, PATH, dead, v), 2.0, 1.0)
+    assert nodes == []
+    assert end is not None
+    assert (end.reached, end.failed, end.status) == (dead, dead, Status.LOST)
+
+
+def test_a_track_from_a_change_point_does_not_choose_a_branch() -> None:
+    solver = blocks_of(four_bar_table(FourBar(2.0, 1.0, 2.0, 1.0)))
+    start = node_at(solver, PATH, 0.0, np.zeros(3))
+    nodes, end = follow(solver, PATH, start, 1.0, 1.0)
+    assert nodes == []
+    assert end is not None
+    assert end.status is Status.LOST
+
+
+def test_rows_between_nodes_are_the_positions_of_the_branch() -> None:
+    solver, start = start_of(ROCKER, 1.0, -1)
+    nodes, end = follow(solver, PATH, start, 8.0, 1.0)
+    assert end is None
+    t = np.linspace(1.0, 8.0, 701)
+    rows = rows_on_track(solver, PATH, Track(nodes=(start, *nodes)), t, 1.0)
+    assert set(rows.status.tolist()) == {Status.CONVERGED.code}
+    assert off_branch(ROCKER, rows.v, -1) < CLOSE
+    assert rows.residual.max() < 1e-14
+    np.testing.assert_array_equal(rows.v[:, 2], t)
+    for k in (0, 123, 700):  # a batch of one differs by rounding only
+        alone = rows_on_track(solver, PATH, Track(nodes=(start, *nodes)), t[k : k + 1], 1.0)
+        np.testing.assert_allclose(alone.v[0], rows.v[k], rtol=0, atol=CLOSE)
+        np.testing.assert_allclose(alone.rates.first[0], rows.rates.first[k], rtol=0, atol=CLOSE)
+        np.testing.assert_allclose(alone.rates.second[0], rows.rates.second[k], rtol=0, atol=1e-10)
+
+
+def test_a_row_whose_guess_misleads_is_followed_from_its_node() -> None:
+    solver, start = start_of(ROCKER, 1.0, 1)
+    nodes, _ = follow(solver, PATH, start, 4.0, 1.0)
+    wrong = replace(nodes[-1], v=nodes[-1].v + [4.0, -3.0, 0.0])  # spoils the interpolation
+    first = start, *nodes[:-1]
+    t = np.array([first[-1].t + 0.2 * (4.0 - first[-1].t)])
+    rows = rows_on_track(solver, PATH, Track(nodes=(*first, wrong)), t, 1.0)
+    assert rows.status[0] == Status.CONVERGED.code
+    assert off_branch(ROCKER, rows.v, 1) < CLOSE
+
+
+# ------------------------------------------------------------------ whole tables
+
+
+def mechanism(bar: FourBar, theta: float, side: int, step: float = 1.0) -> Mechanism:
+    return linkage(
+        points=bar.points(theta, side),
+        links={
+            "ground": ("O2", "O4"),
+            "crank": ("O2", "A"),
+            "coupler": ("A", "B"),
+            "rocker": ("O4", "B"),
+        },
+        lengths={"O2 A": bar.r2, "A B": bar.r3, "O4 B": bar.r4},
+        inputs=(Input(link="crank", start=0, stop=360, step=step),),
+    )
+
+
+CRANK_ROCKERS = [*random_crank_rockers(300, seed=41), FourBar(1.0, 0.5, 1.2, 0.8)]
+
+
+@pytest.mark.parametrize("step", [1, 10, 60])
+def test_no_crank_rocker_changes_branch_at_any_step_of_the_table(step: int) -> None:
+    rng = np.random.default_rng(42)
+    for k, bar in enumerate(CRANK_ROCKERS):
+        side = 1 if k % 2 else -1
+        motion = mechanism(bar, rng.uniform(0, 2 * math.pi), side, step).sweep()
+        assert motion.found.all(), bar
+        assert not motion.limits, bar
+        b = bar.coupler_end(np.radians(motion["crank"]), side)
+        # 1e-14 of residual times condition numbers up to a few thousand near folding
+        off = np.abs(motion.trace("B") - b).max() / max(bar.r1, bar.r3, bar.r4)
+        assert off < 1e-10, bar
+        e4 = (b - bar.r1) / bar.r4
+        assert np.abs(np.exp(1j * np.radians(motion["rocker"])) - e4).max() < 1e-9, bar
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_short_crank_at_sixty_degree_steps_keeps_its_branch(side: int) -> None:
+    bar = FourBar(1.0, 0.5, 1.2, 0.8)
+    motion = mechanism(bar, 0.4, side, 60).sweep()
+    assert len(motion) == 7
+    e3, e4 = bar.phasors(np.radians(motion["crank"]), side)
+    np.testing.assert_allclose(np.exp(1j * np.radians(motion["coupler"])), e3, rtol=0, atol=CLOSE)
+    np.testing.assert_allclose(np.exp(1j * np.radians(motion["rocker"])), e4, rtol=0, atol=CLOSE)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_rows_beyond_a_dead_point_say_so_and_hold_nothing(side: int) -> None:
+    dead = math.degrees(math.acos(11 / 16))
+    motion = mechanism(FOLDING, math.pi, side).sweep()
+    inside = (motion["crank"] > dead) & (motion["crank"] < 360 - dead)
+    assert inside.sum() == 267
+    np.testing.assert_array_equal(motion.found, inside)
+    outside = {status for status, ok in zip(motion.status, inside, strict=True) if not ok}
+    assert outside == {Status.OUT_OF_REACH}
+    assert np.isnan(motion["rocker"][~inside]).all()
+    b = FOLDING.coupler_end(np.radians(motion["crank"][inside]), side)
+    np.testing.assert_allclose(motion.trace("B")[inside], b, rtol=0, atol=CLOSE)
+    limits = [limit.input for limit in motion.limits]
+    # 1e-10 of a radian
+    np.testing.assert_allclose(limits, [dead, 360 - dead], rtol=0, atol=math.degrees(1e-10))
+
+
+@pytest.mark.parametrize("bar", [FourBar(2.0, 1.0, 2.0, 1.0), FourBar(3.0, 1.0, 3.0, 1.0)], ids=str)
+@pytest.mark.parametrize("theta", [1.0, 2.7, 4.0])
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("step", [0.5, 1, 7])
+def test_a_parallelogram_ends_at_its_change_points_and_never_takes_the_other_branch(
+    bar: FourBar, theta: float, side: int, step: float
+) -> None:
+    motion = mechanism(bar, theta, side, step).sweep()
+    degrees = motion["crank"]
+    upper = theta < math.pi
+    between = (degrees > 0) & (degrees < 180) if upper else (degrees > 180) & (degrees < 360)
+    np.testing.assert_array_equal(motion.found, between)
+    assert set(motion.counts) == {Status.CONVERGED, Status.LOST}
+    b = bar.coupler_end(np.radians(degrees[between]), side)
+    # half a degree from the change point the condition is 600
+    np.testing.assert_allclose(motion.trace("B")[between], b, rtol=0, atol=1e-10)
+    assert [limit.status for limit in motion.limits] == [Status.LOST, Status.LOST]
+    change = np.array([limit.input for limit in motion.limits]) % 180
+    assert np.minimum(change, 180 - change).max() < 1e-3

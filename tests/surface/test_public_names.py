@@ -1,0 +1,41 @@
+"""The public names are those the reference page lists, and each of them exists."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import linkwork as lw
+
+REFERENCE = Path(__file__).parents[2] / "docs" / "reference.md"
+
+
+def test_reference_page_lists_exactly_the_public_names() -> None:
+    listed = re.findall(r"^\| `(\w+)` \|", REFERENCE.read_text(encoding="utf-8"), re.MULTILINE)
+    assert sorted(listed) == sorted(lw.__all__)
+
+
+def test_every_public_name_exists_and_has_a_docstring() -> None:
+    for name in lw.__all__:
+        assert getattr(lw, name).__doc__, name
+
+
+def test_an_unknown_name_is_an_attribute_error() -> None:
+    code = "import linkwork; linkwork.solver"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stderr.splitlines()[-1] == (
+        "AttributeError: module 'linkwork' has no attribute 'solver'"
+    )
+
+
+def test_import_loads_nothing_heavy() -> None:
+    code = (
+        "import sys, linkwork as lw\n"
+        "lw.example('rapier-drive').solve(at=60)\n"
+        "heavy = {'scipy', 'numba', 'matplotlib', 'pandas', 'xarray', 'rich', 'tomlkit'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
