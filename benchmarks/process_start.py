@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -18,10 +19,15 @@ def measure(repeats: int = 15) -> bool:
     print("process start (medians of whole processes)")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "rapier.toml"
-        path.write_text(lw.everyday.example_text("rapier-drive"), encoding="utf-8")
+        path.write_text(lw.example_text("rapier-drive"), encoding="utf-8")
+
+        # Compiled modules are cached as for any installed package, wherever this is run.
+        environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
+        environment["PYTHONPYCACHEPREFIX"] = folder
 
         def python(*arguments: str) -> None:
-            subprocess.run([sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL)
+            command = [sys.executable, *arguments]
+            subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=environment)
 
         numpy_, linkwork_, solve = interleaved(
             [

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, Self
 
@@ -175,10 +174,9 @@ def loads(text: str, name: str = "text") -> Mechanism:
     return Mechanism(read.description, read)
 
 
-def _library() -> Iterator[tuple[str, Any]]:
-    for entry in sorted(files("linkwork").joinpath("library").iterdir(), key=lambda e: e.name):
-        if entry.name.endswith(".toml"):
-            yield entry.name.removesuffix(".toml"), entry
+def _library() -> Iterator[tuple[str, Path]]:
+    for path in sorted(Path(__file__).with_name("library").glob("*.toml")):
+        yield path.stem, path
 
 
 def examples() -> tuple[str, ...]:
@@ -197,8 +195,7 @@ def example_text(name: str) -> str:
     known = dict(_library())
     if name not in known:
         raise UnknownNameError(f'there is no example "{name}" {choices("examples", known, name)}')
-    text: str = known[name].read_text(encoding="utf-8")
-    return text
+    return known[name].read_text(encoding="utf-8")
 
 
 def example(name: str) -> Mechanism:

@@ -141,9 +141,10 @@ def run() -> Run:
 
 @pytest.fixture
 def environment() -> dict[str, str]:
-    """The environment of a real process that finds this tree's package."""
+    """The environment of a real process that finds this tree's package, with buffered output."""
     source = Path(__file__).parents[2] / "src"
-    return {**os.environ, "PYTHONPATH": str(source)}
+    inherited = {k: v for k, v in os.environ.items() if k != "PYTHONUNBUFFERED"}
+    return {**inherited, "PYTHONPATH": str(source)}
 
 
 @pytest.fixture

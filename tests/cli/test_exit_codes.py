@@ -57,8 +57,8 @@ def test_mathematics_that_says_no_ends_with_1(run: Run, words: tuple[str, ...], 
         (
             ("solve", "nothing.toml"),
             "Error: 1 problem in nothing.toml\n"
-            "  there is no such file (TOML files there: cubic.toml, double-rocker.toml,\n"
-            "  five-bar.toml, four-bar.toml, open.toml, slider-crank.toml, wrong.toml)\n",
+            "  there is no such file (TOML files there: wrong.toml, open.toml, cubic.toml,\n"
+            "  double-rocker.toml, five-bar.toml, four-bar.toml, slider-crank.toml)\n",
         ),
         (
             ("solve", "rapier-drive"),

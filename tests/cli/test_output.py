@@ -174,7 +174,7 @@ def test_a_dash_reads_standard_input(run: Run, folder: Path) -> None:
     assert run("solve", "-", stdin=text).stdout == run("solve", "four-bar.toml").stdout
     wrong = run("solve", "-", stdin=text.replace("= 120", "= -120"))
     assert wrong.exit_code == 2
-    assert wrong.stderr.startswith("Error: 1 problem in standard input\n  line 17  ")
+    assert wrong.stderr.startswith("Error: 1 problem in standard input\n  line 18  ")
 
 
 def test_an_example_is_printed_as_it_is_and_written_once(run: Run, folder: Path) -> None:

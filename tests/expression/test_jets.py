@@ -62,9 +62,9 @@ REAL: dict[str, Function] = {
 ALL = ANALYTIC | REAL
 # Five-point differences with this step: truncation h⁴f⁽⁵⁾/30 and rounding u/h are below 1e-11.
 STEP = 2e-4
-SLOPE = dict(rtol=1e-10, atol=1e-10)
+SLOPE: Any = {"rtol": 1e-10, "atol": 1e-10}
 # The exact functions differ by rounding only.
-EXACT = dict(rtol=1e-13, atol=1e-13)
+EXACT: Any = {"rtol": 1e-13, "atol": 1e-13}
 CURVE = ((0.7, 0.3), (-0.4, 0.6))  # x' x'', y' y''
 
 
@@ -115,7 +115,8 @@ def test_value_of_a_jet_is_the_value_of_the_function(text: str) -> None:
 @pytest.mark.parametrize("text", ANALYTIC)
 def test_first_derivative_equals_a_complex_step(text: str) -> None:
     step = 1e-30j
-    wanted = ANALYTIC[text](*(at + step * first for at, (first, _) in zip((X, Y), CURVE)))
+    (x1, _), (y1, _) = CURVE
+    wanted = ANALYTIC[text](X + step * x1, Y + step * y1)
     np.testing.assert_allclose(jet_of(text).d1, np.imag(wanted) / 1e-30, **EXACT)
 
 

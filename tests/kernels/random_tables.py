@@ -20,7 +20,7 @@ from linkwork.kernels.phasor_rows import PhasorRows
 
 __all__ = ["Example", "random_example"]
 
-Any = npt.NDArray
+Any = npt.NDArray[np.float64] | npt.NDArray[np.complex128]
 #: Formulas of up to three variables with what they mean: value, then first derivative along d.
 FORMULAS: list[tuple[str, int, Callable[..., Any], Callable[..., Any]]] = [
     (

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 __all__ = ["FourBar", "random_crank_rockers"]
 
-Angles = npt.NDArray[np.float64]
+Angles = npt.NDArray[np.floating]
 Points = npt.NDArray[np.complex128]
 
 

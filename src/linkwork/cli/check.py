@@ -106,10 +106,10 @@ def _start(report: CheckReport) -> list[str]:
     at = f"at {where}" if where else ""
     if not report.start.ok:
         told = fields([("why", report.start_message)])
-        return [*sentence(bad, "No position found", f"{at}:"), *told]
+        return [*sentence(bad, "No position found", at), *told]
     measure = "" if report.form == "equations" else " of the longest link"
-    residual = f"residual {significant(report.residual, 2)}{measure}"
-    return sentence(good, "Position found", f"{at}, {residual}" if at else f"with {residual}")
+    residual = significant(report.residual, 2) + measure
+    return [*sentence(good, "Position found", at), *fields([("residual", residual)])]
 
 
 def _with_units(names: tuple[tuple[str, str], ...]) -> str:

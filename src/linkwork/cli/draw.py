@@ -31,7 +31,7 @@ def draw(file: str, output: str, at: tuple[str, ...], changes: tuple[str, ...]) 
     mechanism = read_mechanism(file, changes)
     position = mechanism.solve(input_values(mechanism, at), throw=True)
     motion = None
-    if position.input and position.skeleton.traced:
+    if position.input:
         with progress("sweeping") as tell:
             motion = mechanism.sweep(progress=tell)
     picture.write(picture.scene(position, motion), output)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
 from linkwork.cli.position_page import Row, value_cells
 from linkwork.cli.terminal import bad, fields, sentence, title_lines
 from linkwork.cli.text_table import Column, short, table_lines
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
 from linkwork.results.motion import Motion, Series
 
@@ -90,7 +90,7 @@ def _evidence(motion: Motion, measure: str) -> Iterator[tuple[str, str]]:
     yield "worst condition", _worst(motion, motion.condition, "")
 
 
-def _worst(motion: Motion, values: npt.NDArray[np.float64], measure: str) -> str:
+def _worst(motion: Motion, values: Array, measure: str) -> str:
     name, inputs = _lead(motion)
     row = int(np.nanargmax(values))
     size = f"{values[row]:.2g}{measure}"
@@ -108,12 +108,12 @@ def _ranges(motion: Motion) -> list[str]:
     low = [int(np.nanargmin(series.value)) for series in found]
     high = [int(np.nanargmax(series.value)) for series in found]
 
-    def values(header: str, rows: list[int]) -> Column:
-        numbers = [
-            Row(name=s.quantity.name, kind=s.quantity.kind, value=float(s.value[row]))
-            for s, row in zip(found, rows, strict=True)
-        ]
-        return Column(header=header, cells=value_cells(numbers), align="point")
+    numbers = [
+        Row(name=s.quantity.name, kind=s.quantity.kind, value=float(s.value[row]))
+        for rows in (low, high)
+        for s, row in zip(found, rows, strict=True)
+    ]
+    cells = value_cells(numbers)  # of both columns at once: with the same decimals
 
     def places(rows: list[int]) -> Column:
         return Column(header="at", cells=[short(inputs[row]) for row in rows], align="point")
@@ -121,15 +121,15 @@ def _ranges(motion: Motion) -> list[str]:
     return table_lines(
         [
             Column(header="range", cells=[s.quantity.name for s in found]),
-            values("minimum", low),
+            Column(header="minimum", cells=cells[: len(found)], align="point"),
             places(low),
-            values("maximum", high),
+            Column(header="maximum", cells=cells[len(found) :], align="point"),
             places(high),
             Column(header="unit", cells=[motion.units.of(s.quantity.kind) for s in found]),
         ]
     )
 
 
-def _lead(motion: Motion) -> tuple[str, npt.NDArray[np.float64]]:
+def _lead(motion: Motion) -> tuple[str, Array]:
     """The first input: rows are named by its values."""
     return next(iter(motion.inputs.items()))

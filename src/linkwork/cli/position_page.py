@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
 from linkwork.cli.text_table import Column, fixed, lengths, short, significant, table_lines
 from linkwork.everyday import Mechanism
-from linkwork.motion.solving import lock_step
+from linkwork.motion.lock_step import lock_step
 from linkwork.results.position import NewtonTrail, Position
 from linkwork.results.quantity import Kind, Units
 
-__all__ = ["Row", "driven_by", "position_lines", "residual_measure", "value_cells"]
+__all__ = ["Row", "position_lines", "residual_measure", "value_cells"]
 
 _NOISE = 1e-13  # of the largest derivative: rounding, shown as 0
 _NUMBER_DIGITS = 10  # of a plain number, of which nothing is known
@@ -29,10 +29,10 @@ class Row:
 
 def position_lines(mechanism: Mechanism, position: Position, *, from_guess: bool) -> list[str]:
     """The lines of a position: values, derivatives, points, evidence, and the steps if kept."""
-    where = _inputs_text(mechanism, position.input)
+    where = _inputs_text(position, position.input)
     lines = title_lines(position.mechanism)
     if not position.status.ok:
-        lines += sentence(bad, "No position found", f"{where}:")
+        lines += sentence(bad, "No position found", where)
         lines += fields([("why", position.message)])
         return [*lines, *_steps(mechanism, position, from_guess)]
     lines += sentence(good, "Position found", where)
@@ -58,15 +58,6 @@ def value_cells(rows: Sequence[Row]) -> list[str]:
     return texts
 
 
-def driven_by(mechanism: Mechanism) -> tuple[str, str] | None:
-    """Name of the input that derivatives are taken by, and its unit there; None without input."""
-    inputs = mechanism.loop_equations.inputs
-    if not mechanism.description.inputs:
-        return None
-    lead = inputs[lock_step(mechanism.model.rows)[0]]
-    return lead.name, mechanism.model.units.of_rate(Kind(lead.kind))
-
-
 def _tables(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, list[Row]]]:
     """The numbers of a position, by what they are."""
     equations = mechanism.loop_equations
@@ -85,18 +76,17 @@ def _tables(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, lis
 
 def _quantities(mechanism: Mechanism, position: Position) -> Iterator[str]:
     """Values with derivatives by the input, and by time if the input has a speed."""
-    by = driven_by(mechanism)
-    units = position.units
+    by, units = position.derivative_unit, position.units
     for title, rows in _tables(mechanism, position):
         if not rows:
             continue
         names = Column(header=title, cells=[row.name for row in rows])
         own = [units.of(row.kind) for row in rows]
         columns = [Column(header="value", cells=value_cells(rows), align="point", units=own)]
-        if by is not None:
+        if by:
             columns += [
-                _rates(rows, position.first, "1st deriv.", units, f"/{by[1]}"),
-                _rates(rows, position.second, "2nd deriv.", units, f"/{by[1]}^2"),
+                _rates(rows, position.first, "1st deriv.", units, f"/{by}"),
+                _rates(rows, position.second, "2nd deriv.", units, f"/{by}^2"),
             ]
         yield from ("", *table_lines([names, *columns]))
         if position.velocity:
@@ -134,9 +124,11 @@ def _points(position: Position) -> list[str]:
 
 
 def _evidence(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, str]]:
-    by = driven_by(mechanism)
-    if by is not None:
-        yield "derivatives", f"by {by[0]} in {by[1]}"
+    inputs = list(position.input)
+    if inputs:
+        lead = inputs[lock_step(mechanism.model.rows)[0]]
+        others = ", the other inputs in lock-step" if len(inputs) > 1 else ""
+        yield "derivatives", f"by {lead} in {position.derivative_unit}{others}"
     yield "residual", significant(position.residual, 2) + residual_measure(mechanism)
     yield "iterations", str(position.iterations)
     yield "condition", significant(position.condition, 3)
@@ -147,13 +139,10 @@ def residual_measure(mechanism: Mechanism) -> str:
     return " of the longest link" if mechanism.loop_equations.loops else ""
 
 
-def _inputs_text(mechanism: Mechanism, values: Mapping[str, float]) -> str:
+def _inputs_text(position: Position, values: Mapping[str, float]) -> str:
     """``at θ12 = 60 deg``, or nothing without an input."""
-    kinds = {v.name: Kind(v.kind) for v in mechanism.loop_equations.inputs}
-    parts = [
-        f"{name} = {short(value)} {mechanism.model.units.of(kinds[name])}".rstrip()
-        for name, value in values.items()
-    ]
+    units = position.input_units
+    parts = [f"{name} = {short(value)} {units[name]}".rstrip() for name, value in values.items()]
     return f"at {', '.join(parts)}" if parts else ""
 
 
@@ -162,15 +151,14 @@ def _steps(mechanism: Mechanism, position: Position, from_guess: bool) -> Iterat
     if not position.steps:
         return
     model = mechanism.model
-    names = [variable.name for variable in mechanism.loop_equations.inputs]
-    own = dict(zip(names, (model.start_inputs / model.input_scale).tolist(), strict=True))
+    own = dict(zip(position.input, (model.start_inputs / model.input_scale).tolist(), strict=True))
     here = dict(position.input) if from_guess else own
-    where = _inputs_text(mechanism, here)
+    where = _inputs_text(position, here)
     yield ""
     yield from sentence(str, f"Newton-Raphson from the guess {where}".rstrip())
     if position.status.ok and here != dict(position.input):
         yield from sentence(
-            str, f"(then followed to the position {_inputs_text(mechanism, position.input)})", ""
+            str, f"(then followed to the position {_inputs_text(position, position.input)})", ""
         )
     for trail in position.steps:
         yield from ("", *_trail(mechanism, trail))

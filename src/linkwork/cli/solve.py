@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import click
 
@@ -22,7 +23,20 @@ from linkwork.numerics.newton import NewtonOptions
 __all__ = ["solve"]
 
 _DEFAULT = NewtonOptions()
-_POSITIVE = click.FloatRange(min=0.0, min_open=True, max=math.inf, max_open=True)
+
+
+class _Tolerance(click.FloatRange):
+    """A positive number; not a number is none."""
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> float:
+        """The number that a text is."""
+        number = float(super().convert(value, param, ctx))
+        if math.isnan(number):
+            self.fail(f"{value} is not a number", param, ctx)
+        return number
+
+
+_POSITIVE = _Tolerance(min=0.0, min_open=True, max=math.inf, max_open=True)
 
 
 @click.command

@@ -12,7 +12,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from linkwork.drawing.box import Box
 from linkwork.drawing.link_symbols import convex_outline, in_line, tones
@@ -30,11 +29,11 @@ from linkwork.drawing.scene import (
     text_width,
     xy,
 )
+from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.names import pretty
 
 __all__ = ["link_names", "placed", "point_names", "printed_name"]
 
-Array = npt.NDArray[np.float64]
 
 #: What it costs to cover a line or disc of a role; covering another name or a pin is worst.
 _PENALTY = {
@@ -239,7 +238,7 @@ class _Obstacles:
         return covered + _INSIDE_PLATE * inside
 
 
-def _crosses(pieces: Array, box: Box) -> npt.NDArray[np.bool_]:
+def _crosses(pieces: Array, box: Box) -> BoolArray:
     """Which line pieces (m, 4) meet the box, shape (m,): the slab method."""
     start, end = pieces[:, :2], pieces[:, 2:]
     step = end - start

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.errors import InputError, choices
 from linkwork.mechanism.linkage import GROUND
 from linkwork.mechanism.skeleton import Guide, Skeleton, Strut
@@ -17,8 +17,8 @@ from linkwork.results.position import Position
 
 __all__ = ["Pose", "Travel"]
 
-Path = npt.NDArray[np.complex128]
-Real = npt.NDArray[np.float64]
+Path = ComplexArray
+Real = Array
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Path, Pose
 from linkwork.drawing.scene import Disc, Polyline, Primitive, Role, xy
+from linkwork.foundation.arrays import Array
 
 __all__ = ["drawn_once", "found_runs", "trace_symbols"]
 
@@ -49,7 +49,7 @@ def drawn_once(path: Path, width: float) -> list[Path]:
     # Distance of every point (rows) from every piece (columns).
     offset = path[:, None] - start
     share = np.clip((offset * step.conj()).real / squared, 0.0, 1.0)
-    distance: npt.NDArray[np.float64] = np.abs(offset - share * step)
+    distance: Array = np.abs(offset - share * step)
     # Neighbours along the path are always near: only pieces left behind for a while count.
     behind = reached[:, None] - reached[1:] > 4 * width
     covered = np.any((distance <= width) & behind, axis=1)

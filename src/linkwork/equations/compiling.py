@@ -6,12 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from linkwork.equations.model import LoopEquations, Term
 from linkwork.equations.real_rows import FormulaRow
 from linkwork.expression.jets import Jet, evaluate
 from linkwork.expression.tree import names_in
+from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.names import canonical
 from linkwork.kernels.loop_table import LinearRows, LoopTable, TableSplitter
@@ -20,8 +20,6 @@ from linkwork.numerics.block_solver import Block, BlockSolver
 from linkwork.numerics.decomposition import BlockForm, block_form
 
 __all__ = ["Compiled", "compile_equations"]
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +39,7 @@ class PointTable:
 
     names: tuple[str, ...]
     rows: PhasorRows
-    levels: tuple[tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]], ...]
+    levels: tuple[tuple[IndexArray, IndexArray], ...]
 
     @classmethod
     def of(cls, equations: LoopEquations, index: Mapping[str, int]) -> PointTable:
@@ -64,7 +62,7 @@ class PointTable:
             ),
         )
 
-    def jet(self, v: Array, first: Array, second: Array) -> tuple[npt.NDArray[np.complex128], ...]:
+    def jet(self, v: Array, first: Array, second: Array) -> tuple[ComplexArray, ...]:
         """Positions x + iy with first and second derivative along a path, (B, points) each."""
         parts = self.rows.jet(v, first, second)
         for child, parent in self.levels:

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from linkwork.expression.tree import Node
 from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.frozen import FrozenDict
 
 __all__ = [
@@ -179,7 +179,7 @@ class LoopEquations:
     real: tuple[RealEquation, ...] = ()
     symbols: Mapping[str, float] = FrozenDict()
     dimensions: Mapping[str, float] = FrozenDict()
-    start: npt.NDArray[np.float64]
+    start: Array
     points: Mapping[str, PointPath] = FrozenDict()
     links: Mapping[str, LinkAngle] = FrozenDict()
     sliders: Mapping[str, str] = FrozenDict()

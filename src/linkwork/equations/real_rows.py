@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from linkwork.expression.jets import Jet, evaluate
 from linkwork.expression.tree import Node
 from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.arrays import Array
 
 __all__ = ["FormulaRow"]
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,15 +10,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from linkwork.expression.grammar import CONSTANTS
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.arrays import Array
 
 __all__ = ["Jet", "evaluate"]
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

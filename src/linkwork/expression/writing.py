@@ -44,7 +44,7 @@ def text(node: Node, name: Callable[[Name], str] = _spelled) -> str:
         case Name():
             return name(node)
         case Negative():
-            return "-" + _inside(node.operand, 2, name)
+            return "-" + _inside(node.operand, _NEGATIVE, name)
         case Call():
             return f"{node.function}({', '.join(text(a, name) for a in node.arguments)})"
         case Binary():

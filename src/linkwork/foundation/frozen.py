@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from typing import Any, NoReturn, TypeVar
 
 import numpy as np
-import numpy.typing as npt
+
+from linkwork.foundation.arrays import AnyArray
 
 __all__ = ["FrozenDict", "read_only"]
 
 K = TypeVar("K")
 V = TypeVar("V")
-T = TypeVar("T", bound=np.generic)
 
 
 class FrozenDict(dict[K, V]):
@@ -37,7 +37,7 @@ class FrozenDict(dict[K, V]):
         return cls(mapping or {})
 
 
-def read_only(array: npt.NDArray[T]) -> npt.NDArray[T]:
+def read_only(array: AnyArray) -> AnyArray:
     """A copy that refuses writes."""
     frozen = np.array(array)
     frozen.flags.writeable = False

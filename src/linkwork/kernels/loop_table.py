@@ -11,14 +11,11 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.kernels.phasor_rows import PhasorRows
 
 __all__ = ["FunctionRow", "LinearRows", "LoopTable", "TableSplitter"]
-
-Array = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 
 class FunctionRow(Protocol):
@@ -43,8 +40,8 @@ class LinearRows:
     """Rows Σ_k weight v_k + constant = 0 as sparse entries."""
 
     constant: Array
-    row: IntArray
-    variable: IntArray
+    row: IndexArray
+    variable: IndexArray
     weight: Array
 
     @classmethod
@@ -80,7 +77,7 @@ class LoopTable:
     functions: tuple[FunctionRow, ...]
     equation_scale: Array
     variable_scale: Array
-    turns: npt.NDArray[np.bool_]
+    turns: BoolArray
 
     @property
     def variables(self) -> int:
@@ -253,7 +250,7 @@ class TableSplitter:
         )
 
 
-def _by_value(values: IntArray, count: int) -> list[list[int]]:
+def _by_value(values: IndexArray, count: int) -> list[list[int]]:
     found: list[list[int]] = [[] for _ in range(count)]
     for k, value in enumerate(values):
         found[value].append(k)

@@ -13,13 +13,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
+
+from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 
 __all__ = ["PhasorRows"]
-
-Array = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,11 +38,11 @@ class PhasorRows:
 
     rows: int
     variables: int
-    row: IntArray
+    row: IndexArray
     coefficient: ComplexArray
-    length: IntArray
-    phase_term: IntArray
-    phase_variable: IntArray
+    length: IndexArray
+    phase_term: IndexArray
+    phase_variable: IndexArray
     phase_weight: Array
 
     @cached_property
@@ -56,7 +53,7 @@ class PhasorRows:
         return w
 
     @cached_property
-    def _sliding(self) -> IntArray:
+    def _sliding(self) -> IndexArray:
         """The terms with a variable length."""
         return np.flatnonzero(self.length >= 0)
 

@@ -9,11 +9,11 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
-import numpy.typing as npt
 
 from linkwork.expression.grammar import RESERVED, parse
 from linkwork.expression.tree import Name
 from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import (
     ExpressionError,
     InputError,
@@ -174,7 +174,7 @@ class Description:
         """Key path of the k-th input in a file."""
         return ("input",) if len(self.inputs) == 1 else ("input", k)
 
-    def rows(self, which: Input) -> npt.NDArray[np.float64]:
+    def rows(self, which: Input) -> Array:
         """The table's values of one input, in the file's unit, shape (rows,)."""
         start, stop, step = self._range(which)
         count = math.floor((stop - start) / step + 1e-9) + 1

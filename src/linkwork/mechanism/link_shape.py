@@ -8,7 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
+
+from linkwork.foundation.arrays import Array, ComplexArray
 
 __all__ = ["Distance", "LinkShape", "ShapeError", "VertexAngle", "place"]
 
@@ -310,9 +311,7 @@ def _together(
     return placed, measured
 
 
-def _slopes(
-    points: tuple[str, ...], z: npt.NDArray[np.complex128], rows: Sequence[Given]
-) -> npt.NDArray[np.float64]:
+def _slopes(points: tuple[str, ...], z: ComplexArray, rows: Sequence[Given]) -> Array:
     """Derivatives of the rows' errors by all coordinates (x first, then y), shape (rows, 2n)."""
     scale = float(np.max(np.abs(z - z[0]))) or 1.0
     h = 1e-7 * scale

@@ -105,25 +105,29 @@ def _check_links(linkage: Linkage, problems: Problems) -> None:
 
 def _check_shared_points(linkage: Linkage, problems: Problems) -> None:
     """Two links that share two points are one rigid body."""
-    seen: dict[tuple[str, str], str] = {}
-    reported: set[tuple[str, str]] = set()
     bodies: list[tuple[Key, str, tuple[str, ...]]] = [
         *((("links", link), link, points) for link, points in linkage.links.items()),
         *((("cylinders", k), c.name, c.between) for k, c in enumerate(linkage.cylinders)),
     ]
-    for key, body, points in bodies:
-        for pair in combinations(sorted(set(points)), 2):
-            other = seen.setdefault(pair, body)
-            if other == body or (other, body) in reported:
-                continue
-            reported.add((other, body))
-            a, b = pair
-            advice = (
-                "a cylinder between them cannot change its length"
-                if key[0] == "cylinders"
-                else f"they move as one: make one link of {_union(linkage, other, points)}"
-            )
-            problems.add(key, f'shares {a} and {b} with "{other}": {advice}')
+    carriers: dict[str, list[int]] = {}
+    for k, (_, _, points) in enumerate(bodies):
+        for point in sorted(set(points)):
+            carriers.setdefault(point, []).append(k)
+    shared: dict[tuple[int, int], list[str]] = {}
+    for point in sorted(carriers):
+        for pair in combinations(carriers[point], 2):
+            shared.setdefault(pair, []).append(point)
+    for (first, second), common in sorted(shared.items(), key=lambda item: item[0][::-1]):
+        if len(common) < 2:
+            continue
+        key, _, points = bodies[second]
+        other = bodies[first][1]
+        advice = (
+            "a cylinder between them cannot change its length"
+            if key[0] == "cylinders"
+            else f"they move as one: make one link of {_union(linkage, other, points)}"
+        )
+        problems.add(key, f'shares {common[0]} and {common[1]} with "{other}": {advice}')
 
 
 def _union(linkage: Linkage, other: str, points: Iterable[str]) -> str:
@@ -200,6 +204,10 @@ def _check_cylinder(linkage: Linkage, cylinder: Cylinder, key: Key, problems: Pr
 
 
 def _check_dimension_keys(linkage: Linkage, problems: Problems) -> None:
+    links_at: dict[str, set[str]] = {}
+    for link, points in linkage.links.items():
+        for point in points:
+            links_at.setdefault(point, set()).add(link)
     for table, count in (("lengths", 2), ("angles", 3)):
         for text, number in getattr(linkage, table).items():
             key = (table, text)
@@ -212,7 +220,7 @@ def _check_dimension_keys(linkage: Linkage, problems: Problems) -> None:
             missing = [name for name in names if name not in linkage.points]
             if missing:
                 problems.add(key, _no_point(linkage, missing[0]))
-            elif not any(set(names) <= set(points) for points in linkage.links.values()):
+            elif not set.intersection(*(links_at.get(name, set()) for name in names)):
                 what = "a distance" if count == 2 else "an angle"
                 problems.add(
                     key, f"no link carries {' and '.join(names)}: {what} between links varies"

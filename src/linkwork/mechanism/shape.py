@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from itertools import combinations
 from typing import TYPE_CHECKING
 
 from linkwork.mechanism.link_shape import Distance, LinkShape, ShapeError, VertexAngle, place
@@ -99,9 +98,11 @@ def _check_ground(
     sketch: Mapping[str, complex], distances: list[Distance], vertices: list[VertexAngle]
 ) -> None:
     """Ground coordinates are exact: a dimension that disagrees is an error."""
-    for a, b in combinations(sketch, 2):
-        if sketch[a] == sketch[b]:
-            raise ShapeError(f"{a} and {b} of ground are the same point: give it one name")
+    named: dict[complex, str] = {}
+    for point, place_ in sketch.items():
+        other = named.setdefault(place_, point)
+        if other != point:
+            raise ShapeError(f"{other} and {point} of ground are the same point: give it one name")
     dimensions: list[Distance | VertexAngle] = [*distances, *vertices]
     for given in dimensions:
         if not given.agrees(sketch, _AGREE):

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
 from linkwork.motion.model import Model
 from linkwork.numerics.least_squares import nearest_miss
 
 __all__ = ["explain"]
 
-Array = npt.NDArray[np.float64]
 _CLOSED = 1e-10  # relative gap below which a position was found after all
 
 

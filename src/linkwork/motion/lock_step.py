@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
+
+from linkwork.foundation.arrays import Array
 
 __all__ = ["lock_step"]
-
-Array = npt.NDArray[np.float64]
 
 
 def lock_step(rows: Array) -> tuple[int, Array]:

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from linkwork.equations.compiling import Compiled, compile_equations
 from linkwork.equations.from_linkage import write_loops
 from linkwork.equations.from_loops import read_loops, read_plain_equations
 from linkwork.equations.model import LoopEquations, Variable
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Description
@@ -40,17 +40,17 @@ class Model:
         return Units(self.description.angle, self.description.length)
 
     @cached_property
-    def input_scale(self) -> npt.NDArray[np.float64]:
+    def input_scale(self) -> Array:
         """Internal units per everyday unit of each input, (p,)."""
         return np.array([self.units.scale(Kind(v.kind)) for v in self.equations.inputs])
 
     @property
-    def start_inputs(self) -> npt.NDArray[np.float64]:
+    def start_inputs(self) -> Array:
         """The input values the guess belongs to, internal units, (p,)."""
         return self.equations.start[len(self.equations.unknowns) :]
 
     @cached_property
-    def rows(self) -> npt.NDArray[np.float64]:
+    def rows(self) -> Array:
         """The table's input values, internal units, (rows, p)."""
         if not self.description.inputs:
             raise InputError(
@@ -59,13 +59,13 @@ class Model:
         return self.everyday_rows * self.input_scale
 
     @cached_property
-    def everyday_rows(self) -> npt.NDArray[np.float64]:
+    def everyday_rows(self) -> Array:
         """The table's input values as asked, everyday units, (rows, p)."""
         columns = [self.description.rows(which) for which in self.description.inputs]
         return np.stack(columns, axis=1) if columns else np.zeros((1, 0))
 
     @cached_property
-    def everyday_start(self) -> npt.NDArray[np.float64]:
+    def everyday_start(self) -> Array:
         """The input values the guess belongs to, everyday units, (p,)."""
         values = [
             self.units.angle.from_radians(float(value)) if variable.kind == "angle" else value
@@ -92,7 +92,7 @@ class Model:
             return None
         return input_speed(self.description, self.equations.inputs, self.rows)
 
-    def input_values(self, at: dict[str, float]) -> npt.NDArray[np.float64]:
+    def input_values(self, at: dict[str, float]) -> Array:
         """Named everyday input values as an array, everyday units, (p,).
 
         Raises

@@ -5,18 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from linkwork.equations.compiling import coordinate_name, evaluate_outputs
 from linkwork.expression.jets import Jet
+from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.names import canonical
 from linkwork.motion.model import Model
 from linkwork.results.motion import Series
 from linkwork.results.quantity import Kind, Quantity
 
 __all__ = ["Named", "named_series"]
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +35,7 @@ def named_series(
     first: Array,
     second: Array,
     inputs: Array,
-    found: npt.NDArray[np.bool_],
+    found: BoolArray,
 ) -> Named:
     """Name the columns of a batch; rows that were not found become NaN.
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
 from linkwork.motion.lock_step import lock_step
@@ -20,8 +20,6 @@ from linkwork.results.motion import Series
 from linkwork.results.position import NewtonTrail, Position
 
 __all__ = ["solve"]
-
-Array = npt.NDArray[np.float64]
 
 
 def solve(

@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
-import numpy.typing as npt
-
 from linkwork.equations.model import Variable
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import ExpressionError, MechanismError, Problem
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.speed import speed_per_second
@@ -17,9 +15,7 @@ from linkwork.motion.lock_step import lock_step
 __all__ = ["input_speed"]
 
 
-def input_speed(
-    description: Description, inputs: Sequence[Variable], rows: npt.NDArray[np.float64]
-) -> float | None:
+def input_speed(description: Description, inputs: Sequence[Variable], rows: Array) -> float | None:
     """The rate of the leading input, [rad/s] or [length/s]; ``None`` if no speed is given.
 
     Raises

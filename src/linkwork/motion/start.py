@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
 from linkwork.motion.closing import explain
 from linkwork.motion.model import Model
@@ -15,8 +15,6 @@ from linkwork.results.position import NewtonStep, NewtonTrail
 from linkwork.results.quantity import Kind
 
 __all__ = ["Start", "first_position"]
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

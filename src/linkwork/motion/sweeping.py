@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from linkwork.foundation.arrays import Array, CountArray, StatusArray
 from linkwork.foundation.status import Status
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
@@ -20,7 +20,6 @@ from linkwork.results.motion import Limit, Motion
 
 __all__ = ["sweep"]
 
-Array = npt.NDArray[np.float64]
 _CHUNK = 4096  # rows solved together: large enough to amortise NumPy calls, small enough for cache
 
 
@@ -31,8 +30,8 @@ class _Solved:
     v: Array
     first: Array
     second: Array
-    status: npt.NDArray[np.int8]
-    iterations: npt.NDArray[np.int64]
+    status: StatusArray
+    iterations: CountArray
     residual: Array
     condition: Array
 

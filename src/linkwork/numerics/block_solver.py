@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from linkwork.foundation.arrays import Array, CountArray, IndexArray, StatusArray
 from linkwork.foundation.status import Status
 from linkwork.numerics.newton import NewtonOptions, Watch, newton
-from linkwork.numerics.system import Array, System
+from linkwork.numerics.system import System
 
 __all__ = ["Block", "BlockSolution", "BlockSolver", "Rates"]
 
@@ -26,8 +26,8 @@ class Block:
 
     system: System
     equations: tuple[int, ...]
-    unknowns: npt.NDArray[np.intp]
-    variables: npt.NDArray[np.intp]
+    unknowns: IndexArray
+    variables: IndexArray
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,9 +35,9 @@ class BlockSolution:
     """Solved variables (B, N) with evidence; ``failed_block`` is -1 where all blocks converged."""
 
     v: Array
-    status: npt.NDArray[np.int8]
-    failed_block: npt.NDArray[np.int64]
-    iterations: npt.NDArray[np.int64]
+    status: StatusArray
+    failed_block: CountArray
+    iterations: CountArray
     residual: Array
     first_step: Array
     contraction: Array
@@ -54,7 +54,7 @@ class Rates:
     first: Array
     second: Array
     condition: Array
-    orientation: npt.NDArray[np.int8]
+    orientation: StatusArray
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ def _apply(matrix: Array, vector: Array) -> Array:
     return product
 
 
-def _inverse(jacobian: Array) -> tuple[Array, npt.NDArray[np.int8]]:
+def _inverse(jacobian: Array) -> tuple[Array, StatusArray]:
     """J⁻¹ and the sign of det J per lane; NaN and 0 where J is singular."""
     try:
         inverse = np.linalg.inv(jacobian)

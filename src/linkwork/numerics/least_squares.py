@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.numerics.system import Array, System
+from linkwork.foundation.arrays import Array
+from linkwork.numerics.system import System
 
 __all__ = ["nearest_miss"]
 

@@ -7,10 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from linkwork.foundation.arrays import Array, BoolArray, CountArray, StatusArray
 from linkwork.foundation.status import Status
-from linkwork.numerics.system import Array, System
+from linkwork.numerics.system import System
 
 __all__ = ["NewtonOptions", "NewtonResult", "newton"]
 
@@ -51,8 +51,8 @@ class NewtonResult:
     """
 
     v: Array
-    status: npt.NDArray[np.int8]
-    iterations: npt.NDArray[np.int64]
+    status: StatusArray
+    iterations: CountArray
     residual: Array
     first_step: Array
     contraction: Array
@@ -178,15 +178,15 @@ class _Iteration:
             self.watch(k, here, f, change)
         return change
 
-    def _leave(self, rows: npt.NDArray[np.bool_], status: Status) -> None:
+    def _leave(self, rows: BoolArray, status: Status) -> None:
         if rows.any():
             self.status[self.live[rows]] = status.code
 
-    def _keep(self, rows: npt.NDArray[np.bool_]) -> None:
+    def _keep(self, rows: BoolArray) -> None:
         self.live, self.last = self.live[rows], self.last[rows]
 
 
-def _corrections(jacobian: Array, f: Array) -> tuple[Array, npt.NDArray[np.bool_]]:
+def _corrections(jacobian: Array, f: Array) -> tuple[Array, BoolArray]:
     """-J⁻¹F per lane, and the lanes where J is singular to rounding."""
     try:
         change = -np.linalg.solve(jacobian, f[:, :, None])[:, :, 0]
@@ -197,11 +197,11 @@ def _corrections(jacobian: Array, f: Array) -> tuple[Array, npt.NDArray[np.bool_
                 change[lane] = -np.linalg.solve(jacobian[lane], f[lane])
             except np.linalg.LinAlgError:
                 continue
-    singular: npt.NDArray[np.bool_] = ~np.isfinite(change).all(axis=1)
+    singular: BoolArray = ~np.isfinite(change).all(axis=1)
     return np.asarray(change, dtype=float), singular
 
 
-def _shortened(change: Array, turns: npt.NDArray[np.bool_], largest: float) -> Array:
+def _shortened(change: Array, turns: BoolArray, largest: float) -> Array:
     """Corrections scaled down so that no angle turns further than allowed."""
     turn = np.abs(change[:, turns]).max(axis=1)
     if not (turn > largest).any():

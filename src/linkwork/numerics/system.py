@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import Protocol
 
-import numpy as np
-import numpy.typing as npt
+from linkwork.foundation.arrays import Array, BoolArray
 
-__all__ = ["Array", "System"]
-
-Array = npt.NDArray[np.float64]
+__all__ = ["System"]
 
 
 class System(Protocol):
@@ -28,7 +25,7 @@ class System(Protocol):
         """(N,) weights of the variables."""
 
     @property
-    def turns(self) -> npt.NDArray[np.bool_]:
+    def turns(self) -> BoolArray:
         """(N,) which variables are angles."""
 
     def residual(self, v: Array) -> Array:

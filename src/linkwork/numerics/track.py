@@ -12,12 +12,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from linkwork.foundation.arrays import Array, CountArray, IndexArray, StatusArray
 from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import BlockSolver, Rates
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.system import Array
 
 __all__ = ["End", "InputPath", "Node", "Track", "TrackOptions", "follow", "rows_on_track"]
 
@@ -70,7 +69,7 @@ class Node:
     v: Array
     first: Array
     second: Array
-    orientation: npt.NDArray[np.int8]
+    orientation: StatusArray
     condition: float
 
 
@@ -226,8 +225,8 @@ class Rows:
     """Positions at many values of t: as a block solution with rates, rows not found marked."""
 
     v: Array
-    status: npt.NDArray[np.int8]
-    iterations: npt.NDArray[np.int64]
+    status: StatusArray
+    iterations: CountArray
     residual: Array
     rates: Rates
 
@@ -272,7 +271,7 @@ def _nearest(track: Track, left: int, t: float) -> Node:
     return min(track.nodes[left], track.nodes[right], key=lambda node: abs(node.t - t))
 
 
-def _interpolated(track: Track, t: Array) -> tuple[Array, npt.NDArray[np.intp]]:
+def _interpolated(track: Track, t: Array) -> tuple[Array, IndexArray]:
     """Quintic Hermite values at t (B, N) and the index of the node at the left of each."""
     nodes = track.nodes
     times = np.array([node.t for node in nodes])

@@ -7,16 +7,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, CountArray
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.quantity import Quantity, Units
 
 __all__ = ["Limit", "Motion", "Series"]
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,9 +84,9 @@ class Motion:
     status: tuple[Status, ...]
     message: str = ""
     residual: Array
-    iterations: npt.NDArray[np.int64]
+    iterations: CountArray
     condition: Array
-    certified: npt.NDArray[np.bool_]
+    certified: BoolArray
     branch: tuple[str, ...]
     speed: float | None = None
     limits: tuple[Limit, ...] = ()
@@ -114,7 +112,7 @@ class Motion:
         raise KeyError(name)
 
     @property
-    def found(self) -> npt.NDArray[np.bool_]:
+    def found(self) -> BoolArray:
         """Which rows hold a position, shape (N,)."""
         return np.array([status.ok for status in self.status], dtype=bool)
 
@@ -123,7 +121,7 @@ class Motion:
         """How many rows ended in which status."""
         return Counter(self.status)
 
-    def trace(self, point: str) -> npt.NDArray[np.complex128]:
+    def trace(self, point: str) -> ComplexArray:
         """The path of a point as x + iy, shape (N,), NaN where there is no position."""
         x, y = self.points[point]
         return x.value + 1j * y.value

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
@@ -113,7 +113,7 @@ class Position:
     condition: float
     certificate: Certificate = Certificate()
     branch: str = ""
-    q: npt.NDArray[np.float64]
+    q: Array
     steps: tuple[NewtonTrail, ...] = ()
 
     def __post_init__(self) -> None:

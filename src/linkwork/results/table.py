@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.errors import MissingPackageError
 from linkwork.results.motion import Motion, Series
 
 __all__ = ["Table", "table_of"]
 
-Column = npt.NDArray[Any]
+Column = AnyArray
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,0 +1,239 @@
+"""What holds for every mechanism, whatever its dimensions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import linkwork as lw
+from linkwork.foundation.angles import AngleUnit
+from linkwork.mechanism.linkage import Linkage
+from linkwork.results.motion import Series
+from linkwork.results.quantity import Kind
+from linkwork.results.table import table_of
+from tests.laws.mechanisms import NAMES, mechanism_of, motion_of, size_of
+from tests.laws.transforms import mirrored, scaled, turned
+
+Array = npt.NDArray[np.float64]
+every = pytest.mark.parametrize("name", NAMES)
+# Residuals stay below 1e-14 of the longest link; the largest condition number on these
+# cycles is a few hundred (twenty in the library away from dead points).
+CLOSE = 1e-11
+
+
+def series_of(motion: lw.Motion) -> Iterator[Series]:
+    for table in (motion.unknowns, motion.links, motion.sliders, motion.outputs):
+        yield from table.values()
+    for pair in motion.points.values():
+        yield from pair
+
+
+def internal(motion: lw.Motion, series: Series) -> Array:
+    """Values with angles in radians."""
+    return series.value * motion.units.scale(series.quantity.kind)
+
+
+@every
+def test_every_row_closes_its_loops(name: str) -> None:
+    motion = motion_of(name)
+    assert motion.found.sum() > 20  # rockers swing through as little as 26°
+    assert motion.residual[motion.found].max() <= 1e-12
+
+
+@every
+def test_distances_between_points_of_one_link_hold_over_the_cycle(name: str) -> None:
+    mechanism, motion = mechanism_of(name), motion_of(name)
+    description = mechanism.description
+    checked = 0
+    for points in getattr(description, "links", {}).values():
+        for a, b in combinations(points, 2):
+            span = np.abs(motion.trace(a) - motion.trace(b))[motion.found]
+            wanted = span[0]
+            if isinstance(description, Linkage):
+                given = description.lengths.get(f"{a} {b}", description.lengths.get(f"{b} {a}"))
+                wanted = wanted if given is None else description.numbers(given)
+            # 1e-12 of the longest link: closure errors pass from loop to loop
+            np.testing.assert_allclose(span, wanted, rtol=0, atol=1e-12 * size_of(mechanism))
+            checked += 1
+    assert checked or name == "coupled-six-link"  # which has no points
+
+
+def agree(one: lw.Motion, other: lw.Motion, sign: float, turn: float, factor: float) -> None:
+    """``other`` is the mirrored (sign -1), turned and scaled ``one``."""
+    np.testing.assert_array_equal(one.found, other.found)
+    assert one.status == other.status
+    found = one.found
+    size = max(1.0, *(float(np.abs(t[found]).max()) for t in traces(one)))
+    for point in one.points:
+        z = one.trace(point)[found]
+        wanted = factor * (z if sign > 0 else z.conj()) * np.exp(1j * turn)
+        np.testing.assert_allclose(
+            other.trace(point)[found], wanted, rtol=0, atol=CLOSE * factor * size
+        )
+    unit = one.units.scale(Kind.ANGLE)
+    for link in one.links:
+        before, after = (np.exp(1j * unit * m.links[link].value[found]) for m in (one, other))
+        wanted = (before if sign > 0 else before.conj()) * np.exp(1j * turn)
+        np.testing.assert_allclose(after, wanted, rtol=0, atol=CLOSE)
+    for slider in one.sliders:
+        before, after = (m.sliders[slider].value[found] for m in (one, other))
+        np.testing.assert_allclose(after, factor * before, rtol=0, atol=CLOSE * factor * size)
+
+
+def traces(motion: lw.Motion) -> list[npt.NDArray[np.complex128]]:
+    return [motion.trace(p) for p in motion.points] or [np.ones(len(motion), dtype=complex)]
+
+
+def angles_of(motion: lw.Motion) -> dict[str, Array]:
+    """Unknown angles [rad] in rows that were found."""
+    scale = motion.units.scale(Kind.ANGLE)
+    return {
+        name: series.value[motion.found] * scale
+        for name, series in motion.unknowns.items()
+        if series.quantity.kind is Kind.ANGLE
+    }
+
+
+@every
+def test_the_mirrored_mechanism_has_the_mirrored_motion(name: str) -> None:
+    one, other = motion_of(name), mirrored(mechanism_of(name)).sweep()
+    agree(one, other, -1.0, 0.0, 1.0)
+    after = angles_of(other)
+    for angle, before in angles_of(one).items():
+        np.testing.assert_allclose(
+            np.exp(1j * after[angle]), np.exp(-1j * before), rtol=0, atol=CLOSE
+        )
+
+
+@every
+def test_the_turned_mechanism_has_the_turned_motion(name: str) -> None:
+    turn = 0.7
+    agree(motion_of(name), turned(mechanism_of(name), turn).sweep(), 1.0, turn, 1.0)
+
+
+@every
+@pytest.mark.parametrize("factor", [0.003, 2500.0])
+def test_the_scaled_mechanism_has_the_same_angles(name: str, factor: float) -> None:
+    one, other = motion_of(name), scaled(mechanism_of(name), factor).sweep()
+    agree(one, other, 1.0, 0.0, factor)
+    after = angles_of(other)
+    for angle, before in angles_of(one).items():
+        np.testing.assert_allclose(
+            np.exp(1j * after[angle]), np.exp(1j * before), rtol=0, atol=CLOSE
+        )
+
+
+@every
+def test_the_reversed_sweep_retraces(name: str) -> None:
+    mechanism, forth = mechanism_of(name), motion_of(name)
+    (values,) = forth.inputs.values()
+    back = mechanism.sweep(start=values[-1], stop=values[0], step=values[0] - values[1])
+    assert back.status == forth.status[::-1]
+    for one, other in zip(series_of(forth), series_of(back), strict=True):
+        scale = max(1.0, float(np.nanmax(np.abs(one.value))))
+        np.testing.assert_allclose(other.value[::-1], one.value, rtol=0, atol=1e-10 * scale)
+        scale = max(1.0, float(np.nanmax(np.abs(one.first))))
+        np.testing.assert_allclose(other.first[::-1], one.first, rtol=0, atol=1e-9 * scale)
+
+
+# central difference of eighth order
+SLOPE = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
+
+
+def inner_rows(motion: lw.Motion, seed: int) -> list[int]:
+    """Five rows, each with five found neighbours at both sides."""
+    found = motion.found
+    inner = [k for k in range(5, len(motion) - 5) if found[k - 5 : k + 6].all()]
+    rng = np.random.default_rng(seed)
+    return [int(k) for k in rng.choice(inner, size=5, replace=False)]
+
+
+@every
+def test_derivatives_are_the_slopes_of_the_sweep(name: str) -> None:
+    mechanism, motion = mechanism_of(name), motion_of(name)
+    (values,) = motion.inputs.values()
+    (kind,) = (v.kind for v in mechanism.loop_equations.inputs)
+    unit = motion.units.scale(Kind(kind))
+    # 0.2°, or a thousandth of the longest link: h⁸ is 2e-20, rounding is divided by h
+    h = 1e-3 * size_of(mechanism) if kind == "length" else 3.5e-3 / unit
+    for row in inner_rows(motion, seed=7):
+        window = mechanism.sweep(start=values[row] - 4 * h, stop=values[row] + 4 * h, step=h)
+        assert len(window) == 9
+        assert window.found.all()
+        for series in series_of(window):
+            scale = max(1.0, float(np.abs(internal(window, series)).max()))
+            scale *= max(1.0, float(np.abs(window.condition).max()))
+            for lower, higher in (
+                (internal(window, series), series.first),
+                (series.first, series.second),
+            ):
+                # values of regular positions carry rounding of about 1e-15 times the condition
+                steps = h * unit
+                tolerance = 1e-12 * scale / steps + 1e-9 * float(np.abs(higher).max())
+                assert SLOPE @ lower / steps == pytest.approx(higher[4], rel=0, abs=tolerance), (
+                    series.quantity.name
+                )
+
+
+@every
+def test_one_position_equals_its_row(name: str) -> None:
+    mechanism, motion = mechanism_of(name), motion_of(name)
+    (values,) = motion.inputs.values()
+    row = inner_rows(motion, seed=8)[0]
+    position = mechanism.solve(values[row])
+    assert position.status is lw.Status.CONVERGED
+    assert position.residual <= 1e-12
+    for point, (x, y) in position.points.items():
+        assert complex(x, y) == pytest.approx(
+            complex(motion.trace(point)[row]), rel=0, abs=CLOSE * size_of(mechanism)
+        )
+    for series in series_of(motion):
+        key = series.quantity.name
+        scale = max(1.0, float(np.nanmax(np.abs(series.first))))
+        assert position.first[key] == pytest.approx(series.first[row], rel=0, abs=1e-9 * scale)
+        scale = max(1.0, float(np.nanmax(np.abs(series.second))))
+        assert position.second[key] == pytest.approx(series.second[row], rel=0, abs=1e-8 * scale)
+
+
+SPEEDS = {"four-bar": 25.0, "crank-slider": -30.0, "four-bar 3": 2.0, "slider-crank 1": 2 * np.pi}
+
+
+@pytest.mark.parametrize("name", SPEEDS)
+def test_velocity_is_the_derivative_times_the_speed(name: str) -> None:
+    motion, speed = motion_of(name), SPEEDS[name]
+    table = table_of(motion)
+    named = {
+        s.quantity.name: s for s in series_of(motion) if f"{s.quantity.name}.d1" in table.columns
+    }
+    assert set(motion.unknowns) <= set(named)
+    for key, series in named.items():
+        np.testing.assert_array_equal(table[f"{key}.d1"], series.first)
+        np.testing.assert_array_equal(table[f"{key}.d2"], series.second)
+        np.testing.assert_allclose(table[f"{key}.velocity"], speed * series.first, rtol=1e-15)
+        np.testing.assert_allclose(
+            table[f"{key}.acceleration"], speed**2 * series.second, rtol=1e-15
+        )
+    (values,) = motion.inputs.values()
+    row = inner_rows(motion, seed=9)[0]
+    position = mechanism_of(name).solve(values[row])
+    for key in position.first:
+        assert position.velocity[key] == pytest.approx(speed * position.first[key], rel=1e-15)
+        assert position.acceleration[key] == pytest.approx(
+            speed**2 * position.second[key], rel=1e-15
+        )
+
+
+def test_without_a_speed_there_are_no_velocities() -> None:
+    motion = motion_of("rapier-drive")
+    assert motion.speed is None
+    assert not any(key.endswith((".velocity", ".acceleration")) for key in table_of(motion).columns)
+    assert dict(mechanism_of("rapier-drive").solve().velocity) == {}
+
+
+def test_both_angle_units_are_among_the_mechanisms() -> None:
+    units = {mechanism_of(name).description.angle for name in NAMES}
+    assert units == {AngleUnit.DEGREE, AngleUnit.RADIAN}
