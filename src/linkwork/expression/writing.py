@@ -37,7 +37,7 @@ def _spelled(node: Name) -> str:
 
 
 def text(node: Node, name: Callable[[Name], str] = _spelled) -> str:
-    """Plain text that reads back to the same formula; -(a*b) becomes -a*b, which is (-a)*b."""
+    """Plain text that reads back to the same tree."""
     match node:
         case Number():
             return number_text(node.value)

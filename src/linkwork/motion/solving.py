@@ -15,7 +15,7 @@ from linkwork.motion.reading import Named, named_series
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.tracking import leading_scale, track_to, turns_freely
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.track import InputPath, Rows, Track, node_at, rows_on_track
+from linkwork.numerics.track import End, InputPath, Rows, node_at, rows_on_track
 from linkwork.results.motion import Series
 from linkwork.results.position import NewtonTrail, Position
 
@@ -111,11 +111,13 @@ def _followed(model: Model, target: Array, start: Start) -> Position:
     first = node_at(solver, path, float(origin[lead]), start.v)
     goal = float(inputs[lead])
     track = track_to(solver, path, first, [goal], scale)
-    if not track.first_t <= goal <= track.last_t and turns_freely(model):
+    ends = [*track.ends]
+    if ends and turns_freely(model):
         goal -= np.copysign(2.0 * np.pi, goal - first.t)
         track = track_to(solver, path, first, [goal], scale)
-    if not track.first_t <= goal <= track.last_t:
-        return _stopped(model, target, track, lead, start)
+        ends += track.ends
+    if track.ends:
+        return _stopped(model, target, ends, lead, start)
     rows = rows_on_track(solver, path, track, np.array([goal]), scale)
     rates = solver.rates(rows.v, _rate(model))
     rows = Rows(
@@ -133,16 +135,16 @@ def _input_weights(model: Model) -> Array:
     return model.compiled.solver.variable_scale[model.compiled.solver.unknowns :]
 
 
-def _stopped(model: Model, target: Array, track: Track, lead: int, start: Start) -> Position:
-    ends = [end for end in (track.above, track.below) if end is not None]
+def _stopped(model: Model, target: Array, ends: list[End], lead: int, start: Start) -> Position:
+    """A position between the limits that were met both ways."""
     scale = model.input_scale[lead]
     name = model.equations.inputs[lead].name
     unit = model.units.angle.sign if scale != 1.0 else ""
-    met = " and ".join(f"{end.reached / scale:.9g}{unit}" for end in ends)
+    met = " and ".join(f"{end.reached / scale:.10g}{unit}" for end in ends)
     status = (
         Status.OUT_OF_REACH if all(e.status is Status.OUT_OF_REACH for e in ends) else Status.LOST
     )
-    return _failed(model, target, status, f"{status.value} (limit at {name} = {met})", start)
+    return _failed(model, target, status, f"{status.value} (met at {name} = {met})", start)
 
 
 def _failed(model: Model, target: Array, status: Status, message: str, start: Start) -> Position:

@@ -175,8 +175,8 @@ def _solve_rows(
 
 
 def _status_outside(track: Track) -> Status:
-    ends = [end.status for end in (track.below, track.above) if end is not None]
-    return Status.OUT_OF_REACH if Status.OUT_OF_REACH in ends else Status.LOST
+    reasons = [end.status for end in track.ends]
+    return Status.OUT_OF_REACH if Status.OUT_OF_REACH in reasons else Status.LOST
 
 
 def _motion(
@@ -195,8 +195,7 @@ def _motion(
             ),
             status=end.status,
         )
-        for end in (track.below, track.above)
-        if end is not None
+        for end in track.ends
     )
     return _assembled(model, named, solved, limits, start.message)
 

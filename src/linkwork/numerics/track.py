@@ -91,6 +91,11 @@ class Track:
     above: End | None = None
 
     @property
+    def ends(self) -> tuple[End, ...]:
+        """The ends that were met before a goal."""
+        return tuple(end for end in (self.below, self.above) if end is not None)
+
+    @property
     def first_t(self) -> float:
         """Smallest t reached."""
         return self.nodes[0].t

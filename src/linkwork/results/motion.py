@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -13,11 +14,13 @@ from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.quantity import Quantity, Units
+from linkwork.results.summary import motion_summary
+from linkwork.results.table import Table, table_of
 
 __all__ = ["Limit", "Motion", "Series"]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Series:
     """One quantity over all rows: values in everyday units, derivatives in radians and lengths."""
 
@@ -40,7 +43,7 @@ class Limit:
     status: Status
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Motion:
     """The positions of a mechanism over a table of N input values.
 
@@ -115,6 +118,27 @@ class Motion:
     def found(self) -> BoolArray:
         """Which rows hold a position, shape (N,)."""
         return np.array([status.ok for status in self.status], dtype=bool)
+
+    @property
+    def worst(self) -> float:
+        """The largest residual of the rows found, relative to the longest link; NaN if none."""
+        found = self.residual[self.found]
+        return float(found.max()) if len(found) else float("nan")
+
+    def table(self) -> Table:
+        """All columns with units; see :func:`linkwork.results.table.table_of`."""
+        return table_of(self)
+
+    def to_pandas(self) -> Any:
+        """A pandas DataFrame with the input as index."""
+        return self.table().to_pandas()
+
+    def to_xarray(self) -> Any:
+        """An xarray Dataset over the input, with units."""
+        return self.table().to_xarray()
+
+    def __repr__(self) -> str:
+        return motion_summary(self)
 
     @property
     def counts(self) -> Counter[Status]:

@@ -13,6 +13,7 @@ from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.quantity import Units
+from linkwork.results.summary import position_summary
 
 __all__ = ["Certificate", "NewtonStep", "NewtonTrail", "Position"]
 
@@ -52,7 +53,7 @@ class NewtonTrail:
     status: Status
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Position:
     """A position of a mechanism at one input value.
 
@@ -125,6 +126,9 @@ class Position:
             if name in table:
                 return table[name]
         raise KeyError(name)
+
+    def __repr__(self) -> str:
+        return position_summary(self)
 
     def to_dict(self) -> dict[str, Any]:
         """The position as JSON-ready data: NaN becomes null, the status its member name."""

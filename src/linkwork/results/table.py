@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.errors import MissingPackageError
-from linkwork.results.motion import Motion, Series
+
+if TYPE_CHECKING:
+    from linkwork.results.motion import Motion, Series
 
 __all__ = ["Table", "table_of"]
 

@@ -1,0 +1,57 @@
+"""Short aligned summaries of results, fit to be pasted into a question."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from linkwork.results.motion import Motion
+    from linkwork.results.position import Position
+
+__all__ = ["motion_summary", "position_summary"]
+
+
+def _aligned(rows: list[tuple[str, str]]) -> list[str]:
+    width = max((len(name) for name, _ in rows), default=0)
+    return [f"  {name:<{width}}  {text}" for name, text in rows]
+
+
+def _driven(inputs: Mapping[str, float], units: Mapping[str, str]) -> str:
+    return ", ".join(f"{name} = {value:.10g} {units[name]}" for name, value in inputs.items())
+
+
+def position_summary(position: Position) -> str:
+    """Status, unknowns, evidence."""
+    at = _driven(position.input, position.input_units)
+    head = f"Position of {position.mechanism}" + (f" at {at}" if at else "")
+    if not position.status.ok:
+        return f"{head}\n  {position.status.name}: {position.message}"
+    rows = [(name, f"{value:.10g}") for name, value in position.unknowns.items()]
+    rows += [
+        ("residual", f"{position.residual:.1e} of the longest link"),
+        ("condition", f"{position.condition:.3g}"),
+        ("iterations", str(position.iterations)),
+        ("certified", "yes" if position.certificate.certified else "no"),
+    ]
+    return "\n".join([head, *_aligned(rows)])
+
+
+def motion_summary(motion: Motion) -> str:
+    """Range of the input, counts by status, limits, worst evidence, ranges of the unknowns."""
+    name, values = next(iter(motion.inputs.items()))
+    unit = motion.input_units[name]
+    head = (
+        f"Motion of {motion.mechanism}, {name} {values[0]:.10g} to {values[-1]:.10g} {unit}, "
+        f"{len(motion)} positions"
+    )
+    rows = [(s.name.lower().replace("_", " "), str(n)) for s, n in motion.counts.most_common()]
+    rows += [("limit", f"{limit.input:.10g} {unit}") for limit in motion.limits]
+    found = motion.found
+    if found.any():
+        rows.append(("worst residual", f"{motion.worst:.1e} of the longest link"))
+        rows.append(("worst condition", f"{motion.condition[found].max():.3g}"))
+        for unknown, series in motion.unknowns.items():
+            reached = series.value[found]
+            rows.append((unknown, f"{reached.min():.8g} … {reached.max():.8g}"))
+    return "\n".join([head, *_aligned(rows)])
