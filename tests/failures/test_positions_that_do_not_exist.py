@@ -1,0 +1,133 @@
+"""Where there is no position, the reason is told: which loop, which gap, which limit."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+
+
+def four_bar(
+    crank: float, coupler: float, rocker: float, ground: float, at: float = 90, side: int = 1
+) -> lw.Mechanism:
+    angle = math.radians(at)
+    return lw.linkage(
+        name="four-bar",
+        points={
+            "O2": (0, 0),
+            "A": (crank * math.cos(angle), crank * math.sin(angle)),
+            "B": (ground + 0.3 * rocker, side * 0.95 * rocker),
+            "O4": (ground, 0),
+        },
+        links={
+            "ground": ["O2", "O4"],
+            "crank": ["O2", "A"],
+            "coupler": ["A", "B"],
+            "rocker": ["O4", "B"],
+        },
+        lengths={"O2 A": crank, "A B": coupler, "O4 B": rocker, "O2 O4": ground},
+        inputs=lw.Input(link="crank"),
+    )
+
+
+def test_links_too_short_name_the_loop_and_the_exact_gap() -> None:
+    # A is sqrt(40² + 100²) from O4; coupler and rocker reach 30 + 20
+    gap = math.hypot(40, 100) - 50
+    position = four_bar(40, 30, 20, 100).solve()
+    assert position.status is lw.Status.CANNOT_CLOSE
+    assert position.message == (
+        f'loop "O2 A B O4" cannot be closed at crank = 90°: nearest to the guess a gap of '
+        f"{gap:.6g} mm remains; change a length or start elsewhere"
+    )
+    assert math.isnan(position["coupler"])
+
+
+def test_a_sweep_without_a_start_keeps_all_its_rows() -> None:
+    motion = four_bar(40, 30, 20, 100).sweep()
+    assert len(motion) == 361
+    assert set(motion.status) == {lw.Status.NO_START}
+    assert motion.message.startswith('loop "O2 A B O4" cannot be closed at crank = 90°')
+
+
+def test_non_grashof_rows_out_of_reach_are_exactly_those_between_the_dead_points() -> None:
+    motion = four_bar(2, 5, 2, 4).sweep()  # ground 4, crank 2, coupler 5, rocker 2
+    lost = motion["crank"][~motion.found]
+    assert len(lost) == 94
+    np.testing.assert_array_equal(lost, [*range(47), *range(314, 361)])
+    assert {s for s in motion.status if not s.ok} == {lw.Status.OUT_OF_REACH}
+    limits = sorted(limit.input for limit in motion.limits)
+    exact = math.degrees(math.acos(11 / 16))
+    assert limits == pytest.approx([exact, 360 - exact], abs=1e-9)
+
+
+def test_asking_beyond_a_dead_point_names_both_limits() -> None:
+    position = four_bar(2, 5, 2, 4).solve(at=0)
+    assert position.status is lw.Status.OUT_OF_REACH
+    assert position.message == (
+        f"{lw.Status.OUT_OF_REACH.value} (met at crank = 46.56746344° and 313.4325366°)"
+    )
+
+
+@pytest.mark.parametrize(("ground", "crank"), [(2.0, 1.0), (3.0, 1.0)])
+@pytest.mark.parametrize("step", [0.1, 1, 10, 60])
+def test_parallelogram_never_flips_at_its_change_points(
+    ground: float, crank: float, step: float
+) -> None:
+    motion = four_bar(crank, ground, crank, ground, at=60).sweep(step=step)
+    inside = motion.found
+    assert inside.sum() >= 179 / step - 1
+    # on the parallelogram's branch the rocker stays parallel to the crank
+    gap = np.remainder(motion["rocker"][inside] - motion["crank"][inside] + 180, 360) - 180
+    np.testing.assert_allclose(gap, 0, atol=1e-6)
+    assert {s for s in motion.status if not s.ok} <= {lw.Status.LOST, lw.Status.OUT_OF_REACH}
+    if step < 60:
+        assert not inside.all()
+
+
+def test_throw_turns_the_status_into_an_error() -> None:
+    with pytest.raises(lw.NotConvergedError, match=r'^loop "O2 A B O4" cannot be closed'):
+        four_bar(40, 30, 20, 100).solve(throw=True)
+
+
+def test_a_steep_path_keeps_its_branch_at_sixty_degree_steps() -> None:
+    mechanism = four_bar(0.5, 1.2, 0.8, 1.0, at=30)
+    coarse, fine = mechanism.sweep(step=60), mechanism.sweep(step=1)
+    assert coarse.found.all()
+    np.testing.assert_allclose(coarse["rocker"], fine["rocker"][::60], rtol=0, atol=1e-9)
+
+
+def test_three_collinear_points_on_one_link_are_solvable() -> None:
+    mechanism = lw.linkage(
+        points={"O": (0, 0), "A": (20, 20), "C": (60, 45), "B": (100, 60), "Q": (110, 0)},
+        links={
+            "ground": ["O", "Q"],
+            "crank": ["O", "A"],
+            "coupler": ["A", "C", "B"],
+            "rocker": ["Q", "B"],
+        },
+        lengths={"O A": 28, "A C": 40, "C B": 45, "A B": 85, "Q B": 70},
+        inputs=lw.Input(link="crank"),
+    )
+    motion = mechanism.sweep()
+    assert motion.found.all()
+    a, b, c = (motion.trace(p) for p in ("A", "B", "C"))
+    np.testing.assert_allclose(c, a + (b - a) * 40 / 85, rtol=0, atol=1e-11)
+
+
+def test_inputs_that_do_not_fit_are_errors() -> None:
+    mechanism = four_bar(2, 5, 2, 4)
+    with pytest.raises(lw.UnknownNameError) as unknown:
+        mechanism.solve(at={"rocker": 3})
+    assert str(unknown.value) == '"rocker" is not an input of four-bar (inputs: crank)'
+    with pytest.raises(lw.UnknownNameError) as dimension:
+        mechanism.with_dimensions(a=3)
+    assert str(dimension.value) == ('"a" is not a dimension of four-bar (there are no dimensions)')
+    with pytest.raises(lw.InputError) as nothing:
+        lw.example("newton-convergence").sweep()
+    assert str(nothing.value) == (
+        'mechanism "Newton-Raphson, the usual case: quadratic convergence" has no input: '
+        "add [input] to sweep it"
+    )
