@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 
 import linkwork as lw
@@ -24,7 +26,7 @@ def test_sketch_b_diverges_at_an_inflection() -> None:
     position = lw.example("newton-inflection").solve(with_steps=True)
     assert position.status is lw.Status.DIVERGED
     sizes = [abs(step.unknowns["x"]) for step in position.steps[0].steps]
-    assert all(later > earlier for earlier, later in zip(sizes, sizes[1:], strict=False))
+    assert all(later > earlier for earlier, later in itertools.pairwise(sizes))
 
 
 def test_sketch_c_finds_another_root_than_the_nearest() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -194,10 +194,18 @@ def test_no_angle_turns_further_than_the_limit_and_the_direction_is_kept() -> No
     np.testing.assert_allclose(short[0] / limit, bare[0] / np.abs(bare[0]).max(), rtol=1e-13)
 
 
-def test_turn_limit_leaves_lengths_alone() -> None:
-    done = newton(Cubic(), np.array([[100.0, 0.0, -8.0]]))
-    assert done.first_step[0] > 30.0
-    assert done.status[0] == Status.CONVERGED.code
+def test_turn_limit_counts_angles_and_leaves_lengths_alone() -> None:
+    # e^{iφ} + 3 e^{iθ} - s = 0: a block 50 away comes back in one step that turns the rod little
+    table = loop_table([(0, 1.0, 2), (0, 3.0, 0), (0, -1.0, None)], 2, 1, 3.0)
+    slides = replace(table.loops, length=np.array([-1, -1, 1]))
+    table = replace(table, loops=slides, turns=np.array([True, False, True]))
+    start = np.array([[-0.2, 53.0, 0.5]])
+    done = newton(table, start)
+    bare = newton(table, start, NewtonOptions(largest_turn=math.inf))
+    assert done.first_step[0] > 49.0
+    same(done, 0, bare, atol=0.0)
+    s = math.cos(0.5) + math.sqrt(9 - math.sin(0.5) ** 2)
+    assert done.v[0, 1] == pytest.approx(s, rel=1e-14)
 
 
 def dyad(a: float, b: float) -> LoopTable:

@@ -98,9 +98,10 @@ def test_a_track_from_a_dead_point_says_that_it_is_lost() -> None:
     assert (end.reached, end.failed, end.status) == (dead, dead, Status.LOST)
 
 
-def test_a_track_from_a_change_point_does_not_choose_a_branch() -> None:
+@pytest.mark.parametrize("away", [0.0, 1e-9, -1e-7])
+def test_a_track_from_a_change_point_does_not_choose_a_branch(away: float) -> None:
     solver = blocks_of(four_bar_table(FourBar(2.0, 1.0, 2.0, 1.0)))
-    start = node_at(solver, PATH, 0.0, np.zeros(3))
+    start = node_at(solver, PATH, away, np.array([0.0, away, away]))
     nodes, end = follow(solver, PATH, start, 1.0, 1.0)
     assert nodes == []
     assert end is not None
@@ -124,17 +125,29 @@ def test_rows_between_nodes_are_the_positions_of_the_branch() -> None:
         np.testing.assert_allclose(alone.rates.second[0], rows.rates.second[k], rtol=0, atol=1e-10)
 
 
-def test_a_row_whose_guess_misleads_is_followed_from_its_node() -> None:
+def test_a_row_whose_guess_leads_to_the_other_branch_is_followed_from_its_node() -> None:
     solver, start = start_of(ROCKER, 1.0, 1)
     nodes, _ = follow(solver, PATH, start, 4.0, 1.0)
-    wrong = replace(
-        nodes[-1], v=nodes[-1].v + np.array([4.0, -3.0, 0.0])
-    )  # spoils the interpolation
-    first = start, *nodes[:-1]
-    t = np.array([first[-1].t + 0.2 * (4.0 - first[-1].t)])
-    rows = rows_on_track(solver, PATH, Track(nodes=(*first, wrong)), t, 1.0)
+    left, right = nodes[-2:]
+    t = np.array([left.t + 0.4 * (right.t - left.t)])
+    here = np.angle(ROCKER.phasors(t, 1)).ravel()
+    there = np.angle(ROCKER.phasors(t, -1)).ravel()
+    # the quintic gives the right node's value the weight s³(10 - 15 s + 6 s²)
+    shift = np.append((there - here) / (0.4**3 * (10 - 6 + 0.96)), 0.0)
+    spoiled = replace(right, v=right.v + shift)
+    rows = rows_on_track(solver, PATH, Track(nodes=(start, *nodes[:-1], spoiled)), t, 1.0)
     assert rows.status[0] == Status.CONVERGED.code
     assert off_branch(ROCKER, rows.v, 1) < CLOSE
+
+
+def test_a_row_that_cannot_be_followed_from_its_node_is_lost() -> None:
+    solver, start = start_of(FOLDING, 2.0, 1)
+    nodes, _ = follow(solver, PATH, start, 0.0, 1.0)
+    beyond = replace(nodes[-1], t=0.3)  # claims more reach than there is
+    track = Track(nodes=(beyond, *reversed(nodes), start))
+    rows = rows_on_track(solver, PATH, track, np.array([0.7, 1.5]), 1.0)
+    assert rows.status.tolist() == [Status.LOST.code, Status.CONVERGED.code]
+    assert off_branch(FOLDING, rows.v[1:], 1) < CLOSE
 
 
 # ------------------------------------------------------------------ whole tables

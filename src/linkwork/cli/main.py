@@ -4,22 +4,19 @@ from __future__ import annotations
 
 import sys
 import traceback
+from importlib import import_module
 
 import click
 
-from linkwork.cli.check import check
-from linkwork.cli.draw import draw
-from linkwork.cli.equations import equations
-from linkwork.cli.examples import examples
 from linkwork.cli.options import DEBUG, debug_option
 from linkwork.cli.problems import problem_lines
-from linkwork.cli.schema import schema
-from linkwork.cli.solve import solve
-from linkwork.cli.sweep import sweep
 from linkwork.cli.terminal import abandon_output, print_lines, ready_streams
 from linkwork.foundation.errors import LinkworkError
 
 __all__ = ["linkwork", "main"]
+
+#: Each is a function of the same name in a module of the same name.
+_COMMANDS = ("check", "equations", "solve", "sweep", "draw", "examples", "schema")
 
 _WRONG_INPUT = 2
 _OUR_FAULT = 3
@@ -31,8 +28,15 @@ class _Program(click.Group):
     """The commands in the order of work; every way a run can end, in one place."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Names in the order in which they were added."""
-        return list(self.commands)
+        """The commands in the order of work."""
+        return list(_COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """A command, loaded only when it is wanted: most of a run's time is loading."""
+        if cmd_name not in _COMMANDS:
+            return None
+        command: click.Command = getattr(import_module(f"linkwork.cli.{cmd_name}"), cmd_name)
+        return command
 
     def invoke(self, ctx: click.Context) -> object:
         """Run a command and turn what goes wrong into a message and an exit code."""
@@ -98,10 +102,6 @@ def linkwork(context: click.Context) -> None:
     """
     if context.invoked_subcommand is None:
         click.echo(context.get_help())
-
-
-for _command in (check, equations, solve, sweep, draw, examples, schema):
-    linkwork.add_command(_command)
 
 
 def main() -> None:
