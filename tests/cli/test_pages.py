@@ -6,6 +6,7 @@ import unicodedata
 from dataclasses import replace
 from pathlib import Path
 
+import click
 import pytest
 
 from linkwork.cli.check import check_lines
@@ -13,7 +14,7 @@ from linkwork.cli.main import linkwork
 from linkwork.everyday import examples, load
 from tests.cli.conftest import FILES, Run
 
-COMMANDS = tuple(linkwork.commands)
+COMMANDS = tuple(linkwork.list_commands(click.Context(linkwork)))
 PAGES = (("check",), ("solve",), ("solve", "--show-steps"), ("sweep",), ("equations",))
 
 SOLVED = """\
@@ -214,6 +215,15 @@ def test_sweep_gives_the_range_of_unknowns_outputs_and_traced_points(run: Run) -
     assert "  stroke   80.000     180  160.000       0  mm" in lines
     rows = [line.split()[0] for line in run("sweep", "four-bar.toml").stdout.splitlines() if line]
     assert rows[-6:-1] == ["coupler", "rocker", "mu", "P.x", "P.y"]
+
+
+def test_an_output_that_has_no_value_anywhere_has_no_range(run: Run, folder: Path) -> None:
+    text = FILES["four-bar"] + 'never = "sqrt(0*P.x - 1)"\n'
+    (folder / "never.toml").write_text(text, encoding="utf-8")
+    done = run("sweep", "never.toml")
+    assert (done.exit_code, done.stderr) == (0, "")
+    (row,) = (line.split() for line in done.stdout.splitlines() if "never" in line)
+    assert row == ["never", "-", "-", "-", "-"]
 
 
 def test_sweep_without_a_start_says_why_and_what_to_do(run: Run) -> None:

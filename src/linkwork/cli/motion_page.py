@@ -105,9 +105,8 @@ def _ranges(motion: Motion) -> list[str]:
     if not found:
         return []
     _, inputs = _lead(motion)
-    low = [int(np.nanargmin(series.value)) for series in found]
-    high = [int(np.nanargmax(series.value)) for series in found]
-
+    low = [int(np.argmin(_filled(series.value, np.inf))) for series in found]
+    high = [int(np.argmax(_filled(series.value, -np.inf))) for series in found]
     numbers = [
         Row(name=s.quantity.name, kind=s.quantity.kind, value=float(s.value[row]))
         for rows in (low, high)
@@ -116,7 +115,9 @@ def _ranges(motion: Motion) -> list[str]:
     cells = value_cells(numbers)  # of both columns at once: with the same decimals
 
     def places(rows: list[int]) -> Column:
-        return Column(header="at", cells=[short(inputs[row]) for row in rows], align="point")
+        known = [not np.isnan(s.value[row]) for s, row in zip(found, rows, strict=True)]
+        cells = [short(inputs[r] if k else np.nan) for r, k in zip(rows, known, strict=True)]
+        return Column(header="at", cells=cells, align="point")
 
     return table_lines(
         [
@@ -128,6 +129,11 @@ def _ranges(motion: Motion) -> list[str]:
             Column(header="unit", cells=[motion.units.of(s.quantity.kind) for s in found]),
         ]
     )
+
+
+def _filled(values: Array, filling: float) -> Array:
+    """The values with another number for those that are missing."""
+    return np.where(np.isnan(values), filling, values)
 
 
 def _lead(motion: Motion) -> tuple[str, Array]:
