@@ -222,7 +222,7 @@ def test_an_output_that_has_no_value_anywhere_has_no_range(run: Run, folder: Pat
     (folder / "never.toml").write_text(text, encoding="utf-8")
     done = run("sweep", "never.toml")
     assert (done.exit_code, done.stderr) == (0, "")
-    (row,) = (line.split() for line in done.stdout.splitlines() if "never" in line)
+    (row,) = (line.split() for line in done.stdout.splitlines() if "  never" in line)
     assert row == ["never", "-", "-", "-", "-"]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NoReturn
 
 import numpy as np
 import numpy.typing as npt
@@ -49,6 +50,13 @@ class Cubic:
 
     def second(self, v: Array, d: Array) -> Array:
         return np.asarray((6 * v[:, 0] * d[:, 0] ** 2 + 2 * d[:, 0] * d[:, 1])[:, None])
+
+    @property
+    def bends_boundedly(self) -> bool:
+        return False
+
+    def curvature(self, v: Array, matrix: Array) -> NoReturn:
+        raise NotImplementedError("a cubic bends without bound")
 
 
 #: (loop, coefficient, angle variable or None)

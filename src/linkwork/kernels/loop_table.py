@@ -13,6 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.kernels.curvature import Curvature, PhaseGroups
 from linkwork.kernels.phasor_rows import PhasorRows
 
 __all__ = ["FunctionRow", "LinearRows", "LoopTable", "TableSplitter"]
@@ -33,6 +34,9 @@ class FunctionRow(Protocol):
 
     def second(self, v: Array, d: Array) -> Array:
         """Second derivative along d, (B,)."""
+
+
+_UNIT = np.finfo(float).eps / 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,6 +136,46 @@ class LoopTable:
             parts.append(np.zeros((len(v), len(self.linear.constant))))
             parts += [row.second(v, d)[:, None] for row in self.functions]
         return np.concatenate(parts, axis=1)
+
+    @property
+    def bends_boundedly(self) -> bool:
+        """Whether :meth:`curvature` knows a bound: not for function rows."""
+        return not self.functions
+
+    @cached_property
+    def _groups(self) -> PhaseGroups:
+        return PhaseGroups(rows=self.loops)
+
+    def curvature(self, v: Array, matrix: Array) -> Curvature:
+        """Bounds of the second derivatives seen through a matrix.
+
+        Parameters
+        ----------
+        v : (B, N)
+        matrix : (B, n, m or more)
+            The rows A; columns behind the table's m equations are ignored.
+        """
+        count = self.loops.rows
+        alpha = matrix[:, :, :count] - 1j * matrix[:, :, count : 2 * count]
+        groups = self._groups
+        phase, slide = groups.moduli(v, alpha)
+        error, slopes = groups.rounding(v)
+        a = np.abs(self._linear_matrix)
+        line_error = (np.abs(v) @ a.T + np.abs(self.linear.constant)) * (
+            _UNIT * (self.variables + 2)
+        )
+        lines = np.broadcast_to(a, (len(v), *a.shape))
+        lengths, group, _ = groups.pairs
+        return Curvature(
+            loop_rows=2 * count,
+            phase=phase,
+            slide=slide,
+            weights=groups.weights,
+            pair_length=lengths,
+            pair_group=group,
+            rounding=np.concatenate([error, error, line_error], axis=1),
+            jacobian_size=np.concatenate([slopes, slopes, lines], axis=1),
+        )
 
     def _real_rows(self, v: Array) -> tuple[Array, Array]:
         a = self._linear_matrix

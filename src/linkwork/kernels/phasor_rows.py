@@ -116,3 +116,12 @@ class PhasorRows:
         second = e * (s2 - s * psi1**2 + 1j * (2.0 * s1 * psi1 + s * psi2))
         g = self._gather
         return value @ g, first @ g, second @ g
+
+    def moduli(self, v: Array) -> tuple[Array, Array]:
+        """|terms|, (B, T), and the sums of moduli of the terms of dF/dv, (B, R, N)."""
+        modulus = np.broadcast_to(np.abs(self.coefficient), (len(v), len(self.row)))
+        terms = np.abs(self._terms(v, modulus.astype(complex)))
+        sliding = self._sliding
+        both = np.concatenate([terms, modulus[:, sliding]], axis=1)
+        slopes = both @ np.abs(self._slopes)
+        return terms, slopes.reshape(len(v), self.rows, self.variables)

@@ -12,7 +12,7 @@ from linkwork.foundation.status import Status
 from linkwork.numerics.newton import NewtonOptions, Watch, newton
 from linkwork.numerics.system import System
 
-__all__ = ["Block", "BlockSolution", "BlockSolver", "Rates"]
+__all__ = ["Block", "BlockSolution", "BlockSolver", "Linearised", "Rates"]
 
 _CONVERGED = Status.CONVERGED.code
 
@@ -43,7 +43,16 @@ class BlockSolution:
     contraction: Array
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Linearised:
+    """A block at B positions: dF/dv (B, n, N), the inverse of its first n columns, sign of det."""
+
+    jacobian: Array
+    inverse: Array
+    sign: StatusArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Rates:
     """Derivatives along the input path: (B, N) each; evidence about the Jacobian.
 
@@ -122,7 +131,18 @@ class BlockSolver:
             contraction=contraction,
         )
 
-    def rates(self, v: Array, input_rate: Array) -> Rates:
+    def linearise(self, v: Array) -> list[Linearised]:
+        """Jacobian, its inverse and the sign of its determinant for every block at v (B, N)."""
+        found = []
+        for block in self.blocks:
+            jacobian = block.system.jacobian(v[:, block.variables])
+            inverse, sign = _inverse(jacobian[:, :, : len(block.unknowns)])
+            found.append(Linearised(jacobian=jacobian, inverse=inverse, sign=sign))
+        return found
+
+    def rates(
+        self, v: Array, input_rate: Array, linear: Sequence[Linearised] | None = None
+    ) -> Rates:
         """First and second derivative of all variables when the inputs move at a constant rate.
 
         J x' = -F_u u';  J x'' = -D²F[(x', u'), (x', u')]: one inverse of J serves both and the
@@ -134,7 +154,10 @@ class BlockSolver:
             Converged positions.
         input_rate : (p,)
             u' of the inputs; u'' = 0.
+        linear : list of Linearised, optional
+            ``linearise(v)``, if it is there already.
         """
+        parts = self.linearise(v) if linear is None else linear
         count = len(v)
         first = np.zeros((count, self.variables))
         second = np.zeros((count, self.variables))
@@ -145,8 +168,7 @@ class BlockSolver:
             n = len(block.unknowns)
             system = block.system
             here = v[:, block.variables]
-            jacobian = system.jacobian(here)
-            inverse, sign = _inverse(jacobian[:, :, :n])
+            jacobian, inverse = parts[k].jacobian, parts[k].inverse
             known = block.variables[n:]
             direction = np.empty_like(here)
             direction[:, n:] = first[:, known]
@@ -156,7 +178,7 @@ class BlockSolver:
             first[:, block.unknowns] = x1
             second[:, block.unknowns] = -_apply(inverse, bend)
             condition = np.maximum(condition, _condition(system, jacobian[:, :, :n], inverse))
-            orientation[:, k] = sign
+            orientation[:, k] = parts[k].sign
         return Rates(first=first, second=second, condition=condition, orientation=orientation)
 
     def residual(self, v: Array) -> Array:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 
-__all__ = ["System"]
+__all__ = ["Curvature", "System"]
 
 
 class System(Protocol):
@@ -39,3 +39,49 @@ class System(Protocol):
 
     def second(self, v: Array, d: Array) -> Array:
         """D²F[d, d], (B, m)."""
+
+    @property
+    def bends_boundedly(self) -> bool:
+        """Whether :meth:`curvature` knows a bound."""
+
+    def curvature(self, v: Array, matrix: Array) -> Curvature:
+        """Moduli of the second derivatives behind a matrix (B, n, m)."""
+
+
+class Curvature(Protocol):
+    """What a certificate needs to know of second derivatives and rounding.
+
+    Terms are grouped by phase g and by pairs p of a variable length with a phase.
+    """
+
+    @property
+    def loop_rows(self) -> int:
+        """How many of the m equations belong to loops; rows behind do not bend."""
+
+    @property
+    def phase(self) -> Array:
+        """(B, n, G) moduli of the grouped coefficients behind the matrix."""
+
+    @property
+    def slide(self) -> Array:
+        """(B, n, P) the same for the terms with a variable length, without it."""
+
+    @property
+    def weights(self) -> Array:
+        """(N, G) how much each variable turns each phase."""
+
+    @property
+    def pair_length(self) -> IndexArray:
+        """(P,) the variable length of each pair."""
+
+    @property
+    def pair_group(self) -> IndexArray:
+        """(P,) the phase of each pair."""
+
+    @property
+    def rounding(self) -> Array:
+        """(B, m) bounds of the error of computing F."""
+
+    @property
+    def jacobian_size(self) -> Array:
+        """(B, m, N) sums of the moduli of the terms of dF/dv."""

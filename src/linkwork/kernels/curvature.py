@@ -1,0 +1,121 @@
+"""How fast a loop table bends: exact bounds of its second derivatives, seen through a matrix.
+
+Terms with the same phase turn together, so their complex coefficients are added before a modulus is
+taken: with α = A_re - i A_im the row i of A·D²F along unit directions is at most
+
+    Σ_g |Σ_l α_il C_lg| Ω_g² + 2 Σ_{j,g} |Σ_l α_il D_ljg| w_j Ω_g
+
+where C_lg sums c·s and D_ljg sums c over the terms of loop l with phase g (and variable length j).
+Linear rows do not bend; function rows have no bound here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
+from linkwork.kernels.phasor_rows import PhasorRows
+
+__all__ = ["Curvature", "PhaseGroups"]
+
+_UNIT = np.finfo(float).eps / 2
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Curvature:
+    """Moduli of second derivatives behind a matrix A with n rows, for B positions.
+
+    ``loop_rows``: how many of the m equations belong to loops; linear rows follow.
+    ``phase`` (B, n, G): |Σ_l α_il C_lg|. ``slide`` (B, n, P): |Σ_l α_il D_lp| for every pair p of
+    a variable length and a phase. ``weights`` (N, G): |W|. ``pair_length``, ``pair_group`` (P,):
+    the pair's variable and phase. ``rounding`` (B, m): bounds of the error of computing F.
+    ``jacobian_size`` (B, m, N): sums of the moduli of the terms of dF/dv.
+    """
+
+    loop_rows: int
+    phase: Array
+    slide: Array
+    weights: Array
+    pair_length: IndexArray
+    pair_group: IndexArray
+    rounding: Array
+    jacobian_size: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PhaseGroups:
+    """The terms of some rows sorted by phase; everything that does not depend on a position."""
+
+    rows: PhasorRows
+
+    @cached_property
+    def _grouped(self) -> tuple[Array, IndexArray]:
+        """|W| by group, (N, G), and the group of each term."""
+        rows = self.rows
+        columns: list[list[tuple[int, float]]] = [[] for _ in rows.row]
+        for t, k, w in zip(rows.phase_term, rows.phase_variable, rows.phase_weight, strict=True):
+            columns[t].append((int(k), float(w)))
+        number: dict[tuple[tuple[int, float], ...], int] = {}
+        group = [number.setdefault(tuple(sorted(column)), len(number)) for column in columns]
+        weights = np.zeros((rows.variables, len(number)))
+        for column, g in number.items():
+            for k, w in column:
+                weights[k, g] += abs(w)
+        return weights, np.array(group, dtype=np.intp)
+
+    @property
+    def weights(self) -> Array:
+        """|W| by group, (N, G)."""
+        return self._grouped[0]
+
+    @cached_property
+    def _sorted_in(self) -> ComplexArray:
+        """Adds terms into (row, group) places, (T, R G)."""
+        rows, group = self.rows, self._grouped[1]
+        count = self.weights.shape[1]
+        m = np.zeros((len(rows.row), rows.rows * count), dtype=complex)
+        m[np.arange(len(rows.row)), rows.row * count + group] = rows.coefficient
+        return m
+
+    @cached_property
+    def pairs(self) -> tuple[IndexArray, IndexArray, ComplexArray]:
+        """Variable length and phase of every pair that occurs, and its coefficients D (R, P)."""
+        rows, group = self.rows, self._grouped[1]
+        sliding = np.flatnonzero(rows.length >= 0)
+        number: dict[tuple[int, int], int] = {}
+        place = [
+            number.setdefault((int(rows.length[t]), int(group[t])), len(number)) for t in sliding
+        ]
+        d = np.zeros((rows.rows, len(number)), dtype=complex)
+        np.add.at(d, (rows.row[sliding], np.array(place, dtype=np.intp)), rows.coefficient[sliding])
+        lengths = np.array([j for j, _ in number], dtype=np.intp)
+        groups = np.array([g for _, g in number], dtype=np.intp)
+        return lengths, groups, d
+
+    def moduli(self, v: Array, alpha: ComplexArray) -> tuple[Array, Array]:
+        """``phase`` (B, n, G) and ``slide`` (B, n, P) of :class:`Curvature`."""
+        rows = self.rows
+        s = np.ones((len(v), len(rows.row)))
+        sliding = np.flatnonzero(rows.length >= 0)
+        s[:, sliding] = v[:, rows.length[sliding]]
+        c = (s @ self._sorted_in).reshape(len(v), rows.rows, -1)
+        return np.abs(alpha @ c), np.abs(alpha @ self.pairs[2])
+
+    def rounding(self, v: Array) -> tuple[Array, Array]:
+        """Bounds of |error of F|, (B, R), and sums of moduli of dF/dv, (B, R, N).
+
+        A phase that is a sum of several variables is itself rounded, in proportion to its parts.
+        """
+        rows = self.rows
+        modulus, slopes = rows.moduli(v)
+        parts = np.abs(v) @ self.weights  # (B, G)
+        several = (self.weights > 0).sum(axis=0)
+        slip = np.where(several > 1, several * parts, 0.0)[:, self._grouped[1]]
+        terms_in_row = np.bincount(rows.row, minlength=rows.rows)
+        gather = np.zeros((len(rows.row), rows.rows))
+        gather[np.arange(len(rows.row)), rows.row] = 1.0
+        error = (modulus @ gather) * (terms_in_row + 8) + (modulus * slip) @ gather
+        return _UNIT * error, slopes

@@ -1,0 +1,170 @@
+"""Proving that a row of positions lies on one branch: many steps at once, halved where needed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.status import Status
+from linkwork.numerics.block_solver import BlockSolver, Linearised, Rates
+from linkwork.numerics.proof import Proof, links_hold, prove, rounding_of_inputs
+from linkwork.numerics.track import InputPath
+
+__all__ = ["Beads", "ProvenPath", "prove_path"]
+
+_CONVERGED = Status.CONVERGED.code
+_ROUNDS = 45  # halvings of one step before it counts as not proved
+_MOST = 200_000  # steps looked at in one round
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Beads:
+    """Positions along a path with their derivatives by t: t (K,), the others (K, N)."""
+
+    t: Array
+    v: Array
+    first: Array
+    second: Array
+
+    def take(self, index: IndexArray | slice) -> Beads:
+        """Some of them, in the order of ``index``."""
+        return Beads(
+            t=self.t[index], v=self.v[index], first=self.first[index], second=self.second[index]
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ProvenPath:
+    """``position``: the proofs of K positions. ``linked`` (K-1,): which steps are proved."""
+
+    position: Proof
+    linked: BoolArray
+
+    def connected_to(self, anchor: int) -> BoolArray:
+        """The positions joined to one of them by proved steps and proved themselves, (K,)."""
+        right = np.cumprod(self.linked[anchor:]).astype(bool)
+        left = np.cumprod(self.linked[:anchor][::-1]).astype(bool)[::-1]
+        joined = np.concatenate([left, [True], right])
+        return joined & self.position.holds
+
+
+def prove_path(
+    solver: BlockSolver,
+    path: InputPath,
+    beads: Beads,
+    linear: Sequence[Linearised] | None = None,
+) -> ProvenPath:
+    """Prove every position and every step between neighbours.
+
+    Parameters
+    ----------
+    beads : Beads
+        In the order of t.
+    linear : list of Linearised, optional
+        Of all positions, if it is there already.
+
+    Notes
+    -----
+    A step that is not proved from its left end is tried from its right end, then halved at a
+    position solved in between. All open steps of one round are worked on together.
+    """
+    parts = solver.linearise(beads.v) if linear is None else linear
+    position = prove(solver, beads.v, rounding_of_inputs(beads.v, solver.unknowns), parts)
+    count = len(beads.t)
+    if count < 2:
+        return ProvenPath(position=position, linked=np.zeros(0, dtype=bool))
+    left, right = beads.take(slice(None, -1)), beads.take(slice(1, None))
+    linked = _steps(solver, path, left, right, position.exists[1:], _cut(parts, slice(None, -1)))
+    linked &= position.holds[1:] & position.holds[:-1]
+    open_ = np.flatnonzero(~linked & position.holds[1:] & position.holds[:-1])
+    if len(open_):
+        back = _cut(parts, open_ + 1)
+        arrival = position.exists[open_]
+        linked[open_] = _steps(solver, path, right.take(open_), left.take(open_), arrival, back)
+        open_ = open_[~linked[open_]]
+    if len(open_):
+        linked[open_] = _halved(
+            solver, path, left.take(open_), right.take(open_), position.exists[open_ + 1]
+        )
+    return ProvenPath(position=position, linked=linked)
+
+
+def _cut(parts: Sequence[Linearised], index: IndexArray | slice) -> list[Linearised]:
+    return [
+        Linearised(jacobian=p.jacobian[index], inverse=p.inverse[index], sign=p.sign[index])
+        for p in parts
+    ]
+
+
+def _steps(
+    solver: BlockSolver,
+    path: InputPath,
+    start: Beads,
+    goal: Beads,
+    arrival: Array,
+    linear: Sequence[Linearised] | None = None,
+) -> BoolArray:
+    """Which steps are proved from their start."""
+    spread = np.abs(goal.t - start.t)[:, None] * np.abs(path.rate)
+    spread = spread + 2.0 * rounding_of_inputs(
+        np.maximum(np.abs(start.v), np.abs(goal.v)), solver.unknowns
+    )
+    reach = prove(solver, start.v, spread, linear)
+    return links_hold(solver, start.v, goal.v, reach, arrival)
+
+
+def _halved(
+    solver: BlockSolver, path: InputPath, left: Beads, right: Beads, arrival: Array
+) -> BoolArray:
+    """Which steps are proved after halving them as often as needed."""
+    owner = np.arange(len(left.t))
+    proved = np.ones(len(left.t), dtype=bool)
+    for _ in range(_ROUNDS):
+        middle, found = _between(solver, path, left, right)
+        proof = prove(solver, middle.v, rounding_of_inputs(middle.v, solver.unknowns))
+        good = found & proof.holds
+        proved[owner[~good]] = False
+        keep = np.flatnonzero(good & proved[owner])
+        left, right, middle = left.take(keep), right.take(keep), middle.take(keep)
+        halfway, arrival, owner = proof.exists[keep], arrival[keep], owner[keep]
+        if not len(keep):
+            return proved
+        first = _steps(solver, path, left, middle, halfway)
+        second = _steps(solver, path, middle, right, arrival)
+        left = _joined(left.take(np.flatnonzero(~first)), middle.take(np.flatnonzero(~second)))
+        right = _joined(middle.take(np.flatnonzero(~first)), right.take(np.flatnonzero(~second)))
+        arrival = np.concatenate([halfway[~first], arrival[~second]])
+        owner = np.concatenate([owner[~first], owner[~second]])
+        if not len(owner):
+            return proved
+        if len(owner) > _MOST:
+            break
+    proved[owner] = False
+    return proved
+
+
+def _joined(a: Beads, b: Beads) -> Beads:
+    return Beads(
+        t=np.concatenate([a.t, b.t]),
+        v=np.concatenate([a.v, b.v]),
+        first=np.concatenate([a.first, b.first]),
+        second=np.concatenate([a.second, b.second]),
+    )
+
+
+def _between(
+    solver: BlockSolver, path: InputPath, left: Beads, right: Beads
+) -> tuple[Beads, BoolArray]:
+    """Positions halfway in t, started from the quintic through both ends."""
+    h = (right.t - left.t)[:, None]
+    guess = 0.5 * (left.v + right.v) + 5.0 / 32.0 * h * (left.first - right.first)
+    guess += h * h / 64.0 * (left.second + right.second)
+    t = 0.5 * (left.t + right.t)
+    guess[:, solver.unknowns :] = path.at(t)
+    done = solver.solve(guess)
+    rates: Rates = solver.rates(done.v, path.rate)
+    beads = Beads(t=t, v=done.v, first=rates.first, second=rates.second)
+    return beads, done.status == _CONVERGED
