@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         plain_equations,
     )
     from linkwork.foundation.angles import AngleUnit
+    from linkwork.foundation.certification import Certification
     from linkwork.foundation.errors import (
         ExpressionError,
         InputError,
@@ -53,6 +54,7 @@ else:
                 "plain_equations",
             ),
             "foundation.angles": ("AngleUnit",),
+            "foundation.certification": ("Certification",),
             "foundation.errors": (
                 "ExpressionError",
                 "InputError",
@@ -77,6 +79,7 @@ else:
 __all__ = [
     "AngleUnit",
     "Certificate",
+    "Certification",
     "CheckReport",
     "Cylinder",
     "ExpressionError",

@@ -107,6 +107,7 @@ class Mechanism:
         *,
         from_guess: bool = False,
         options: NewtonOptions | None = None,
+        certify: bool = True,
         with_steps: bool = False,
         throw: bool = False,
     ) -> Position:
@@ -116,6 +117,7 @@ class Mechanism:
             at,
             from_guess=from_guess,
             options=options,
+            certify=certify,
             with_steps=with_steps,
             throw=throw,
         )
@@ -126,6 +128,7 @@ class Mechanism:
         start: Number | None = None,
         stop: Number | None = None,
         step: Number | None = None,
+        certify: bool = True,
         options: NewtonOptions | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> Motion:
@@ -135,11 +138,13 @@ class Mechanism:
         ----------
         start, stop, step : number, optional
             Replace the range of the (only) input, in everyday units.
+        certify : bool
+            Prove every position and the motion between them; without, a sweep is faster.
         """
         asked = self.model
         if not (start is None and stop is None and step is None):
             asked = motion.model_of(self.description.with_range(start, stop, step))
-        return motion.sweep(asked, options=options, progress=progress)
+        return motion.sweep(asked, certify=certify, options=options, progress=progress)
 
     def scene(self, at: float | Mapping[str, float] | None = None) -> drawing.Scene:
         """A picture of one position with the traces of the traced points over the cycle."""

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Bar, DrivenPart, Guide, Skeleton, Strut
 from linkwork.results.motion import Motion, Series
@@ -73,7 +74,9 @@ class Sample:
             residual=np.zeros(count),
             iterations=np.ones(count, dtype=np.int64),
             condition=np.ones(count),
-            certified=np.zeros(count, dtype=bool),
+            certification=(Certification.NOT_ASKED,) * count,
+            radius=np.full(count, np.nan),
+            unique_within=np.full(count, np.nan),
             branch=("",) * count,
             speed=self.speed,
             q=np.zeros((count, 1)),

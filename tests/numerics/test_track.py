@@ -113,7 +113,7 @@ def test_rows_between_nodes_are_the_positions_of_the_branch() -> None:
     nodes, end = follow(solver, PATH, start, 8.0, 1.0)
     assert end is None
     t = np.linspace(1.0, 8.0, 701)
-    rows = rows_on_track(solver, PATH, Track(nodes=(start, *nodes)), t, 1.0)
+    rows = rows_on_track(solver, PATH, Track(nodes=(start, *nodes), start=0), t, 1.0)
     assert set(rows.status.tolist()) == {Status.CONVERGED.code}
     assert off_branch(ROCKER, rows.v, -1) < CLOSE
     assert rows.residual.max() < 1e-14
@@ -121,7 +121,9 @@ def test_rows_between_nodes_are_the_positions_of_the_branch() -> None:
     assert rows.iterations.max() <= 2
     np.testing.assert_array_equal(rows.v[:, 2], t)
     for k in (0, 123, 700):  # a batch of one differs by rounding only
-        alone = rows_on_track(solver, PATH, Track(nodes=(start, *nodes)), t[k : k + 1], 1.0)
+        alone = rows_on_track(
+            solver, PATH, Track(nodes=(start, *nodes), start=0), t[k : k + 1], 1.0
+        )
         np.testing.assert_allclose(alone.v[0], rows.v[k], rtol=0, atol=CLOSE)
         np.testing.assert_allclose(alone.rates.first[0], rows.rates.first[k], rtol=0, atol=CLOSE)
         np.testing.assert_allclose(alone.rates.second[0], rows.rates.second[k], rtol=0, atol=1e-10)
@@ -137,7 +139,7 @@ def test_a_row_whose_guess_leads_to_the_other_branch_is_followed_from_its_node()
     # the quintic gives the right node's value the weight s³(10 - 15 s + 6 s²)
     shift = np.append((there - here) / (0.4**3 * (10 - 6 + 0.96)), 0.0)
     spoiled = replace(right, v=right.v + shift)
-    rows = rows_on_track(solver, PATH, Track(nodes=(start, *nodes[:-1], spoiled)), t, 1.0)
+    rows = rows_on_track(solver, PATH, Track(nodes=(start, *nodes[:-1], spoiled), start=0), t, 1.0)
     assert rows.status[0] == Status.CONVERGED.code
     assert off_branch(ROCKER, rows.v, 1) < CLOSE
 
@@ -146,7 +148,7 @@ def test_a_row_that_cannot_be_followed_from_its_node_is_lost() -> None:
     solver, start = start_of(FOLDING, 2.0, 1)
     nodes, _ = follow(solver, PATH, start, 0.0, 1.0)
     beyond = replace(nodes[-1], t=0.3)  # claims more reach than there is
-    track = Track(nodes=(beyond, *reversed(nodes), start))
+    track = Track(nodes=(beyond, *reversed(nodes), start), start=len(nodes) + 1)
     rows = rows_on_track(solver, PATH, track, np.array([0.7, 1.5]), 1.0)
     assert rows.status.tolist() == [Status.LOST.code, Status.CONVERGED.code]
     assert off_branch(FOLDING, rows.v[1:], 1) < CLOSE

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
+from linkwork.motion.proving import prove_rows
 from linkwork.motion.reading import Named, named_series
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.tracking import leading_scale, track_to, turns_freely
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.track import End, InputPath, Rows, node_at, rows_on_track
+from linkwork.numerics.track import End, InputPath, Rows, Track, node_at, rows_on_track
 from linkwork.results.motion import Series
-from linkwork.results.position import NewtonTrail, Position
+from linkwork.results.position import Certificate, NewtonTrail, Position
 
 __all__ = ["solve"]
 
@@ -28,6 +31,7 @@ def solve(
     *,
     from_guess: bool = False,
     options: NewtonOptions | None = None,
+    certify: bool = True,
     with_steps: bool = False,
     throw: bool = False,
 ) -> Position:
@@ -42,6 +46,8 @@ def solve(
         Input value(s) in everyday units; the guess's own if left out.
     from_guess : bool
         Start Newton-Raphson at the asked value directly, as the textbook's example does.
+    certify : bool
+        Prove the position, and that the motion to it stays on the guess's branch.
     with_steps : bool
         Keep the iterates.
     throw : bool
@@ -61,9 +67,9 @@ def solve(
     if not start.status.ok:
         position = _failed(model, target, start.status, start.message, start)
     elif from_guess or np.array_equal(inputs, model.start_inputs):
-        position = _arrived(model, target, start)
+        position = _arrived(model, target, start, certify)
     else:
-        position = _followed(model, target, start)
+        position = _followed(model, target, start, certify)
     if throw and not position.status.ok:
         raise NotConvergedError(position.message)
     return position
@@ -84,21 +90,39 @@ def _rate(model: Model) -> Array:
     return lock_step(rows)[1]
 
 
-def _arrived(model: Model, target: Array, start: Start) -> Position:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Evidence:
+    """How a position was found, or why not."""
+
+    status: Status
+    message: str
+    residual: float
+    iterations: int
+    condition: float
+    certificate: Certificate
+    trails: tuple[NewtonTrail, ...]
+
+
+def _arrived(model: Model, target: Array, start: Start, certify: bool) -> Position:
+    """The start itself is the position asked for."""
     solver = model.compiled.solver
-    v = start.v[None, :]
-    rates = solver.rates(v, _rate(model))
+    own = start.v[solver.unknowns :]
+    lead = int(np.argmax(_rate(model) == 1.0)) if len(own) else 0
+    t = float(own[lead]) if len(own) else 0.0
+    path = InputPath(origin=own - _rate(model) * t, rate=_rate(model))
+    node = node_at(solver, path, t, start.v)
     rows = Rows(
-        v=v,
+        v=start.v[None, :],
         status=np.array([Status.CONVERGED.code], dtype=np.int8),
         iterations=np.array([start.iterations]),
         residual=np.array([start.residual]),
-        rates=rates,
+        rates=solver.rates(start.v[None, :], _rate(model)),
     )
-    return position_of(model, target, rows, start.message, start.trails)
+    track = Track(nodes=(node,), start=0)
+    return _from_row(model, target, (path, track, t), rows, start, certify)
 
 
-def _followed(model: Model, target: Array, start: Start) -> Position:
+def _followed(model: Model, target: Array, start: Start, certify: bool) -> Position:
     """Along the straight line from the guess's inputs to the target."""
     solver = model.compiled.solver
     origin = model.start_inputs
@@ -119,16 +143,7 @@ def _followed(model: Model, target: Array, start: Start) -> Position:
     if track.ends:
         return _stopped(model, target, ends, lead, start)
     rows = rows_on_track(solver, path, track, np.array([goal]), scale)
-    rates = solver.rates(rows.v, _rate(model))
-    rows = Rows(
-        v=rows.v,
-        status=rows.status,
-        iterations=rows.iterations,
-        residual=rows.residual,
-        rates=rates,
-    )
-    message = Status.of_code(int(rows.status[0])).value
-    return position_of(model, target, rows, message, start.trails)
+    return _from_row(model, target, (path, track, goal), rows, start, certify)
 
 
 def _input_weights(model: Model) -> Array:
@@ -148,59 +163,57 @@ def _stopped(model: Model, target: Array, ends: list[End], lead: int, start: Sta
 
 
 def _failed(model: Model, target: Array, status: Status, message: str, start: Start) -> Position:
-    n = model.compiled.solver.variables
-    nothing = np.full((1, n), np.nan)
+    nothing = np.full((1, model.compiled.solver.variables), np.nan)
     named = named_series(model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool))
-    return _position(
-        model,
-        named,
-        status,
-        message,
-        start.residual,
-        start.iterations,
-        np.inf,
-        np.full(len(model.equations.unknowns), np.nan),
-        start.trails,
+    evidence = _Evidence(
+        status=status,
+        message=message,
+        residual=start.residual,
+        iterations=start.iterations,
+        condition=np.inf,
+        certificate=Certificate(certification=Certification.NO_POSITION),
+        trails=start.trails,
     )
+    return _position(model, named, evidence, nothing[0, : model.compiled.solver.unknowns])
 
 
-def position_of(
-    model: Model, target: Array, rows: Rows, message: str, trails: tuple[NewtonTrail, ...] = ()
-) -> Position:
-    """The one row of a batch as a position."""
-    status = Status.of_code(int(rows.status[0]))
-    named = named_series(
-        model,
-        rows.v,
-        rows.rates.first,
-        rows.rates.second,
-        target[None, :],
-        np.array([status.ok]),
-    )
-    return _position(
-        model,
-        named,
-        status,
-        message,
-        float(rows.residual[0]),
-        int(rows.iterations[0]),
-        float(rows.rates.condition[0]),
-        rows.v[0, : model.compiled.solver.unknowns],
-        trails,
-    )
-
-
-def _position(
+def _from_row(
     model: Model,
-    named: Named,
-    status: Status,
-    message: str,
-    residual: float,
-    iterations: int,
-    condition: float,
-    q: Array,
-    trails: tuple[NewtonTrail, ...],
+    target: Array,
+    place: tuple[InputPath, Track, float],
+    rows: Rows,
+    start: Start,
+    certify: bool,
 ) -> Position:
+    """The one row of a batch as a position, with its certificate."""
+    solver = model.compiled.solver
+    path, track, t = place
+    certificate = Certificate()
+    if certify:
+        proofs = prove_rows(solver, path, track, np.array([t]), rows)
+        proved = bool(np.isfinite(proofs.radius[0]))
+        certificate = Certificate(
+            certification=Certification.of_code(int(proofs.code[0])),
+            radius=float(proofs.radius[0]) if proved else None,
+            unique_within=float(proofs.unique[0]) if proved else None,
+        )
+    status = Status.of_code(int(rows.status[0]))
+    rates = solver.rates(rows.v, _rate(model))
+    found = np.array([status.ok])
+    named = named_series(model, rows.v, rates.first, rates.second, target[None, :], found)
+    evidence = _Evidence(
+        status=status,
+        message=status.value,
+        residual=float(rows.residual[0]),
+        iterations=int(rows.iterations[0]),
+        condition=float(rates.condition[0]),
+        certificate=certificate,
+        trails=start.trails,
+    )
+    return _position(model, named, evidence, rows.v[0, : solver.unknowns])
+
+
+def _position(model: Model, named: Named, evidence: _Evidence, q: Array) -> Position:
     everything: dict[str, Series] = {
         **named.unknowns,
         **named.links,
@@ -215,8 +228,8 @@ def _position(
         mechanism=model.description.name,
         units=model.units,
         skeleton=model.skeleton,
-        status=status,
-        message=message,
+        status=evidence.status,
+        message=evidence.message,
         input={name: float(value[0]) for name, value in named.inputs.items()},
         input_units=model.input_units,
         derivative_unit=model.derivative_unit,
@@ -231,11 +244,12 @@ def _position(
         second=second,
         velocity={} if speed is None else {n: d * speed for n, d in first.items()},
         acceleration={} if speed is None else {n: d * speed**2 for n, d in second.items()},
-        residual=residual,
-        iterations=iterations,
-        condition=condition,
+        residual=evidence.residual,
+        iterations=evidence.iterations,
+        condition=evidence.condition,
+        certificate=evidence.certificate,
         q=q,
-        steps=trails,
+        steps=evidence.trails,
     )
 
 

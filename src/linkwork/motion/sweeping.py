@@ -8,14 +8,25 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, CountArray, StatusArray
+from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
+from linkwork.motion.proving import RowProofs, prove_rows, unproved
 from linkwork.motion.reading import Named, named_series
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.tracking import leading_scale, track_to, turns_freely
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.track import InputPath, Node, Rows, Track, follow, node_at, rows_on_track
+from linkwork.numerics.track import (
+    InputPath,
+    Node,
+    Rows,
+    Track,
+    follow,
+    joined_rows,
+    node_at,
+    rows_on_track,
+)
 from linkwork.results.motion import Limit, Motion
 
 __all__ = ["sweep"]
@@ -34,11 +45,13 @@ class _Solved:
     iterations: CountArray
     residual: Array
     condition: Array
+    proofs: RowProofs
 
 
 def sweep(
     model: Model,
     *,
+    certify: bool = True,
     options: NewtonOptions | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Motion:
@@ -50,6 +63,8 @@ def sweep(
 
     Parameters
     ----------
+    certify : bool
+        Prove every position, and that the motion to it stays on the start's branch.
     progress : callable, optional
         Called with the finished fraction, 0 to 1.
     """
@@ -68,7 +83,7 @@ def sweep(
     report = _Report(progress, anchor.t, float(t.min()), float(t.max()))
     track = _covering(model, path, anchor, t, scale, report)
     placed = _placed(track, t, turns_freely(model))
-    solved = _solve_rows(model, path, track, placed, scale, report)
+    solved = _solve_rows(model, path, track, placed, scale, report, certify)
     missing = np.isnan(placed)
     solved.status[missing] = _status_outside(track).code
     return _motion(model, rows, t, solved, track, start)
@@ -147,7 +162,13 @@ def _placed(track: Track, t: Array, free: bool) -> Array:
 
 
 def _solve_rows(
-    model: Model, path: InputPath, track: Track, placed: Array, scale: float, report: _Report
+    model: Model,
+    path: InputPath,
+    track: Track,
+    placed: Array,
+    scale: float,
+    report: _Report,
+    certify: bool,
 ) -> _Solved:
     solver = model.compiled.solver
     count, n = len(placed), solver.variables
@@ -155,14 +176,22 @@ def _solve_rows(
     status = np.zeros(count, dtype=np.int8)
     iterations = np.zeros(count, dtype=np.int64)
     residual, condition = np.full(count, np.nan), np.full(count, np.nan)
+    proofs = unproved(count, Certification.NOT_ASKED if not certify else Certification.NO_POSITION)
     there = np.flatnonzero(~np.isnan(placed))
+    there = there[np.argsort(placed[there], kind="stable")]
+    pieces: list[Rows] = []
     for begin in range(0, len(there), _CHUNK):
         chunk = there[begin : begin + _CHUNK]
-        rows: Rows = rows_on_track(solver, path, track, placed[chunk], scale)
+        rows = rows_on_track(solver, path, track, placed[chunk], scale)
+        pieces.append(rows)
         v[chunk], first[chunk], second[chunk] = rows.v, rows.rates.first, rows.rates.second
         status[chunk], iterations[chunk] = rows.status, rows.iterations
         residual[chunk], condition[chunk] = rows.residual, rows.rates.condition
         report.solved((begin + len(chunk)) / len(there))
+    if certify and pieces:
+        found = prove_rows(solver, path, track, placed[there], joined_rows(pieces))
+        proofs.code[there], proofs.radius[there] = found.code, found.radius
+        proofs.unique[there] = found.unique
     return _Solved(
         v=v,
         first=first,
@@ -171,6 +200,7 @@ def _solve_rows(
         iterations=iterations,
         residual=residual,
         condition=condition,
+        proofs=proofs,
     )
 
 
@@ -211,6 +241,7 @@ def _without_start(model: Model, rows: Array, start: Start) -> Motion:
         iterations=np.zeros(count, dtype=np.int64),
         residual=np.full(count, np.nan),
         condition=np.full(count, np.nan),
+        proofs=unproved(count, Certification.NO_POSITION),
     )
     named = named_series(
         model, nothing, nothing, nothing, model.everyday_rows, np.zeros(count, dtype=bool)
@@ -239,7 +270,9 @@ def _assembled(
         residual=solved.residual,
         iterations=solved.iterations,
         condition=solved.condition,
-        certified=np.zeros(count, dtype=bool),
+        certification=tuple(Certification.of_code(int(c)) for c in solved.proofs.code),
+        radius=solved.proofs.radius,
+        unique_within=solved.proofs.unique,
         branch=("",) * count,
         speed=model.speed,
         limits=limits,

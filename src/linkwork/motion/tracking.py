@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwork.motion.model import Model
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.track import InputPath, Node, Progress, Track, follow
+from linkwork.numerics.track import InputPath, Node, Progress, Track, TrackOptions, follow
 
 __all__ = ["leading_scale", "track_to", "turns_freely"]
 
@@ -43,10 +43,16 @@ def track_to(
     goals: Iterable[float],
     scale: float,
     progress: Progress | None = None,
+    options: TrackOptions | None = None,
 ) -> Track:
     """The branch from ``start`` as far towards the smallest and largest goal as it goes."""
     goals = list(goals)
     low, high = min([*goals, start.t]), max([*goals, start.t])
-    above, above_end = follow(solver, path, start, high, scale, progress=progress)
-    below, below_end = follow(solver, path, start, low, scale, progress=progress)
-    return Track(nodes=(*reversed(below), start, *above), below=below_end, above=above_end)
+    above, above_end = follow(solver, path, start, high, scale, options, progress)
+    below, below_end = follow(solver, path, start, low, scale, options, progress)
+    return Track(
+        nodes=(*reversed(below), start, *above),
+        start=len(below),
+        below=below_end,
+        above=above_end,
+    )

@@ -8,7 +8,7 @@ the rate that was predicted; otherwise the step is halved.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -84,9 +84,13 @@ class End:
 
 @dataclass(frozen=True, kw_only=True)
 class Track:
-    """Nodes in the order of increasing t, and the ends at both sides if the goal was not met."""
+    """Nodes in the order of increasing t, and the ends at both sides if the goal was not met.
+
+    ``start`` is the place of the node that the track was begun from.
+    """
 
     nodes: tuple[Node, ...]
+    start: int
     below: End | None = None
     above: End | None = None
 
@@ -234,6 +238,26 @@ class Rows:
     iterations: CountArray
     residual: Array
     rates: Rates
+
+
+def joined_rows(pieces: Sequence[Rows]) -> Rows:
+    """Batches of rows as one."""
+
+    def stacked(of: Callable[[Rows], Array]) -> Array:
+        return np.concatenate([of(piece) for piece in pieces])
+
+    return Rows(
+        v=stacked(lambda p: p.v),
+        status=np.concatenate([p.status for p in pieces]),
+        iterations=np.concatenate([p.iterations for p in pieces]),
+        residual=stacked(lambda p: p.residual),
+        rates=Rates(
+            first=stacked(lambda p: p.rates.first),
+            second=stacked(lambda p: p.rates.second),
+            condition=stacked(lambda p: p.rates.condition),
+            orientation=np.concatenate([p.rates.orientation for p in pieces]),
+        ),
+    )
 
 
 def rows_on_track(

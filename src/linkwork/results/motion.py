@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, CountArray
+from linkwork.foundation.certification import Certification
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
@@ -63,7 +64,11 @@ class Motion:
         One per row; rows that failed hold NaN and are kept.
     residual, condition : array (N,)
     iterations : array (N,), int
-    certified : array (N,), bool
+    certification : tuple of Certification
+        Whether each row is proved, or why not; ``certified`` has it as an array of bool.
+    radius, unique_within : array (N,)
+        Where proved: a true position lies within ``radius`` of the row and no other within
+        ``unique_within`` (largest norm; lengths relative to the longest link).
     branch : tuple of str
     speed : float, optional
         Rate of the first input [rad/s or length/s], if given.
@@ -89,7 +94,9 @@ class Motion:
     residual: Array
     iterations: CountArray
     condition: Array
-    certified: BoolArray
+    certification: tuple[Certification, ...]
+    radius: Array
+    unique_within: Array
     branch: tuple[str, ...]
     speed: float | None = None
     limits: tuple[Limit, ...] = ()
@@ -118,6 +125,11 @@ class Motion:
     def found(self) -> BoolArray:
         """Which rows hold a position, shape (N,)."""
         return np.array([status.ok for status in self.status], dtype=bool)
+
+    @property
+    def certified(self) -> BoolArray:
+        """Which rows are proved, shape (N,)."""
+        return np.array([c is Certification.CERTIFIED for c in self.certification], dtype=bool)
 
     @property
     def worst(self) -> float:

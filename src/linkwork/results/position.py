@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.certification import Certification
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
@@ -20,14 +21,18 @@ __all__ = ["Certificate", "NewtonStep", "NewtonTrail", "Position"]
 
 @dataclass(frozen=True, kw_only=True)
 class Certificate:
-    """Whether a position is proven: a true position lies within ``radius``, and no other within
-    ``unique_within`` (weighted largest norm). Not certified: ``reason`` says why.
+    """Whether a position is proven: a true position lies within ``radius``, no other within
+    ``unique_within`` (largest norm; lengths relative to the longest link).
     """
 
-    certified: bool = False
+    certification: Certification = Certification.NOT_ASKED
     radius: float | None = None
     unique_within: float | None = None
-    reason: str = "no certificate was asked for"
+
+    @property
+    def certified(self) -> bool:
+        """Whether everything is proved."""
+        return self.certification is Certification.CERTIFIED
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,7 +159,7 @@ class Position:
                 "certified": self.certificate.certified,
                 "radius": self.certificate.radius,
                 "unique_within": self.certificate.unique_within,
-                "reason": self.certificate.reason,
+                "reason": self.certificate.certification.value,
             },
             "branch": self.branch,
             **({"steps": [_trail(trail) for trail in self.steps]} if self.steps else {}),

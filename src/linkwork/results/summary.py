@@ -49,6 +49,7 @@ def motion_summary(motion: Motion) -> str:
     rows += [("limit", f"{limit.input:.10g} {unit}") for limit in motion.limits]
     found = motion.found
     if found.any():
+        rows.append(("certified", f"{int(motion.certified.sum())} of {int(found.sum())}"))
         rows.append(("worst residual", f"{motion.worst:.1e} of the longest link"))
         rows.append(("worst condition", f"{motion.condition[found].max():.3g}"))
         for unknown, series in motion.unknowns.items():

@@ -1,0 +1,39 @@
+"""Whether a position is proved, or why not: sentences."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+__all__ = ["Certification"]
+
+
+class Certification(Enum):
+    """The certificate of one position in one word, with a sentence."""
+
+    CERTIFIED = (
+        "a true position is proved to lie within the radius, no other near it, "
+        "and the motion from the start to it stays on one branch"
+    )
+    NOT_ASKED = "certificates were switched off"
+    NO_POSITION = "there is no position to certify"
+    NO_BOUND = "plain equations have no known bound of their curvature, so nothing is proved"
+    POSITION_NOT_PROVED = (
+        "too near to a singular position: rounding is larger than what the proof allows"
+    )
+    MOTION_NOT_PROVED = (
+        "the position is proved, but not that the motion from the start to it stays on one branch"
+    )
+
+    @property
+    def code(self) -> int:
+        """A small whole number, for arrays."""
+        return _CODES[self]
+
+    @classmethod
+    def of_code(cls, code: int) -> Certification:
+        """The member with this code."""
+        return _MEMBERS[code]
+
+
+_MEMBERS = tuple(Certification)
+_CODES = {member: code for code, member in enumerate(_MEMBERS)}
