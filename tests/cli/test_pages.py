@@ -41,9 +41,11 @@ Position found
   unknown         value
   x        -1.769292354
 
-  residual    0
-  iterations  5
-  condition   1.00
+  residual     0
+  iterations   5
+  condition    1.00
+  certificate  none: plain equations have no known bound of their curvature, so
+               nothing is proved
 
 Newton-Raphson from the guess
 

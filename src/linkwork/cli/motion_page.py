@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
@@ -10,6 +11,7 @@ from linkwork.cli.position_page import Row, value_cells
 from linkwork.cli.terminal import bad, fields, sentence, title_lines
 from linkwork.cli.text_table import Column, short, table_lines
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.results.motion import Motion, Series
 
@@ -86,8 +88,24 @@ def _limits(motion: Motion) -> Iterator[tuple[str, str]]:
 
 
 def _evidence(motion: Motion, measure: str) -> Iterator[tuple[str, str]]:
+    yield from _certified(motion)
     yield "worst residual", _worst(motion, motion.residual, measure)
     yield "worst condition", _worst(motion, motion.condition, "")
+
+
+def _certified(motion: Motion) -> Iterator[tuple[str, str]]:
+    """How many rows are proved, and why the others are not."""
+    found = int(motion.found.sum())
+    proved = int(motion.certified.sum())
+    why = Counter(
+        c.value
+        for c, here in zip(motion.certification, motion.found, strict=True)
+        if here and c is not Certification.CERTIFIED
+    )
+    if proved or not why:
+        yield "certified", str(proved)
+    for reason, count in why.items():
+        yield "not certified", f"{count if count < found else 'all'}: {reason}"
 
 
 def _worst(motion: Motion, values: Array, measure: str) -> str:

@@ -9,7 +9,7 @@ from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
 from linkwork.cli.text_table import Column, fixed, lengths, short, significant, table_lines
 from linkwork.everyday import Mechanism
 from linkwork.motion.lock_step import lock_step
-from linkwork.results.position import NewtonTrail, Position
+from linkwork.results.position import Certificate, NewtonTrail, Position
 from linkwork.results.quantity import Kind, Units
 
 __all__ = ["Row", "position_lines", "residual_measure", "value_cells"]
@@ -132,6 +132,16 @@ def _evidence(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, s
     yield "residual", significant(position.residual, 2) + residual_measure(mechanism)
     yield "iterations", str(position.iterations)
     yield "condition", significant(position.condition, 3)
+    yield "certificate", _certificate(position.certificate)
+
+
+def _certificate(certificate: Certificate) -> str:
+    """What is proved of the position, in a line, or why nothing is."""
+    if not certificate.certified or certificate.radius is None:
+        return f"none: {certificate.certification.value}"
+    radius = significant(certificate.radius, 2)
+    alone = significant(certificate.unique_within or 0.0, 2)
+    return f"proved to {radius}, the only position within {alone}"
 
 
 def residual_measure(mechanism: Mechanism) -> str:

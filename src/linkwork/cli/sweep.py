@@ -30,6 +30,7 @@ __all__ = ["sweep"]
 @click.option("--from", "start", type=NUMBER, help="First input value, in the file's unit.")
 @click.option("--to", "stop", type=NUMBER, help="Last input value.")
 @click.option("--step", type=NUMBER, help="Distance between input values.")
+@click.option("--no-certificates", is_flag=True, help="Prove nothing: faster.")
 @click.option("--csv", metavar="PATH", help="Write the whole table; - is standard output.")
 @click.option("--draw", metavar="PATH", help="Draw the start position: .png, .svg or .pdf.")
 @set_option
@@ -42,6 +43,7 @@ def sweep(
     start: Number | None,
     stop: Number | None,
     step: Number | None,
+    no_certificates: bool,
     csv: str | None,
     draw: str | None,
     changes: tuple[str, ...],
@@ -64,7 +66,9 @@ def sweep(
     check_outputs(file, csv, draw)
     mechanism = read_mechanism(file, changes)
     with progress("sweeping") as tell:
-        motion = mechanism.sweep(start=start, stop=stop, step=step, progress=tell)
+        motion = mechanism.sweep(
+            start=start, stop=stop, step=step, certify=not no_certificates, progress=tell
+        )
     page = None if draw is None else _start_scene(mechanism, motion)
     written = _written(motion, page, csv, draw)
     if as_json:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,7 +36,12 @@ def unproved(count: int, why: Certification) -> RowProofs:
 
 
 def prove_rows(
-    solver: BlockSolver, path: InputPath, track: Track, t: Array, rows: Rows
+    solver: BlockSolver,
+    path: InputPath,
+    track: Track,
+    t: Array,
+    rows: Rows,
+    progress: Callable[[float], None] | None = None,
 ) -> RowProofs:
     """Prove the rows solved at the values t (B,) of a track.
 
@@ -66,7 +72,7 @@ def prove_rows(
         first=gathered([node.first for node in chosen], rows.rates.first),
         second=gathered([node.second for node in chosen], rows.rates.second),
     )
-    proof = prove_path(solver, path, beads)
+    proof = prove_path(solver, path, beads, progress)
     place = np.empty(len(order), dtype=np.intp)
     place[order] = np.arange(len(order))
     joined = proof.connected_to(int(place[nodes.index(track.start)]))

@@ -90,7 +90,7 @@ def sweep(
 
 
 class _Report:
-    """Progress as a fraction: tracking is the first half, the rows the second."""
+    """Progress as a fraction: tracking, rows and proofs take about a third each."""
 
     def __init__(
         self, progress: Callable[[float], None] | None, start: float, low: float, high: float
@@ -102,12 +102,17 @@ class _Report:
     def tracked(self, t: float) -> None:
         """A step of the track has arrived at t."""
         if self.progress is not None:
-            self.progress(min(0.5, 0.5 * abs(t - self.start) / self.span))
+            self.progress(min(1.0, abs(t - self.start) / self.span) / 3.0)
 
     def solved(self, fraction: float) -> None:
         """A fraction of the rows is done."""
         if self.progress is not None:
-            self.progress(0.5 + 0.5 * fraction)
+            self.progress((1.0 + fraction) / 3.0)
+
+    def proved(self, fraction: float) -> None:
+        """A fraction of the rows is proved."""
+        if self.progress is not None:
+            self.progress((2.0 + fraction) / 3.0)
 
 
 def _onto_path(model: Model, path: InputPath, start: Start, t: Array, lead: int) -> Node | None:
@@ -189,7 +194,7 @@ def _solve_rows(
         residual[chunk], condition[chunk] = rows.residual, rows.rates.condition
         report.solved((begin + len(chunk)) / len(there))
     if certify and pieces:
-        found = prove_rows(solver, path, track, placed[there], joined_rows(pieces))
+        found = prove_rows(solver, path, track, placed[there], joined_rows(pieces), report.proved)
         proofs.code[there], proofs.radius[there] = found.code, found.radius
         proofs.unique[there] = found.unique
     return _Solved(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,7 @@ __all__ = ["Beads", "ProvenPath", "prove_path"]
 _CONVERGED = Status.CONVERGED.code
 _ROUNDS = 45  # halvings of one step before it counts as not proved
 _MOST = 200_000  # steps looked at in one round
+_PIECE = 1024  # positions proved together: arrays that fit the cache
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -55,7 +56,7 @@ def prove_path(
     solver: BlockSolver,
     path: InputPath,
     beads: Beads,
-    linear: Sequence[Linearised] | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> ProvenPath:
     """Prove every position and every step between neighbours.
 
@@ -63,15 +64,41 @@ def prove_path(
     ----------
     beads : Beads
         In the order of t.
-    linear : list of Linearised, optional
-        Of all positions, if it is there already.
+    progress : callable, optional
+        Called with the finished fraction.
 
     Notes
     -----
     A step that is not proved from its left end is tried from its right end, then halved at a
     position solved in between. All open steps of one round are worked on together.
     """
-    parts = solver.linearise(beads.v) if linear is None else linear
+    count = len(beads.t)
+    pieces = []
+    for begin in range(0, max(count - 1, 1), _PIECE):
+        pieces.append(_piece(solver, path, beads.take(slice(begin, begin + _PIECE + 1))))
+        if progress is not None:
+            progress(min(1.0, (begin + _PIECE) / count))
+    if len(pieces) == 1:
+        return pieces[0]
+    # neighbouring pieces share one position
+    proofs = [pieces[0].position, *[_behind_first(piece.position) for piece in pieces[1:]]]
+    return ProvenPath(
+        position=Proof(
+            holds=np.concatenate([p.holds for p in proofs]),
+            exists=np.concatenate([p.exists for p in proofs]),
+            unique=np.concatenate([p.unique for p in proofs]),
+            each=np.concatenate([p.each for p in proofs]),
+        ),
+        linked=np.concatenate([piece.linked for piece in pieces]),
+    )
+
+
+def _behind_first(p: Proof) -> Proof:
+    return Proof(holds=p.holds[1:], exists=p.exists[1:], unique=p.unique[1:], each=p.each[1:])
+
+
+def _piece(solver: BlockSolver, path: InputPath, beads: Beads) -> ProvenPath:
+    parts = solver.linearise(beads.v)
     position = prove(solver, beads.v, rounding_of_inputs(beads.v, solver.unknowns), parts)
     count = len(beads.t)
     if count < 2:
