@@ -118,6 +118,10 @@ def test_mathematics_that_says_no_ends_with_1(run: Run, words: tuple[str, ...], 
             'Error: cannot draw "x.bmp": its suffix must be one of .png, .svg, .pdf\n',
         ),
         (
+            ("draw", "wrong.toml", "-o", "x.bmp"),  # told before anything is read
+            'Error: cannot draw "x.bmp": its suffix must be one of .png, .svg, .pdf\n',
+        ),
+        (
             ("sweep", "four-bar.toml", "--csv", "four-bar.toml"),
             'Error: "four-bar.toml" is the mechanism itself: write to another file\n',
         ),

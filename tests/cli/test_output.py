@@ -138,6 +138,8 @@ def test_set_finds_a_dimension_in_any_spelling(run: Run, folder: Path) -> None:
     (folder / "rho.toml").write_text(renamed, encoding="utf-8")
     data = _json(run("solve", "rho.toml", "--at", "0", "--json", "--set", "rho=50").stdout)
     assert data["points"]["A"] == pytest.approx([50, 0], abs=1e-9)
+    twice = run("solve", "rho.toml", "--set", "rho=50", "--set", "ρ=60")
+    assert twice.stderr == "Error: --set ρ=60: this dimension has a value already, 50.0\n"
 
 
 def test_at_takes_one_value_for_each_of_several_inputs(run: Run) -> None:

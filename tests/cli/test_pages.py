@@ -228,6 +228,12 @@ def test_an_output_that_has_no_value_anywhere_has_no_range(run: Run, folder: Pat
     assert row == ["never", "-", "-", "-", "-"]
 
 
+def test_ranges_leave_out_rows_that_were_not_found(run: Run) -> None:
+    lines = run("sweep", "double-rocker.toml").stdout.splitlines()
+    (row,) = (line.split() for line in lines if line.startswith("  coupler"))
+    assert row == ["coupler", "-24.860840", "19", "85.459162", "307", "deg"]
+
+
 def test_sweep_without_a_start_says_why_and_what_to_do(run: Run) -> None:
     text = " ".join(run("sweep", "open.toml").stdout.split())
     assert 'no start 361 at 0 to 360 deg: loop "O2 A B O4" cannot be closed' in text

@@ -140,13 +140,14 @@ def test_the_version_is_that_of_the_installed_package(start: Start, folder: Path
     assert done.stdout == b"linkwork 7.8.9\n"
 
 
-def test_a_full_disk_is_said_once(environment: dict[str, str]) -> None:
+@pytest.mark.parametrize("words", [("schema",), ("solve", "four-bar.toml")])
+def test_a_full_disk_is_said_once(words: tuple[str, ...], environment: dict[str, str]) -> None:
     full = Path("/dev/full")
     if not full.exists():
         pytest.skip("needs /dev/full")
     with full.open("wb") as disk:
         done = subprocess.run(
-            [sys.executable, "-m", "linkwork", "schema"],
+            [sys.executable, "-m", "linkwork", *words],
             env=environment,
             stdout=disk,
             stderr=subprocess.PIPE,

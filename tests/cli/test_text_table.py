@@ -27,6 +27,18 @@ def test_columns_that_do_not_fit_follow_below_with_the_first_repeated() -> None:
     assert table_lines(columns, 12) == ["  k  first", "  0  1", "", "  k  last", "  0  2"]
 
 
+def test_the_first_column_is_cut_where_nothing_else_would_fit_beside_it() -> None:
+    columns = [
+        Column(header="name", cells=["a_name_of_a_link", "b"]),
+        Column(header="value", cells=["12.5", "3"], align="right"),
+    ]
+    assert table_lines(columns, 20) == [
+        "  name         value",
+        "  a_nam…_link   12.5",
+        "  b                3",
+    ]
+
+
 def test_wide_letters_take_two_cells() -> None:
     columns = [Column(header="x", cells=["角", "ab"]), Column(header="y", cells=["1", "2"])]
     assert table_lines(columns) == ["  x   y", "  角  1", "  ab  2"]

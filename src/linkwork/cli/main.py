@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import traceback
 from importlib import import_module
 
@@ -41,13 +40,11 @@ class _Program(click.Group):
     def invoke(self, ctx: click.Context) -> object:
         """Run a command and turn what goes wrong into a message and an exit code."""
         try:
-            done = super().invoke(ctx)
-            sys.stdout.flush()
+            return super().invoke(ctx)
         except (click.ClickException, click.exceptions.Exit, click.Abort):
             raise
         except (Exception, KeyboardInterrupt) as error:
             ctx.exit(_ended_by(error, ctx.meta.get(DEBUG, False)))
-        return done
 
 
 def _ended_by(error: BaseException, debug: bool) -> int:
