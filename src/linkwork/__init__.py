@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
     from linkwork.numerics.newton import NewtonOptions
     from linkwork.results.check import CheckReport
-    from linkwork.results.motion import Limit, Motion, Series
+    from linkwork.results.motion import Limit, LimitKind, Motion, Series
     from linkwork.results.position import Certificate, Position
     from linkwork.results.table import Table
 else:
@@ -70,7 +70,7 @@ else:
             "mechanism.parts": ("Cylinder", "Input", "Slider", "Slot"),
             "numerics.newton": ("NewtonOptions",),
             "results.check": ("CheckReport",),
-            "results.motion": ("Limit", "Motion", "Series"),
+            "results.motion": ("Limit", "LimitKind", "Motion", "Series"),
             "results.position": ("Certificate", "Position"),
             "results.table": ("Table",),
         },
@@ -86,6 +86,7 @@ __all__ = [
     "Input",
     "InputError",
     "Limit",
+    "LimitKind",
     "LinkworkError",
     "Mechanism",
     "MechanismError",

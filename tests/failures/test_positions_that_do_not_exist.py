@@ -60,7 +60,19 @@ def test_non_grashof_rows_out_of_reach_are_exactly_those_between_the_dead_points
     assert {s for s in motion.status if not s.ok} == {lw.Status.OUT_OF_REACH}
     limits = sorted(limit.input for limit in motion.limits)
     exact = math.degrees(math.acos(11 / 16))
-    assert limits == pytest.approx([exact, 360 - exact], abs=1e-9)
+    assert limits == pytest.approx([exact, 360 - exact], rel=1e-14)
+    for limit in motion.limits:
+        assert limit.kind is lw.LimitKind.DEAD_POINT
+        assert limit.located
+        assert limit.bracket[0] <= limit.input <= limit.bracket[1]
+        assert limit.bracket[1] - limit.bracket[0] < 1e-11
+        assert (limit.loops, limit.in_line) == (("O2 A B O4",), ("coupler", "rocker"))
+
+
+def test_toggle_has_its_dead_points_where_the_closed_form_has_them() -> None:
+    motion = four_bar(2, 1, 2.2, 3, at=40).sweep()
+    found = sorted(limit.input for limit in motion.limits)
+    assert found == pytest.approx([15.563575187105, 76.70292825279], abs=1e-11)
 
 
 def test_asking_beyond_a_dead_point_names_both_limits() -> None:

@@ -38,7 +38,7 @@ def _read(file: str) -> ReadFile:
     if file == "-":
         return read_bytes(sys.stdin.buffer.read())
     path = Path(file)
-    if path.stem in examples() and path.parent == Path() and not path.exists():
+    if not path.exists() and path.parent == Path() and path.stem in examples():
         raise InputError(
             f'there is no file "{file}"; to get the example of this name:\n'
             f"    linkwork examples {path.stem} -o {path.stem}.toml"

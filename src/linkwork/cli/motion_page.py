@@ -13,7 +13,7 @@ from linkwork.cli.text_table import Column, short, table_lines
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
-from linkwork.results.motion import Motion, Series
+from linkwork.results.motion import LimitKind, Motion, Series
 
 __all__ = ["failure_line", "motion_lines"]
 
@@ -79,12 +79,19 @@ def _runs(motion: Motion, status: Status) -> str:
 
 
 def _limits(motion: Motion) -> Iterator[tuple[str, str]]:
+    """Dead points and other ends of the branch, one to a line."""
     name, _ = _lead(motion)
     unit = motion.input_units[name]
-    places = [short(limit.input) for limit in motion.limits]
-    what = "limit" if len(places) == 1 else "limits"
-    if places:
-        yield what, f"{name} = {' and '.join(places)} {unit}".rstrip()
+    for limit in motion.limits:
+        dead = limit.kind is LimitKind.DEAD_POINT
+        text = f"{name} = {limit.input:.12g} {unit}".rstrip()
+        if limit.loops:
+            quoted = ", ".join(f'"{loop}"' for loop in limit.loops)
+            text += f", where {'loop' if len(limit.loops) == 1 else 'loops'} {quoted} lock"
+            text += "s" if len(limit.loops) == 1 else ""
+        if limit.in_line:
+            text += f" ({' and '.join(limit.in_line)} in line)"
+        yield "dead point" if dead else "limit", text
 
 
 def _evidence(motion: Motion, measure: str) -> Iterator[tuple[str, str]]:

@@ -120,7 +120,15 @@ def _data(motion: Motion) -> dict[str, Any]:
         "units": dict(table.units),
         "columns": {name: column.tolist() for name, column in table.columns.items()},
         "limits": [
-            {"input": limit.input, "bracket": list(limit.bracket), "status": limit.status.name}
+            {
+                "kind": limit.kind.name,
+                "input": limit.input,
+                "bracket": list(limit.bracket),
+                "located": limit.located,
+                "status": limit.status.name,
+                "loops": list(limit.loops),
+                "in_line": list(limit.in_line),
+            }
             for limit in motion.limits
         ],
         "counts": {status.name: count for status, count in motion.counts.items()},

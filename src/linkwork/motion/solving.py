@@ -11,6 +11,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
+from linkwork.motion.limits import limits_of
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.proving import prove_rows
@@ -18,8 +19,8 @@ from linkwork.motion.reading import Named, named_series
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.tracking import leading_scale, track_to, turns_freely
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.track import End, InputPath, Rows, Track, node_at, rows_on_track
-from linkwork.results.motion import Series
+from linkwork.numerics.track import InputPath, Rows, Track, node_at, rows_on_track
+from linkwork.results.motion import Limit, Series
 from linkwork.results.position import Certificate, NewtonTrail, Position
 
 __all__ = ["solve"]
@@ -135,13 +136,13 @@ def _followed(model: Model, target: Array, start: Start, certify: bool) -> Posit
     first = node_at(solver, path, float(origin[lead]), start.v)
     goal = float(inputs[lead])
     track = track_to(solver, path, first, [goal], scale)
-    ends = [*track.ends]
-    if ends and turns_freely(model):
+    limits = limits_of(model, path, track, lead)
+    if limits and turns_freely(model):
         goal -= np.copysign(2.0 * np.pi, goal - first.t)
         track = track_to(solver, path, first, [goal], scale)
-        ends += track.ends
+        limits += limits_of(model, path, track, lead)
     if track.ends:
-        return _stopped(model, target, ends, lead, start)
+        return _stopped(model, target, limits, lead, start)
     rows = rows_on_track(solver, path, track, np.array([goal]), scale)
     return _from_row(model, target, (path, track, goal), rows, start, certify)
 
@@ -150,15 +151,15 @@ def _input_weights(model: Model) -> Array:
     return model.compiled.solver.variable_scale[model.compiled.solver.unknowns :]
 
 
-def _stopped(model: Model, target: Array, ends: list[End], lead: int, start: Start) -> Position:
-    """A position between the limits that were met both ways."""
-    scale = model.input_scale[lead]
+def _stopped(
+    model: Model, target: Array, limits: tuple[Limit, ...], lead: int, start: Start
+) -> Position:
+    """A position beyond the limits that were met both ways."""
     name = model.equations.inputs[lead].name
-    unit = model.units.angle.sign if scale != 1.0 else ""
-    met = " and ".join(f"{end.reached / scale:.10g}{unit}" for end in ends)
-    status = (
-        Status.OUT_OF_REACH if all(e.status is Status.OUT_OF_REACH for e in ends) else Status.LOST
-    )
+    unit = model.units.angle.sign if model.input_scale[lead] != 1.0 else ""
+    met = " and ".join(f"{limit.input:.10g}{unit}" for limit in limits)
+    reached = all(limit.status is Status.OUT_OF_REACH for limit in limits)
+    status = Status.OUT_OF_REACH if reached else Status.LOST
     return _failed(model, target, status, f"{status.value} (met at {name} = {met})", start)
 
 

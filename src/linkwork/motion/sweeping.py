@@ -10,6 +10,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, CountArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
+from linkwork.motion.limits import limits_of
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.proving import RowProofs, prove_rows, unproved
@@ -86,7 +87,7 @@ def sweep(
     solved = _solve_rows(model, path, track, placed, scale, report, certify)
     missing = np.isnan(placed)
     solved.status[missing] = _status_outside(track).code
-    return _motion(model, rows, t, solved, track, start)
+    return _motion(model, path, solved, track, start)
 
 
 class _Report:
@@ -214,24 +215,11 @@ def _status_outside(track: Track) -> Status:
     return Status.OUT_OF_REACH if Status.OUT_OF_REACH in reasons else Status.LOST
 
 
-def _motion(
-    model: Model, rows: Array, t: Array, solved: _Solved, track: Track, start: Start
-) -> Motion:
+def _motion(model: Model, path: InputPath, solved: _Solved, track: Track, start: Start) -> Motion:
     found = solved.status == Status.CONVERGED.code
     named = named_series(model, solved.v, solved.first, solved.second, model.everyday_rows, found)
-    lead = int(np.argmax((rows == t[:, None]).all(axis=0)))
-    scale = model.input_scale[lead]
-    limits = tuple(
-        Limit(
-            input=float(end.reached / scale),
-            bracket=(
-                float(min(end.reached, end.failed) / scale),
-                float(max(end.reached, end.failed) / scale),
-            ),
-            status=end.status,
-        )
-        for end in track.ends
-    )
+    lead, _ = lock_step(model.rows)
+    limits = limits_of(model, path, track, lead)
     return _assembled(model, named, solved, limits, start.message)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import Enum
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from linkwork.results.quantity import Quantity, Units
 from linkwork.results.summary import motion_summary
 from linkwork.results.table import Table, table_of
 
-__all__ = ["Limit", "Motion", "Series"]
+__all__ = ["Limit", "LimitKind", "Motion", "Series"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -35,13 +36,42 @@ class Series:
             object.__setattr__(self, field, read_only(getattr(self, field)))
 
 
+class LimitKind(Enum):
+    """What ends a branch."""
+
+    DEAD_POINT = "dead point: the input can move no further"
+    UNKNOWN = "the branch could not be followed further"
+
+
 @dataclass(frozen=True, kw_only=True)
 class Limit:
-    """Where a branch ends: an input value, known to lie within ``bracket``."""
+    """Where a branch ends.
 
+    Parameters
+    ----------
+    kind : LimitKind
+    input : float
+        Of the leading input, everyday units.
+    bracket : (float, float)
+        Around a located dead point: its rounding. Otherwise the last value reached and the first
+        that failed.
+    located : bool
+        Whether the dead point was found to rounding.
+    status : Status
+        What rows beyond it say.
+    loops : tuple of str
+        The loops that lock.
+    in_line : tuple of str
+        Links of those loops that are in line there.
+    """
+
+    kind: LimitKind
     input: float
     bracket: tuple[float, float]
+    located: bool
     status: Status
+    loops: tuple[str, ...] = ()
+    in_line: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

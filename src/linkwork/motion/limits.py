@@ -1,0 +1,69 @@
+"""Where a branch ends: dead points with the loop that locks and the links that line up."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from linkwork.foundation.arrays import IndexArray
+from linkwork.foundation.status import Status
+from linkwork.motion.model import Model
+from linkwork.numerics.dead_point import DeadPoint, locate_dead_point
+from linkwork.numerics.track import End, InputPath, Track
+from linkwork.results.motion import Limit, LimitKind
+
+__all__ = ["limits_of"]
+
+_IN_LINE = 1e-6  # rad: links are in line at a dead point to the square root of rounding or better
+
+
+def limits_of(model: Model, path: InputPath, track: Track, lead: int) -> tuple[Limit, ...]:
+    """The ends that a track met before its goals, in everyday units, lower one first."""
+    found = []
+    for end, side in ((track.below, -1.0), (track.above, 1.0)):
+        if end is not None:
+            found.append(_limit(model, path, track, end, side, lead))
+    return tuple(found)
+
+
+def _limit(model: Model, path: InputPath, track: Track, end: End, side: float, lead: int) -> Limit:
+    scale = model.input_scale[lead]
+    last = track.nodes[-1] if side > 0 else track.nodes[0]
+    solver = model.compiled.solver
+    point = None
+    if end.status is Status.OUT_OF_REACH:
+        point = locate_dead_point(solver, path, last, side)
+    if point is None:
+        edges = sorted((end.reached, end.failed))
+        return Limit(
+            kind=LimitKind.UNKNOWN,
+            input=float(end.reached / scale),
+            bracket=(float(edges[0] / scale), float(edges[1] / scale)),
+            located=False,
+            status=end.status,
+        )
+    block = solver.blocks[point.block]
+    labels = model.equations.labels
+    return Limit(
+        kind=LimitKind.DEAD_POINT,
+        input=float(point.t / scale),
+        bracket=(float(point.bracket[0] / scale), float(point.bracket[1] / scale)),
+        located=bool(point.located),
+        status=end.status,
+        loops=tuple(labels[e] for e in block.equations),
+        in_line=_in_line(model, point, block.unknowns),
+    )
+
+
+def _in_line(model: Model, point: DeadPoint, unknowns: IndexArray) -> tuple[str, ...]:
+    """The links of the locked block whose directions agree up to half turns."""
+    equations = model.equations
+    angles = [int(k) for k in unknowns if equations.unknowns[int(k)].kind == "angle"]
+    names: list[str] = []
+    for i, a in enumerate(angles):
+        for b in angles[i + 1 :]:
+            gap = math.remainder(float(point.v[a] - point.v[b]), math.pi)
+            if abs(gap) < _IN_LINE:
+                names += [equations.unknowns[k].name for k in (a, b)]
+    return tuple(np.unique(names).tolist()) if names else ()
