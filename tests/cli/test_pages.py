@@ -63,7 +63,7 @@ crank from 0 to 360 deg by 1: 361 positions
   out of reach     38 at 0 to 18, 342 to 360 deg: this branch does not reach the
                    input value: the motion ends at the limit reported, ask for
                    values before it
-  dead point       crank = 18.1948723388 deg, where loop "A0 A B B0" locks
+  dead point       crank = 18.1948723388 deg, where loop "O2 A B O4" locks
                    (coupler and rocker in line)
 """
 
