@@ -94,9 +94,29 @@ def test_parallelogram_never_flips_at_its_change_points(
     # on the parallelogram's branch the rocker stays parallel to the crank
     gap = np.remainder(motion["rocker"][inside] - motion["crank"][inside] + 180, 360) - 180
     np.testing.assert_allclose(gap, 0, atol=1e-6)
-    assert {s for s in motion.status if not s.ok} <= {lw.Status.LOST, lw.Status.OUT_OF_REACH}
     if step < 60:
-        assert not inside.all()
+        assert {s for s in motion.status if not s.ok} == {lw.Status.CHANGE_POINT}
+    assert [limit.input for limit in motion.limits] == [0.0, 180.0]
+    first, second = motion.limits
+    assert {first.kind, second.kind} == {lw.LimitKind.CHANGE_POINT}
+    assert first.in_line == ("coupler", "rocker")
+
+
+def test_both_tangents_at_the_change_points_of_a_parallelogram() -> None:
+    low, high = four_bar(2, 4, 2, 4, at=60).sweep().limits
+    # rocker rates 1 and -3 at 0 deg, 1 and -1/3 at 180 deg
+    assert low.onward["rocker"] == pytest.approx(1, abs=1e-12)
+    assert low.other["rocker"] == pytest.approx(-3, abs=1e-12)
+    assert high.onward["rocker"] == pytest.approx(1, abs=1e-12)
+    assert high.other["rocker"] == pytest.approx(-1 / 3, abs=1e-12)
+
+
+def test_a_folding_linkage_has_one_change_point_and_it_is_at_180_degrees() -> None:
+    motion = four_bar(1, 3, 2, 4, at=60).sweep()
+    assert {limit.kind for limit in motion.limits} == {lw.LimitKind.CHANGE_POINT}
+    assert [limit.input for limit in motion.limits] == [-180.0, 180.0]
+    lost = motion["crank"][~motion.found]
+    np.testing.assert_array_equal(lost, [180.0])
 
 
 def test_throw_turns_the_status_into_an_error() -> None:

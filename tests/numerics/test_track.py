@@ -229,10 +229,10 @@ def test_a_parallelogram_ends_at_its_change_points_and_never_takes_the_other_bra
     upper = theta < math.pi
     between = (degrees > 0) & (degrees < 180) if upper else (degrees > 180) & (degrees < 360)
     np.testing.assert_array_equal(motion.found, between)
-    assert set(motion.counts) == {Status.CONVERGED, Status.LOST}
+    assert set(motion.counts) == {Status.CONVERGED, Status.CHANGE_POINT}
     b = bar.coupler_end(np.radians(degrees[between]), side)
     # half a degree from the change point the condition is 600
     np.testing.assert_allclose(motion.trace("B")[between], b, rtol=0, atol=1e-10)
-    assert [limit.status for limit in motion.limits] == [Status.LOST, Status.LOST]
+    assert [limit.status for limit in motion.limits] == [Status.CHANGE_POINT, Status.CHANGE_POINT]
     change = np.array([limit.input for limit in motion.limits]) % 180
     assert np.minimum(change, 180 - change).max() < 1e-3

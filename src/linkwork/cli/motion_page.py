@@ -78,20 +78,28 @@ def _runs(motion: Motion, status: Status) -> str:
     return f"{', '.join(shown)} {motion.input_units[name]}".rstrip() + more
 
 
+_KINDS = {
+    LimitKind.DEAD_POINT: "dead point",
+    LimitKind.CHANGE_POINT: "change point",
+    LimitKind.UNKNOWN: "limit",
+}
+
+
 def _limits(motion: Motion) -> Iterator[tuple[str, str]]:
     """Dead points and other ends of the branch, one to a line."""
     name, _ = _lead(motion)
     unit = motion.input_units[name]
     for limit in motion.limits:
-        dead = limit.kind is LimitKind.DEAD_POINT
         text = f"{name} = {limit.input:.12g} {unit}".rstrip()
         if limit.loops:
             quoted = ", ".join(f'"{loop}"' for loop in limit.loops)
-            text += f", where {'loop' if len(limit.loops) == 1 else 'loops'} {quoted} lock"
-            text += "s" if len(limit.loops) == 1 else ""
+            one = len(limit.loops) == 1
+            does = "can close in two ways" if limit.kind is LimitKind.CHANGE_POINT else "lock"
+            text += f", where {'loop' if one else 'loops'} {quoted} {does}"
+            text += "s" if one and does == "lock" else ""
         if limit.in_line:
             text += f" ({' and '.join(limit.in_line)} in line)"
-        yield "dead point" if dead else "limit", text
+        yield _KINDS[limit.kind], text
 
 
 def _evidence(motion: Motion, measure: str) -> Iterator[tuple[str, str]]:

@@ -28,6 +28,10 @@ class Status(Enum):
         "this branch does not reach the input value: "
         "the motion ends at the limit reported, ask for values before it"
     )
+    CHANGE_POINT = (
+        "the motion reaches a change point, where two branches cross, before this input value: "
+        "ask for values before it, or start from a guess beyond it"
+    )
     LOST = (
         "the branch could not be followed with safety up to this input value: "
         "ask for a value before the last one reached, or start from a guess beyond it"

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import IndexArray
+from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.status import Status
 from linkwork.motion.model import Model
+from linkwork.numerics.change_point import ChangePoint, locate_change_point
 from linkwork.numerics.dead_point import DeadPoint, locate_dead_point
 from linkwork.numerics.track import End, InputPath, Track
 from linkwork.results.motion import Limit, LimitKind
@@ -31,32 +33,55 @@ def _limit(model: Model, path: InputPath, track: Track, end: End, side: float, l
     scale = model.input_scale[lead]
     last = track.nodes[-1] if side > 0 else track.nodes[0]
     solver = model.compiled.solver
-    point = None
     if end.status is Status.OUT_OF_REACH:
-        point = locate_dead_point(solver, path, last, side)
-    if point is None:
-        edges = sorted((end.reached, end.failed))
-        return Limit(
-            kind=LimitKind.UNKNOWN,
-            input=float(end.reached / scale),
-            bracket=(float(edges[0] / scale), float(edges[1] / scale)),
-            located=False,
-            status=end.status,
+        dead = locate_dead_point(solver, path, last, side)
+        if dead is not None:
+            return _located(model, dead, LimitKind.DEAD_POINT, end.status, scale)
+    crossing = locate_change_point(solver, path, last, side)
+    if crossing is not None:
+        found = _located(model, crossing, LimitKind.CHANGE_POINT, Status.CHANGE_POINT, scale)
+        return replace(
+            found,
+            onward=_rates(model, crossing.onward),
+            other=_rates(model, crossing.other),
         )
-    block = solver.blocks[point.block]
-    labels = model.equations.labels
+    edges = sorted((end.reached, end.failed))
     return Limit(
-        kind=LimitKind.DEAD_POINT,
-        input=float(point.t / scale),
+        kind=LimitKind.UNKNOWN,
+        input=float(end.reached / scale),
+        bracket=(float(edges[0] / scale), float(edges[1] / scale)),
+        located=False,
+        status=end.status,
+    )
+
+
+def _located(
+    model: Model, point: DeadPoint | ChangePoint, kind: LimitKind, status: Status, scale: float
+) -> Limit:
+    block = model.compiled.solver.blocks[point.block]
+    low, high = (edge / scale for edge in point.bracket)
+    short = round(point.t / scale, 9)
+    return Limit(
+        kind=kind,
+        input=float(short if low <= short <= high else point.t / scale),
         bracket=(float(point.bracket[0] / scale), float(point.bracket[1] / scale)),
         located=bool(point.located),
-        status=end.status,
-        loops=tuple(labels[e] for e in block.equations),
+        status=status,
+        loops=tuple(model.equations.labels[e] for e in block.equations),
         in_line=_in_line(model, point, block.unknowns),
     )
 
 
-def _in_line(model: Model, point: DeadPoint, unknowns: IndexArray) -> tuple[str, ...]:
+def _rates(model: Model, rates: Array) -> dict[str, float]:
+    """Derivatives of the unknowns that take part, by name."""
+    return {
+        variable.name: float(rate)
+        for variable, rate in zip(model.equations.unknowns, rates, strict=False)
+        if np.isfinite(rate)
+    }
+
+
+def _in_line(model: Model, point: DeadPoint | ChangePoint, unknowns: IndexArray) -> tuple[str, ...]:
     """The links of the locked block whose directions agree up to half turns."""
     equations = model.equations
     angles = [int(k) for k in unknowns if equations.unknowns[int(k)].kind == "angle"]

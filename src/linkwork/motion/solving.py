@@ -158,8 +158,8 @@ def _stopped(
     name = model.equations.inputs[lead].name
     unit = model.units.angle.sign if model.input_scale[lead] != 1.0 else ""
     met = " and ".join(f"{limit.input:.10g}{unit}" for limit in limits)
-    reached = all(limit.status is Status.OUT_OF_REACH for limit in limits)
-    status = Status.OUT_OF_REACH if reached else Status.LOST
+    reasons = {limit.status for limit in limits}
+    status = reasons.pop() if len(reasons) == 1 else limits[0].status
     return _failed(model, target, status, f"{status.value} (met at {name} = {met})", start)
 
 

@@ -85,9 +85,9 @@ def sweep(
     track = _covering(model, path, anchor, t, scale, report)
     placed = _placed(track, t, turns_freely(model))
     solved = _solve_rows(model, path, track, placed, scale, report, certify)
-    missing = np.isnan(placed)
-    solved.status[missing] = _status_outside(track).code
-    return _motion(model, path, solved, track, start)
+    limits = limits_of(model, path, track, lead)
+    solved.status[np.isnan(placed)] = _status_outside(limits).code
+    return _motion(model, solved, limits, start)
 
 
 class _Report:
@@ -210,16 +210,18 @@ def _solve_rows(
     )
 
 
-def _status_outside(track: Track) -> Status:
-    reasons = [end.status for end in track.ends]
-    return Status.OUT_OF_REACH if Status.OUT_OF_REACH in reasons else Status.LOST
+def _status_outside(limits: tuple[Limit, ...]) -> Status:
+    """What rows say that lie beyond the limits, the most definite reason first."""
+    reasons = [limit.status for limit in limits]
+    for status in (Status.OUT_OF_REACH, Status.CHANGE_POINT):
+        if status in reasons:
+            return status
+    return Status.LOST
 
 
-def _motion(model: Model, path: InputPath, solved: _Solved, track: Track, start: Start) -> Motion:
+def _motion(model: Model, solved: _Solved, limits: tuple[Limit, ...], start: Start) -> Motion:
     found = solved.status == Status.CONVERGED.code
     named = named_series(model, solved.v, solved.first, solved.second, model.everyday_rows, found)
-    lead, _ = lock_step(model.rows)
-    limits = limits_of(model, path, track, lead)
     return _assembled(model, named, solved, limits, start.message)
 
 

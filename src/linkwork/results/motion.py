@@ -40,6 +40,7 @@ class LimitKind(Enum):
     """What ends a branch."""
 
     DEAD_POINT = "dead point: the input can move no further"
+    CHANGE_POINT = "change point: another branch crosses here"
     UNKNOWN = "the branch could not be followed further"
 
 
@@ -63,6 +64,9 @@ class Limit:
         The loops that lock.
     in_line : tuple of str
         Links of those loops that are in line there.
+    onward, other : Mapping[str, float]
+        At a change point, the derivatives by the input of the locked loops' unknowns on the
+        branch that was followed and on the one that crosses it.
     """
 
     kind: LimitKind
@@ -72,6 +76,8 @@ class Limit:
     status: Status
     loops: tuple[str, ...] = ()
     in_line: tuple[str, ...] = ()
+    onward: Mapping[str, float] = FrozenDict()
+    other: Mapping[str, float] = FrozenDict()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
