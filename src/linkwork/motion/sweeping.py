@@ -19,10 +19,12 @@ from linkwork.motion.start import Start, first_position
 from linkwork.motion.tracking import leading_scale, track_to, turns_freely
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.track import (
+    BOLD,
     InputPath,
     Node,
     Rows,
     Track,
+    TrackOptions,
     follow,
     joined_rows,
     node_at,
@@ -82,12 +84,23 @@ def sweep(
     if anchor is None:
         return _without_start(model, rows, start)
     report = _Report(progress, anchor.t, float(t.min()), float(t.max()))
-    track = _covering(model, path, anchor, t, scale, report)
-    placed = _placed(track, t, turns_freely(model))
-    solved = _solve_rows(model, path, track, placed, scale, report, certify)
+    tries = (BOLD, None) if certify else (None,)
+    for care in tries:
+        track = _covering(model, path, anchor, t, scale, report, care)
+        placed = _placed(track, t, turns_freely(model))
+        solved = _solve_rows(model, path, track, placed, scale, report, certify)
+        if care is None or not _doubtful(solved, placed):
+            break
     limits = limits_of(model, path, track, lead)
     solved.status[np.isnan(placed)] = _status_outside(limits).code
     return _motion(model, solved, limits, start)
+
+
+def _doubtful(solved: _Solved, placed: Array) -> bool:
+    """Whether a bold track left rows that are on it unproved."""
+    there = ~np.isnan(placed)
+    wanted = (Certification.CERTIFIED.code, Certification.NO_BOUND.code)
+    return bool((~np.isin(solved.proofs.code[there], wanted)).any())
 
 
 class _Report:
@@ -136,21 +149,29 @@ def _onto_path(model: Model, path: InputPath, start: Start, t: Array, lead: int)
 
 
 def _covering(
-    model: Model, path: InputPath, anchor: Node, t: Array, scale: float, report: _Report
+    model: Model,
+    path: InputPath,
+    anchor: Node,
+    t: Array,
+    scale: float,
+    report: _Report,
+    care: TrackOptions | None,
 ) -> Track:
     """A track over the table's range, wound on the other way where a limit cuts it short."""
     solver = model.compiled.solver
-    track = track_to(solver, path, anchor, [t.min(), t.max()], scale, report.tracked)
+    track = track_to(solver, path, anchor, [t.min(), t.max()], scale, report.tracked, care)
     if not turns_freely(model):
         return track
     above, below = track.above, track.below
     turn = 2.0 * np.pi
     if above is not None and below is None:
         beyond = t[t > track.last_t]
-        return track_to(solver, path, anchor, [beyond.min() - turn, t.min(), t.max()], scale)
+        goals = [beyond.min() - turn, t.min(), t.max()]
+        return track_to(solver, path, anchor, goals, scale, options=care)
     if below is not None and above is None:
         beyond = t[t < track.first_t]
-        return track_to(solver, path, anchor, [beyond.max() + turn, t.min(), t.max()], scale)
+        goals = [beyond.max() + turn, t.min(), t.max()]
+        return track_to(solver, path, anchor, goals, scale, options=care)
     return track
 
 

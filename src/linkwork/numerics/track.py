@@ -18,7 +18,7 @@ from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import BlockSolver, Rates
 from linkwork.numerics.newton import NewtonOptions
 
-__all__ = ["End", "InputPath", "Node", "Track", "TrackOptions", "follow", "rows_on_track"]
+__all__ = ["BOLD", "End", "InputPath", "Node", "Track", "TrackOptions", "follow", "rows_on_track"]
 
 _CONVERGED = Status.CONVERGED.code
 _NODE_TOLERANCE = 1e-7  # a correction this small leaves an error of its square
@@ -59,6 +59,12 @@ class TrackOptions:
     largest_step: float = 0.8
     smallest_step: float = 1e-13
     most_steps: int = 100_000
+
+
+#: For tracks that are proved afterwards: about half the steps, none of them safe by itself.
+BOLD = TrackOptions(
+    largest_correction=0.3, aim=0.1, contraction=0.5, rate_error=0.6, first_step=0.2
+)
 
 
 @dataclass(frozen=True, kw_only=True)
