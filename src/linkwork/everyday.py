@@ -67,8 +67,10 @@ class Mechanism:
     def __repr__(self) -> str:
         equations = self.model.equations
         inputs = ", ".join(v.name for v in equations.inputs) or "nothing"
+        count = len(equations.labels)
+        what = "equation" if count == 1 else "equations"
         return (
-            f'<Mechanism "{self.description.name}": {len(equations.labels)} equations for '
+            f'<Mechanism "{self.description.name}": {count} {what} for '
             f"{', '.join(v.name for v in equations.unknowns)}; driven by {inputs}>"
         )
 

@@ -124,6 +124,17 @@ CASES = {
         "  line 13  links  1 condition too many: remove an input or a link among crank, rocker, "
         "coupler",
     ),
+    "a link that is connected to nothing": (
+        changed(
+            FOUR_BAR, 'rocker  = ["O4", "B"]', 'rocker  = ["O4", "B"]\nfree = ["X", "Y"]'
+        ).replace("O4 = [100, 0]", "O4 = [100, 0]\nX = [1, 1]\nY = [2, 2]"),
+        "1 problem in file.toml\n"
+        "  line 20  links.free  is connected to nothing: let it share a point with another link",
+    ),
+    "an input whose coefficient is zero": (
+        changed(RAPIER, "a2*e^(i*θ12) + a3", "0*e^(i*θ12) + a3"),
+        '1 problem in file.toml\n  line 23  guess.θ12  "θ12" occurs in no loop equation',
+    ),
     "a plain equation of an unknown name": (
         changed(NEWTON, "2*x - 5", "2*y - 5"),
         "1 problem in file.toml\n"

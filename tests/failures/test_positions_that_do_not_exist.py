@@ -163,3 +163,101 @@ def test_inputs_that_do_not_fit_are_errors() -> None:
         'mechanism "Newton-Raphson, the usual case: quadratic convergence" has no input: '
         "add [input] to sweep it"
     )
+
+
+FIVE_BAR = {
+    "points": {"O": (77, 62), "A": (-90, 52), "B": (1, 15), "C": (67, 89), "D": (57, 66)},
+    "links": {
+        "ground": ["O", "D"],
+        "l": ["O", "A"],
+        "p": ["A", "B"],
+        "q": ["C", "B"],
+        "r": ["D", "C"],
+    },
+}
+
+
+def test_a_table_of_two_inputs_whose_nearest_row_is_out_of_reach_is_entered_elsewhere() -> None:
+    driven = [
+        lw.Input(link="l", start=0, stop=360, step=1),
+        lw.Input(link="r", start=90, stop=-630, step=-2),
+    ]
+    mechanism = lw.linkage(**FIVE_BAR, inputs=driven)
+    motion = mechanism.sweep()
+    assert motion.found.sum() > 300
+    for row in np.flatnonzero(motion.found)[::40]:
+        b = motion.trace("B")[row]
+        a, c = motion.trace("A")[row], motion.trace("C")[row]
+        assert abs(b - a) == pytest.approx(abs(-90 + 52j - (1 + 15j)), rel=1e-12)
+        assert abs(b - c) == pytest.approx(abs(67 + 89j - (1 + 15j)), rel=1e-12)
+
+
+def test_an_input_of_one_value_is_held_there_while_the_other_moves() -> None:
+    driven = [
+        lw.Input(link="l", start=170, stop=200, step=1),
+        lw.Input(link="r", start=66, stop=66),
+    ]
+    motion = lw.linkage(**FIVE_BAR, inputs=driven).sweep()
+    assert len(motion) == 31
+    np.testing.assert_array_equal(motion["r"], 66.0)
+    assert motion.found.all()
+
+
+def test_a_dead_point_of_two_coupled_loops_is_out_of_reach_and_not_lost() -> None:
+    mechanism = lw.linkage(
+        points={
+            "O2": (-74.06217244077864, -41.61142182588933),
+            "A": (58.77238489683296, -45.76510121714952),
+            "B": (-30.7291438666293, -16.61886082530208),
+            "O4": (-16.045763241749626, -18.095576710188027),
+            "P": (84.12247659752612, -68.80042821232817),
+            "D": (-99.06764108337087, 88.65356718382176),
+            "O6": (75.9956503252096, 97.38273100575913),
+        },
+        links={
+            "ground": ["O2", "O4", "O6"],
+            "l2": ["O2", "A"],
+            "l3": ["A", "B", "P"],
+            "l4": ["O4", "B"],
+            "l5": ["P", "D"],
+            "l6": ["O6", "D"],
+        },
+        inputs=lw.Input(link="l5"),
+    )
+    motion = mechanism.sweep()
+    assert {limit.kind for limit in motion.limits} == {lw.LimitKind.DEAD_POINT}
+    assert {s for s in motion.status if not s.ok} == {lw.Status.OUT_OF_REACH}
+    low, high = motion.limits
+    inside = mechanism.sweep(start=high.input - 1e-6, stop=high.input - 5e-7, step=1e-7)
+    assert inside.certified.all()
+    # rate**-2 falls to zero at a dead point, linearly but for the square root of the distance
+    rates = inside.unknowns["l2"].first ** -2.0
+    zero = np.polynomial.Polynomial.fit(inside["l5"], rates, 1).roots()[0]
+    assert zero == pytest.approx(high.input, abs=1e-8)
+    assert low.input < high.input
+
+
+def test_a_start_on_a_dead_point_says_so() -> None:
+    mechanism = lw.linkage(
+        points={"O2": (0, 0), "A": (40, 0), "B": (160, 0), "T": (300, 0)},
+        links={"ground": ["O2", "T"], "crank": ["O2", "A"], "rod": ["A", "B"], "block": ["B"]},
+        sliders=[
+            lw.Slider(name="s", link="block", points=["B"], angle=0, on="ground", line=["O2", "T"])
+        ],
+        inputs=lw.Input(slider="s", start=160, stop=80, step=-5),
+    )
+    assert mechanism.solve().message.startswith("position found, at a dead point or change point")
+    motion = mechanism.sweep()
+    assert set(motion.status[1:]) == {lw.Status.START_SINGULAR}
+
+
+def test_names_that_do_not_exist_are_told_with_those_that_do() -> None:
+    position, motion = four_bar(2, 5, 2, 4).solve(), four_bar(2, 5, 2, 4).sweep()
+    message = 'there is no "rokker" (names: rocker, crank, coupler)'
+    for results in (position, motion):
+        with pytest.raises(lw.UnknownNameError) as caught:
+            results["rokker"]
+        assert str(caught.value) == message
+    with pytest.raises(lw.UnknownNameError) as point:
+        motion.trace("Z")
+    assert str(point.value) == 'there is no point "Z" (points: O2, A, B, O4)'

@@ -87,7 +87,7 @@ def test_a_track_ends_at_the_dead_point(side: int) -> None:
         assert off_branch(FOLDING, np.stack([node.v for node in nodes]), side) < 1e-8
 
 
-def test_a_track_from_a_dead_point_says_that_it_is_lost() -> None:
+def test_a_track_from_a_dead_point_says_that_its_start_is_singular() -> None:
     (dead,) = FOLDING.dead_points()
     solver = blocks_of(four_bar_table(FOLDING))
     a = 2.0 * np.exp(1j * dead)
@@ -95,7 +95,7 @@ def test_a_track_from_a_dead_point_says_that_it_is_lost() -> None:
     nodes, end = follow(solver, PATH, node_at(solver, PATH, dead, v), 2.0, 1.0)
     assert nodes == []
     assert end is not None
-    assert (end.reached, end.failed, end.status) == (dead, dead, Status.LOST)
+    assert (end.reached, end.failed, end.status) == (dead, dead, Status.START_SINGULAR)
 
 
 @pytest.mark.parametrize("away", [0.0, 1e-9, -1e-7])
@@ -105,7 +105,7 @@ def test_a_track_from_a_change_point_does_not_choose_a_branch(away: float) -> No
     nodes, end = follow(solver, PATH, start, 1.0, 1.0)
     assert nodes == []
     assert end is not None
-    assert end.status is Status.LOST
+    assert end.status is Status.START_SINGULAR
 
 
 def test_rows_between_nodes_are_the_positions_of_the_branch() -> None:

@@ -36,6 +36,8 @@ def read_mechanism(file: str, changes: tuple[str, ...] = ()) -> Mechanism:
 
 def _read(file: str) -> ReadFile:
     if file == "-":
+        if sys.stdin is None:
+            raise InputError("there is no standard input to read a mechanism from")
         return read_bytes(sys.stdin.buffer.read())
     path = Path(file)
     if not path.exists() and path.parent == Path() and path.stem in examples():

@@ -24,6 +24,8 @@ def check_outputs(source: str, *outputs: str | None) -> None:
         if name is None or name == "-":
             continue
         path = Path(name)
+        if path.suffix.lower() in (".xlsx", ".xls", ".ods"):
+            raise InputError(f'cannot write "{name}": tables are written as CSV, name it .csv')
         if path.is_dir():
             raise InputError(f'cannot write "{name}": it is a folder')
         if not path.parent.is_dir():

@@ -41,7 +41,13 @@ _BAR_STEPS = 1000
 
 
 def ready_streams() -> None:
-    """Files and pipes get UTF-8; a terminal shows ? for letters that it does not have."""
+    """Files and pipes get UTF-8; a terminal shows ? for letters that it does not have.
+
+    A stream that was closed before we started is replaced by one that goes nowhere.
+    """
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115 - until exit
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             if stream.isatty():

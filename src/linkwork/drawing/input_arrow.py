@@ -24,8 +24,8 @@ def input_arrows(
     guided = {track.name: track for track in found}
     struts = {strut.name: strut for strut in pose.skeleton.struts}
     bars = {bar.name: bar for bar in pose.skeleton.bars}
-    turn = -1 if sense < 0 else 1
     for part in pose.skeleton.driven:
+        turn = -1 if sense < 0 or part.backwards else 1
         if part.name in guided:
             track = guided[part.name]
             side = measures.block[1] if track.block else measures.slot

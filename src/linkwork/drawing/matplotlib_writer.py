@@ -171,6 +171,7 @@ def _dress(ax: Axes, scene: Scene, theme: Theme, view: Box) -> None:
     short = min(view.width, view.height) * scale / 72
     spacing = _round_step(min(_TICK_EVERY, max(0.5 * short, 0.5)) * 72 / scale)
     for axis, name in ((ax.xaxis, "x"), (ax.yaxis, "y")):
+        axis.set_major_formatter(lambda value, _: f"{value:.6g}".replace("-", "\u2212"))
         axis.set_major_locator(MultipleLocator(spacing))
         axis.set_label_text(
             f"{name} [{scene.unit}]" if scene.unit else name,

@@ -68,6 +68,8 @@ class _Writer:
         angles = [a for b in frames.bodies if (a := frames.angle[b].variable) == self._angle_of(b)]
         unknowns = [_variable(n, kind) for n, kind in self._variables(angles) if n not in driven]
         structure = self._structure({v.name for v in unknowns})
+        self._check_connected(structure)
+        self.problems.raise_any(where)
         self._check_determined(structure)
         self.problems.raise_any(where)
         blocks = structure.blocks()
@@ -164,6 +166,16 @@ class _Writer:
             tuple(name for name, _ in equation.terms if name in unknown) for equation in self.linear
         ]
         return Structure(incidences, variables, relations, GROUND)
+
+    def _check_connected(self, structure: Structure) -> None:
+        """A body that shares no point with another one is in no equation."""
+        joined = {body for body, _ in structure.incidences}
+        for link in self.linkage.links:
+            if link != GROUND and link not in joined:
+                self.problems.add(
+                    ("links", link),
+                    "is connected to nothing: let it share a point with another link",
+                )
 
     def _check_determined(self, structure: Structure) -> None:
         form, names = structure.form()

@@ -60,6 +60,7 @@ def read_loops(mechanism: Loops) -> LoopEquations:
     points = _read_points(mechanism, reader, problems)
     problems.raise_any(f'mechanism "{mechanism.name}"')
     kinds = _kinds(loops, spelling, problems)
+    problems.raise_any(f'mechanism "{mechanism.name}"')
     _check_ranges(mechanism, kinds, problems)
     problems.raise_any(f'mechanism "{mechanism.name}"')
     driven = [canonical(which.drives[1]) for which in mechanism.inputs]

@@ -32,6 +32,10 @@ class Status(Enum):
         "the motion reaches a change point, where two branches cross, before this input value: "
         "ask for values before it, or start from a guess beyond it"
     )
+    START_SINGULAR = (
+        "the start itself is a dead point or change point, where the motion has no direction: "
+        "start from a guess beside it"
+    )
     LOST = (
         "the branch could not be followed with safety up to this input value: "
         "ask for a value before the last one reached, or start from a guess beyond it"

@@ -92,6 +92,10 @@ class Description:
             set_(self, "angle", _angle_unit(self.angle, self.name))
         if isinstance(self.inputs, Input):
             set_(self, "inputs", (self.inputs,))
+        if not all(isinstance(which, Input) for which in self.inputs):
+            raise InputError(
+                'inputs must be Input objects: lw.Input(link="crank"), or a list of them'
+            )
         set_(self, "inputs", tuple(self.inputs))
         set_(self, "trace", tuple(self.trace))
         for field in ("dimensions", "outputs"):
@@ -175,8 +179,13 @@ class Description:
         return ("input",) if len(self.inputs) == 1 else ("input", k)
 
     def rows(self, which: Input) -> Array:
-        """The table's values of one input, in the file's unit, shape (rows,)."""
+        """The table's values of one input, in the file's unit, shape (rows,).
+
+        An input whose range is one value is held there: one row, whatever the others have.
+        """
         start, stop, step = self._range(which)
+        if start == stop:
+            return np.array([start])
         count = math.floor((stop - start) / step + 1e-9) + 1
         return np.asarray(start + step * np.arange(count), dtype=np.float64)
 
@@ -192,15 +201,23 @@ class Description:
             step = -step
         return start, stop, step
 
+    def falls(self, which: Input) -> bool:
+        """Whether an input is driven towards smaller values: by its speed, else by its table."""
+        speed = self.speed(which)
+        start, stop, _ = self._range(which)
+        return speed < 0 if speed is not None else stop < start
+
     def _check_lock_step(self, problems: Problems) -> None:
         if problems or len(self.inputs) < 2:
             return
         counts = [len(self.rows(which)) for which in self.inputs]
+        first = next((k for k, count in enumerate(counts) if count > 1), 0)
         for k, count in enumerate(counts):
-            if count != counts[0]:
+            if count not in (1, counts[first]):
+                which = "the first input" if first == 0 else f"input {first + 1}"
                 problems.add(
                     self.input_key(k),
-                    f"has {count} rows, the first input has {counts[0]}: "
+                    f"has {count} rows, {which} has {counts[first]}: "
                     "inputs move in lock-step and need equal row counts",
                 )
 
@@ -259,9 +276,9 @@ def _check_rows(description: Description, which: Input, key: Key, problems: Prob
     if (lengthy and missing) or any(map(math.isnan, amounts)):
         return
     start, stop, step = description._range(which)
-    if step == 0 or (start != stop and (stop > start) != (step > 0)):
+    if start != stop and (step == 0 or (stop > start) != (step > 0)):
         problems.add((*key, "step"), f"a step of {step:g} does not lead from {start:g} to {stop:g}")
-    elif (stop - start) / step > _MOST_ROWS:
+    elif start != stop and (stop - start) / step > _MOST_ROWS:
         message = f"a step of {step:g} from {start:g} to {stop:g} gives more than {_MOST_ROWS} rows"
         problems.add((*key, "step"), message)
 

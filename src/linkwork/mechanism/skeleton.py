@@ -44,11 +44,15 @@ class Strut:
 
 @dataclass(frozen=True, kw_only=True)
 class DrivenPart:
-    """What an input drives: ``kind`` is link, slider or cylinder; ``pivot`` a pin of the link."""
+    """What an input drives: ``kind`` is link, slider or cylinder; ``pivot`` a pin of the link.
+
+    ``backwards`` tells that it is driven towards smaller values.
+    """
 
     kind: str
     name: str
     pivot: str | None = None
+    backwards: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,12 +124,15 @@ def _driven_parts(linkage: Linkage, carriers: Mapping[str, list[str]]) -> list[D
     found = []
     for which in linkage.inputs:
         kind, name = which.drives
+        back = linkage.falls(which)
         if kind == "joint":
-            found.append(DrivenPart(kind="link", name=carriers[name][-1], pivot=name))
+            part = DrivenPart(kind="link", name=carriers[name][-1], pivot=name, backwards=back)
+            found.append(part)
         elif kind == "link":
             base = linkage.links[which.relative_to or GROUND]
             shared = [p for p in linkage.links[name] if p in base]
-            found.append(DrivenPart(kind="link", name=name, pivot=shared[0] if shared else None))
+            pivot = shared[0] if shared else None
+            found.append(DrivenPart(kind="link", name=name, pivot=pivot, backwards=back))
         else:
-            found.append(DrivenPart(kind=kind, name=name))
+            found.append(DrivenPart(kind=kind, name=name, backwards=back))
     return found

@@ -33,11 +33,10 @@ def _limit(model: Model, path: InputPath, track: Track, end: End, side: float, l
     scale = model.input_scale[lead]
     last = track.nodes[-1] if side > 0 else track.nodes[0]
     solver = model.compiled.solver
-    if end.status is Status.OUT_OF_REACH:
-        dead = locate_dead_point(solver, path, last, side)
-        if dead is not None:
-            return _located(model, dead, LimitKind.DEAD_POINT, end.status, scale)
-    crossing = locate_change_point(solver, path, last, side)
+    crossing = dead = None
+    if end.status is not Status.START_SINGULAR:
+        crossing = locate_change_point(solver, path, last, side)
+        dead = locate_dead_point(solver, path, last, side) if crossing is None else None
     if crossing is not None:
         found = _located(model, crossing, LimitKind.CHANGE_POINT, Status.CHANGE_POINT, scale)
         return replace(
@@ -45,6 +44,8 @@ def _limit(model: Model, path: InputPath, track: Track, end: End, side: float, l
             onward=_rates(model, crossing.onward),
             other=_rates(model, crossing.other),
         )
+    if dead is not None and (dead.located or end.status is Status.OUT_OF_REACH):
+        return _located(model, dead, LimitKind.DEAD_POINT, Status.OUT_OF_REACH, scale)
     edges = sorted((end.reached, end.failed))
     return Limit(
         kind=LimitKind.UNKNOWN,

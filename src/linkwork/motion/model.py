@@ -62,7 +62,10 @@ class Model:
     def everyday_rows(self) -> Array:
         """The table's input values as asked, everyday units, (rows, p)."""
         columns = [self.description.rows(which) for which in self.description.inputs]
-        return np.stack(columns, axis=1) if columns else np.zeros((1, 0))
+        if not columns:
+            return np.zeros((1, 0))
+        count = max(map(len, columns))
+        return np.stack([np.broadcast_to(column, count) for column in columns], axis=1)
 
     @cached_property
     def everyday_start(self) -> Array:
@@ -109,6 +112,8 @@ class Model:
                     f'"{name}" is not an input of {self.description.name} '
                     f"{choices('inputs', names, name)}"
                 )
+            if not np.isfinite(value):
+                raise InputError(f"{name} must be a finite number, got {value}")
             values[known[canonical(name)]] = value
         missing = [name for name, value in zip(names, values, strict=True) if np.isnan(value)]
         if missing:

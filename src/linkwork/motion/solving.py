@@ -26,6 +26,13 @@ from linkwork.results.position import Certificate, NewtonTrail, Position
 __all__ = ["solve"]
 
 
+_HOPELESS = 1e12  # condition beyond which derivatives mean nothing
+_SINGULAR = (
+    "position found, at a dead point or change point: there its derivatives do not exist, "
+    "and a motion cannot start"
+)
+
+
 def solve(
     model: Model,
     at: float | Mapping[str, float] | None = None,
@@ -204,7 +211,7 @@ def _from_row(
     named = named_series(model, rows.v, rates.first, rates.second, target[None, :], found)
     evidence = _Evidence(
         status=status,
-        message=status.value,
+        message=_SINGULAR if status.ok and rates.condition[0] > _HOPELESS else status.value,
         residual=float(rows.residual[0]),
         iterations=int(rows.iterations[0]),
         condition=float(rates.condition[0]),

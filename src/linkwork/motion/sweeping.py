@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,6 +34,9 @@ from linkwork.results.motion import Limit, Motion
 
 __all__ = ["sweep"]
 
+_ENTRIES = (
+    24  # rows, from the nearest on, at which a table of several inputs is tried to be entered
+)
 _CHUNK = 4096  # rows solved together: large enough to amortise NumPy calls, small enough for cache
 
 
@@ -82,7 +85,8 @@ def sweep(
     t = rows[:, lead]
     anchor = _onto_path(model, path, start, t, lead)
     if anchor is None:
-        return _without_start(model, rows, start)
+        message = "no row of the table could be reached from the guess's own input values"
+        return _without_start(model, rows, replace(start, message=message))
     report = _Report(progress, anchor.t, float(t.min()), float(t.max()))
     tries = (BOLD, None) if certify else (None,)
     for care in tries:
@@ -138,14 +142,23 @@ def _onto_path(model: Model, path: InputPath, start: Start, t: Array, lead: int)
         return node_at(solver, path, here, start.v)
     weights = solver.variable_scale[solver.unknowns :]
     distance = np.abs((path.at(t) - own) / weights).max(axis=1)
-    nearest = float(t[int(np.argmin(distance))])
-    span = path.at(nearest) - own
-    way = InputPath(origin=own, rate=span)
-    first = node_at(solver, way, 0.0, start.v)
-    nodes, end = follow(solver, way, first, 1.0, 1.0)
+    nearest = np.argsort(distance, kind="stable")
+    spread = np.linspace(0, len(t) - 1, min(len(t), _ENTRIES)).astype(np.intp)
+    for row in (nearest[0], *nearest[spread[1:]]):
+        node = _led_to(model, path, start, float(t[row]))
+        if node is not None:
+            return node
+    return None
+
+
+def _led_to(model: Model, path: InputPath, start: Start, t: float) -> Node | None:
+    """The start led to one row of the table along the straight line between their inputs."""
+    solver = model.compiled.solver
+    way = InputPath(origin=model.start_inputs, rate=path.at(t) - model.start_inputs)
+    nodes, end = follow(solver, way, node_at(solver, way, 0.0, start.v), 1.0, 1.0)
     if end is not None:
         return None
-    return node_at(solver, path, nearest, nodes[-1].v)
+    return node_at(solver, path, t, nodes[-1].v)
 
 
 def _covering(
@@ -234,7 +247,7 @@ def _solve_rows(
 def _status_outside(limits: tuple[Limit, ...]) -> Status:
     """What rows say that lie beyond the limits, the most definite reason first."""
     reasons = [limit.status for limit in limits]
-    for status in (Status.OUT_OF_REACH, Status.CHANGE_POINT):
+    for status in (Status.START_SINGULAR, Status.OUT_OF_REACH, Status.CHANGE_POINT):
         if status in reasons:
             return status
     return Status.LOST

@@ -25,7 +25,7 @@ __all__ = ["ChangePoint", "locate_change_point"]
 
 _UNIT = np.finfo(float).eps
 _STEPS = 12
-_UNFOLDED = 1e-9  # |β| beyond which the branches pass each other without touching
+_UNFOLDED = 1e-13  # |β| beyond which the branches pass each other without touching
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

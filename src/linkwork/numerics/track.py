@@ -167,7 +167,7 @@ def follow(
     if goal == start.t:
         return nodes, None
     if not (here.condition <= opt.largest_condition and np.isfinite(here.second).all()):
-        return nodes, End(reached=here.t, failed=here.t, status=Status.LOST)
+        return nodes, End(reached=here.t, failed=here.t, status=Status.START_SINGULAR)
     h = opt.first_step * scale
     failed_at = goal
     for _ in range(opt.most_steps):

@@ -12,6 +12,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, CountArray
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
@@ -155,7 +156,9 @@ class Motion:
         point, _, axis = name.rpartition(".")
         if point in self.points and axis in ("x", "y"):
             return self.points[point][axis == "y"]
-        raise KeyError(name)
+        tables = (self.inputs, self.unknowns, self.links, self.sliders, self.outputs)
+        known = dict.fromkeys(known for table in tables for known in table)
+        raise UnknownNameError(f'there is no "{name}" {choices("names", known, name)}')
 
     @property
     def found(self) -> BoolArray:
@@ -195,5 +198,9 @@ class Motion:
 
     def trace(self, point: str) -> ComplexArray:
         """The path of a point as x + iy, shape (N,), NaN where there is no position."""
+        if point not in self.points:
+            raise UnknownNameError(
+                f'there is no point "{point}" {choices("points", self.points, point)}'
+            )
         x, y = self.points[point]
         return x.value + 1j * y.value

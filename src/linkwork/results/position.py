@@ -10,6 +10,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
@@ -126,11 +127,16 @@ class Position:
         object.__setattr__(self, "q", read_only(self.q))
 
     def __getitem__(self, name: str) -> float:
-        """A value by name: input, unknown, link angle, slider or output."""
-        for table in (self.input, self.unknowns, self.links, self.sliders, self.outputs):
+        """A value by name: input, unknown, link angle, slider, output or ``<point>.x``."""
+        tables = (self.input, self.unknowns, self.links, self.sliders, self.outputs)
+        for table in tables:
             if name in table:
                 return table[name]
-        raise KeyError(name)
+        point, _, axis = name.rpartition(".")
+        if point in self.points and axis in ("x", "y"):
+            return self.points[point][axis == "y"]
+        known = dict.fromkeys(known for table in tables for known in table)
+        raise UnknownNameError(f'there is no "{name}" {choices("names", known, name)}')
 
     def __repr__(self) -> str:
         return position_summary(self)
