@@ -130,9 +130,13 @@ def _worst(motion: Motion, values: Array, measure: str) -> str:
     return f"{size}, at {name} = {short(inputs[row])} {motion.input_units[name]}".rstrip()
 
 
+_STILL = 1e-10  # relative range of what does not move: its extremes have no place
+
+
 def _ranges(motion: Motion) -> list[str]:
     """Smallest and largest value of every unknown, output and traced point, and where."""
-    found: list[Series] = [*motion.unknowns.values(), *motion.outputs.values()]
+    riding = [motion.links[link] for link in motion.riding]
+    found: list[Series] = [*motion.unknowns.values(), *riding, *motion.outputs.values()]
     for point in motion.skeleton.traced:
         found += motion.points[point]
     if not found:
@@ -148,8 +152,11 @@ def _ranges(motion: Motion) -> list[str]:
     cells = value_cells(numbers)  # of both columns at once: with the same decimals
 
     def places(rows: list[int]) -> Column:
-        known = [not np.isnan(s.value[row]) for s, row in zip(found, rows, strict=True)]
-        cells = [short(inputs[r] if k else np.nan) for r, k in zip(rows, known, strict=True)]
+        moving = [
+            s.value[b] - s.value[a] > _STILL * max(1.0, abs(s.value[a]), abs(s.value[b]))
+            for s, a, b in zip(found, low, high, strict=True)
+        ]
+        cells = [short(inputs[r] if m else np.nan) for r, m in zip(rows, moving, strict=True)]
         return Column(header="at", cells=cells, align="point")
 
     return table_lines(

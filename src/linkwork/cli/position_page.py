@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -140,8 +141,9 @@ def _certificate(certificate: Certificate) -> str:
     if not certificate.certified or certificate.radius is None:
         return f"none: {certificate.certification.value}"
     radius = significant(certificate.radius, 2)
-    alone = significant(certificate.unique_within or 0.0, 2)
-    return f"proved to {radius}, the only position within {alone}"
+    alone = certificate.unique_within or 0.0
+    where = "anywhere" if math.isinf(alone) else f"within {significant(alone, 2)}"
+    return f"proved to {radius}, the only position {where}"
 
 
 def residual_measure(mechanism: Mechanism) -> str:

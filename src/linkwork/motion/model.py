@@ -77,6 +77,16 @@ class Model:
         return np.array(values, dtype=float)
 
     @property
+    def riding(self) -> tuple[str, ...]:
+        """Links that turn with another one, on which they only slide."""
+        named = {variable.name for variable in self.equations.variables}
+        return tuple(
+            link
+            for link, angle in self.equations.links.items()
+            if angle.variable is not None and link not in named
+        )
+
+    @property
     def input_units(self) -> dict[str, str]:
         """The everyday unit of every input."""
         return {v.name: self.units.of(Kind(v.kind)) for v in self.equations.inputs}

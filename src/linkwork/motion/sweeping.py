@@ -291,6 +291,7 @@ def _assembled(
         derivative_unit=model.derivative_unit,
         unknowns=named.unknowns,
         links=named.links,
+        riding=model.riding,
         sliders=named.sliders,
         points=named.points,
         outputs=named.outputs,

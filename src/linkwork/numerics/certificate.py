@@ -169,15 +169,15 @@ def radii(b: Bounds, weights: Array) -> Radii:
             4.0 * room / (omega + np.sqrt(omega**2 + 8.0 * slope * np.maximum(room, 0.0))),
             2.0 * room / omega,
         )
-        whole = omega + rho * slope
+        whole = omega + np.where(slope > 0.0, rho * slope, 0.0)
         square = room**2 - 2.0 * whole * y * _SLACK
         holds = (room > 0.0) & (square > 0.0)
         root = np.sqrt(square)
         # r- without cancellation; a system without curvature has r- = Y/(1 - Z0) and no r+
         exists = np.where(holds, 2.0 * y / (room + root) * _SLACK, np.inf)
         unique = np.where(holds, np.minimum((room + root) / whole, rho) / _SLACK, 0.0)
-    bent = b.omega + rho[:, None] * b.omega_slope
     with np.errstate(all="ignore"):
+        bent = b.omega + np.where(b.omega_slope > 0.0, rho[:, None] * b.omega_slope, 0.0)
         each = b.y + b.z * exists[:, None] + 0.5 * bent * exists[:, None] ** 2
     each = np.minimum(each * _SLACK, exists[:, None]) * weights
     return Radii(holds=holds, exists=exists, unique=unique, each=each)

@@ -97,6 +97,9 @@ class Motion:
         As in :class:`~linkwork.results.position.Position`.
     points : Mapping[str, (Series, Series)]
         x and y of every point.
+    riding : tuple of str
+        Links that turn with another one, on which they only slide; the rest are unknowns, inputs
+        or stand still.
     status : tuple of Status
         One per row; rows that failed hold NaN and are kept.
     residual, condition : array (N,)
@@ -126,6 +129,7 @@ class Motion:
     sliders: Mapping[str, Series] = FrozenDict()
     points: Mapping[str, tuple[Series, Series]] = FrozenDict()
     outputs: Mapping[str, Series] = FrozenDict()
+    riding: tuple[str, ...] = ()
     status: tuple[Status, ...]
     message: str = ""
     residual: Array

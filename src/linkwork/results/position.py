@@ -164,7 +164,7 @@ class Position:
             "certificate": {
                 "certified": self.certificate.certified,
                 "radius": self.certificate.radius,
-                "unique_within": self.certificate.unique_within,
+                "unique_within": _null_or_none(self.certificate.unique_within),
                 "reason": self.certificate.certification.value,
             },
             "branch": self.branch,
@@ -174,6 +174,10 @@ class Position:
 
 def _null(number: float) -> float | None:
     return float(number) if np.isfinite(number) else None
+
+
+def _null_or_none(number: float | None) -> float | None:
+    return None if number is None else _null(number)
 
 
 def _plain(table: Mapping[str, float]) -> dict[str, float | None]:

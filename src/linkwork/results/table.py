@@ -86,6 +86,7 @@ def table_of(motion: Motion) -> Table:
     for name, values in motion.inputs.items():
         add(name, values, motion.input_units[name])
     everything: dict[str, Series] = dict(motion.unknowns)
+    everything |= {link: motion.links[link] for link in motion.riding}
     for x, y in motion.points.values():
         everything[x.quantity.name], everything[y.quantity.name] = x, y
     everything |= motion.outputs
