@@ -129,6 +129,23 @@ def compile_equations(equations: LoopEquations, where: str) -> Compiled:
     )
 
 
+def _plain_scales(equations: LoopEquations, functions: Sequence[FormulaRow]) -> tuple[Array, Array]:
+    """Sizes of plain equations and of their variables, from the guess.
+
+    A variable is measured by its guess, an equation by what its terms change when every variable
+    changes by its own size; 1 where the guess tells nothing.
+    """
+    variables = np.abs(equations.start)
+    variables[variables == 0.0] = 1.0
+    sizes = []
+    for row in functions:
+        value, gradient = row.value_and_gradient(equations.start[None, :])
+        size = np.abs(gradient[0]) @ variables[list(row.variables)]
+        size = max(float(size), abs(float(value[0])))
+        sizes.append(size if np.isfinite(size) and size > 0.0 else 1.0)
+    return np.array(sizes), variables
+
+
 def _table(equations: LoopEquations, index: Mapping[str, int]) -> LoopTable:
     linear_entries = [
         (row, index[name], weight)
@@ -136,6 +153,12 @@ def _table(equations: LoopEquations, index: Mapping[str, int]) -> LoopTable:
         for name, weight in equation.terms
     ]
     scale = equations.length_scale
+    functions = tuple(_formula_row(e.left, e.right, equations, index) for e in equations.real)
+    sizes, amounts = _plain_scales(equations, functions)
+    weights = [
+        {"length": scale, "angle": 1.0}.get(v.kind, float(amount))
+        for v, amount in zip(equations.variables, amounts, strict=True)
+    ]
     return LoopTable(
         unknowns=len(equations.unknowns),
         loops=phasor_rows([loop.terms for loop in equations.loops], index),
@@ -145,14 +168,11 @@ def _table(equations: LoopEquations, index: Mapping[str, int]) -> LoopTable:
             variable=np.array([k for _, k, _ in linear_entries], dtype=np.intp),
             weight=np.array([w for _, _, w in linear_entries], dtype=float),
         ),
-        functions=tuple(_formula_row(e.left, e.right, equations, index) for e in equations.real),
+        functions=functions,
         equation_scale=np.array(
-            [scale] * (2 * len(equations.loops))
-            + [1.0] * (len(equations.linear) + len(equations.real))
+            [scale] * (2 * len(equations.loops)) + [1.0] * len(equations.linear) + sizes.tolist()
         ),
-        variable_scale=np.array(
-            [scale if v.kind == "length" else 1.0 for v in equations.variables]
-        ),
+        variable_scale=np.array(weights, dtype=float),
         turns=np.array([v.kind == "angle" for v in equations.variables], dtype=bool),
     )
 

@@ -68,7 +68,11 @@ class Frames:
             a, b = cylinder.between
             frames.bodies.append(cylinder.name)
             frames.angle[cylinder.name] = LinkAngle(variable=cylinder.angle_name, constant=0.0)
-            rod = Term(value=1.0 + 0j, length=cylinder.name, phase=((cylinder.angle_name, 1.0),))
+            rod = Term(
+                value=1.0 + 0j,
+                length=canonical(cylinder.name),
+                phase=((canonical(cylinder.angle_name), 1.0),),
+            )
             frames.places[cylinder.name] = {a: Place(0j, base=a), b: Place(0j, (rod,), base=a)}
             span = linkage.sketched(b) - linkage.sketched(a)
             frames.lengths.append(cylinder.name)
@@ -95,8 +99,9 @@ class Frames:
     def _turned(self, z: complex, shown: Node | None, body: str, length: str | None = None) -> Term:
         """A vector of the body's frame as a term."""
         angle = self.angle[body]
-        phase = ((angle.variable, 1.0),) if angle.variable is not None else ()
-        return Term.vector(z * cmath.exp(1j * angle.constant), shown, length, phase)
+        phase = ((canonical(angle.variable), 1.0),) if angle.variable is not None else ()
+        symbol = None if length is None else canonical(length)
+        return Term.vector(z * cmath.exp(1j * angle.constant), shown, symbol, phase)
 
     def between(self, body: str, start: str, end: str) -> list[Term]:
         """The vector from one point to another across a body, as terms."""

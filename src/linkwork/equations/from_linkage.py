@@ -22,7 +22,7 @@ from linkwork.equations.model import (
 from linkwork.equations.outputs import read_outputs
 from linkwork.equations.structure import Node, Structure, StructureBlock
 from linkwork.expression.tree import Name
-from linkwork.foundation.names import canonical
+from linkwork.foundation.names import canonical, pretty
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.mechanism.parts import Input
@@ -67,7 +67,7 @@ class _Writer:
         driven = {v.name for v in self.inputs}
         angles = [a for b in frames.bodies if (a := frames.angle[b].variable) == self._angle_of(b)]
         unknowns = [_variable(n, kind) for n, kind in self._variables(angles) if n not in driven]
-        structure = self._structure({v.name for v in unknowns})
+        structure = self._structure({v.symbol for v in unknowns})
         self._check_connected(structure)
         self.problems.raise_any(where)
         self._check_determined(structure)
@@ -120,7 +120,12 @@ class _Writer:
         angle, base = self.frames.angle[link], self.frames.angle[against]
         if angle.variable == base.variable:
             self.problems.add(key, f'"{link}" cannot turn against "{against}": it only slides')
-        elif base.variable is None and angle.variable == link and not base.constant:
+        elif (
+            kind == "link"
+            and base.variable is None
+            and angle.variable == link
+            and not base.constant
+        ):
             self.inputs.append(_variable(link, "angle"))
         else:
             column = which.column
@@ -130,20 +135,18 @@ class _Writer:
     def _relate(self, column: str, link: str, against: str) -> None:
         """θ_link - θ_against - input = 0."""
         angle, base = self.frames.angle[link], self.frames.angle[against]
-        terms = [(column, -1.0)]
+        terms = [(canonical(column), -1.0)]
         value = angle.constant - base.constant
         for sign, part in ((1.0, angle), (-1.0, base)):
             if part.variable is not None:
-                terms.append((part.variable, sign))
+                terms.append((canonical(part.variable), sign))
                 value += sign * self.frames.start[part.variable]
-        constant = angle.constant - base.constant
+        wrapped = cmath.phase(cmath.exp(1j * value))
+        constant = angle.constant - base.constant + wrapped - value  # off by whole turns
         self.linear.append(
             LinearEquation(label=f"{link} against {against}", terms=tuple(terms), constant=constant)
         )
-        self.start[column] = cmath.phase(cmath.exp(1j * value))
-        # the unwrapped start must satisfy the relation exactly as closely as the sketch does
-        if angle.variable is not None:
-            self.start[angle.variable] += self.start[column] - value
+        self.start[column] = wrapped
 
     def _structure(self, unknown: set[str]) -> Structure:
         frames = self.frames
@@ -159,7 +162,8 @@ class _Writer:
         ]
         variables: dict[tuple[str, str], tuple[str, ...]] = {}
         for body, point in incidences:
-            found = [frames.angle[body].variable]
+            turning = frames.angle[body].variable
+            found = [None if turning is None else canonical(turning)]
             found += [term.length for term in frames.places[body][point].sliding]
             variables[body, point] = tuple(n for n in found if n is not None and n in unknown)
         relations = [
@@ -248,12 +252,12 @@ class _Writer:
 
 
 def _variable(name: str, kind: str) -> Variable:
-    """A link's angle is shown as θ with the link's name."""
+    """A link's angle is shown as θ with the link's name, unless that is Greek already."""
     symbol = canonical(name)
     stem = symbol.removesuffix("_angle")
-    return Variable(
-        name=name, kind=kind, symbol=symbol, shown=f"theta_{stem}" if kind == "angle" else symbol
-    )
+    if kind != "angle" or pretty(stem) != stem:
+        return Variable(name=name, kind=kind, symbol=symbol, shown=symbol)
+    return Variable(name=name, kind=kind, symbol=symbol, shown=f"theta_{stem}")
 
 
 def _crossings(walk: tuple[Node, ...], order: Mapping[str, int]) -> list[tuple[str, str, str]]:

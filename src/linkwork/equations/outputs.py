@@ -90,7 +90,8 @@ def _kind(tree: Node, kind_of: Callable[[str], str]) -> str:
         case Call("atan2" | "atan" | "asin" | "acos"):
             return "angle"
         case Call("abs" | "hypot" | "min" | "max"):
-            return _kind(tree.arguments[0], kind_of)
+            found = {_kind(argument, kind_of) for argument in tree.arguments} - {"number"}
+            return found.pop() if len(found) == 1 else "number"
         case Call():
             return "number"
         case Binary("+" | "-"):

@@ -61,6 +61,16 @@ class TermWriter:
             found.append(self.notation.name(self.names[term.length]))
         return found
 
+    def _conjugated(self, term: Term, length: bool) -> list[str]:
+        """The conjugate of a genuinely complex factor, as numbers."""
+        z = (term.value * term.sign).conjugate()
+        sign = "-" if z.imag < 0 else "+"
+        imaginary = self.notation.product([f"{abs(z.imag):.10g}", self.notation.imaginary])
+        found = [f"({z.real:.10g} {sign} {imaginary})"]
+        if length and term.length is not None:
+            found.append(self.notation.name(self.names[term.length]))
+        return found
+
     def complex_form(
         self, term: Term, *, length: bool = True, factor_i: float = 0.0, conjugate: bool = False
     ) -> Signed:
@@ -79,7 +89,10 @@ class TermWriter:
         factors = [f"{abs(factor_i):g}"] if abs(factor_i) not in (0.0, 1.0) else []
         if powers_of_i:
             factors.append(self.notation.imaginary)
-        factors += self._factors(term, length)
+        if conjugate and self._complex_magnitude(term):
+            factors += self._conjugated(term, length)
+        else:
+            factors += self._factors(term, length)
         angle = self.angle(term, -1 if conjugate else 1, with_turn=not quarter)
         if angle != "0":
             factors.append(self.notation.phasor(angle))
@@ -104,7 +117,7 @@ class TermWriter:
             sign *= -up if wanted == "cos" else up
             wanted = "sin" if wanted == "cos" else "cos"
         if self._complex_magnitude(term):
-            return self._split(term, wanted, sign, factors)
+            return self._split(term, wanted, sign, factors, length)
         angle = self.angle(term, with_turn=not quarter)
         factors += self._factors(term, length)
         if angle == "0":
@@ -117,7 +130,9 @@ class TermWriter:
         rotated = plain * complex(math.cos(term.turn), -math.sin(term.turn))
         return abs(rotated.imag) > 1e-12 * abs(rotated)
 
-    def _split(self, term: Term, wanted: str, sign: int, factors: list[str]) -> list[Signed]:
+    def _split(
+        self, term: Term, wanted: str, sign: int, factors: list[str], length: bool
+    ) -> list[Signed]:
         """(p + iq) e^{ix} has the parts p cos x - q sin x and p sin x + q cos x."""
         z = term.value * term.sign
         if wanted == "cos":
@@ -130,7 +145,7 @@ class TermWriter:
             if number == 0 or (angle == "0" and function == "sin"):
                 continue
             text = [*factors, f"{abs(number):.10g}"]
-            if term.length is not None:
+            if length and term.length is not None:
                 text.append(self.notation.name(self.names[term.length]))
             if angle != "0":
                 text.append(self.notation.function(function, angle))

@@ -108,7 +108,11 @@ class EquationSheet:
             row = []
             for unknown in self.equations.unknowns:
                 try:
-                    row.append(notation.formula(derivative(whole, unknown.symbol)))
+                    row.append(
+                        notation.formula(
+                            derivative(whole, unknown.symbol, self.equations.angle.radians)
+                        )
+                    )
                 except ValueError:
                     row.append("…")
             rows.append(row)

@@ -9,8 +9,8 @@ __all__ = ["derivative"]
 _ZERO, _ONE = Number(0.0), Number(1.0)
 
 
-def derivative(node: Node, name: str) -> Node:
-    """d(node)/d(name), lightly simplified; angles count in radians.
+def derivative(node: Node, name: str, radians: float = 1.0) -> Node:
+    """d(node)/d(name), lightly simplified; ``radians`` is the angle unit of the formula.
 
     Raises
     ------
@@ -23,45 +23,48 @@ def derivative(node: Node, name: str) -> Node:
         case Name():
             return _ONE
         case Negative():
-            return _negative(derivative(node.operand, name))
+            return _negative(derivative(node.operand, name, radians))
         case Binary("+" | "-"):
-            left, right = derivative(node.left, name), derivative(node.right, name)
+            left, right = (
+                derivative(node.left, name, radians),
+                derivative(node.right, name, radians),
+            )
             return _sum(left, right) if node.operator == "+" else _sum(left, _negative(right))
         case Binary("*"):
             return _sum(
-                _product(derivative(node.left, name), node.right),
-                _product(node.left, derivative(node.right, name)),
+                _product(derivative(node.left, name, radians), node.right),
+                _product(node.left, derivative(node.right, name, radians)),
             )
         case Binary("/"):
             top = _sum(
-                _product(derivative(node.left, name), node.right),
-                _negative(_product(node.left, derivative(node.right, name))),
+                _product(derivative(node.left, name, radians), node.right),
+                _negative(_product(node.left, derivative(node.right, name, radians))),
             )
             return Binary("/", top, Binary("^", node.right, Number(2.0)))
         case Binary():
-            return _power(node, name)
+            return _power(node, name, radians)
         case Call():
-            return _chain(node, name)
+            return _chain(node, name, radians)
         case Number():
             return _ZERO
 
 
-def _power(node: Binary, name: str) -> Node:
+def _power(node: Binary, name: str, radians: float) -> Node:
     base, exponent = node.left, node.right
-    if derivative(exponent, name) == _ZERO:
+    if derivative(exponent, name, radians) == _ZERO:
         if isinstance(exponent, Number):
             lower: Node = Number(exponent.value - 1.0)
             reduced = base if lower == _ONE else Binary("^", base, lower)
         else:
             reduced = Binary("^", base, Binary("-", exponent, _ONE))
-        return _product(_product(exponent, reduced), derivative(base, name))
+        return _product(_product(exponent, reduced), derivative(base, name, radians))
     inner = _product(exponent, Call("ln", (base,)))
     if base == Name("e"):
         inner = exponent
-    return _product(node, derivative(inner, name))
+    return _product(node, derivative(inner, name, radians))
 
 
-def _chain(node: Call, name: str) -> Node:
+def _chain(node: Call, name: str, radians: float) -> Node:
     x = node.arguments[0]
     square = Binary("^", x, Number(2.0))
     outer: dict[str, Node] = {
@@ -77,19 +80,27 @@ def _chain(node: Call, name: str) -> Node:
         "atan": Binary("/", _ONE, Binary("+", _ONE, square)),
         "abs": Binary("/", x, node),
     }
+    inner = derivative(x, name, radians)
+    if node.function in ("sin", "cos", "tan") and radians != 1.0:
+        inner = _product(Number(radians), inner)
+    if node.function in ("asin", "acos", "atan") and radians != 1.0:
+        inner = _product(Number(1.0 / radians), inner)
     if node.function in outer:
-        return _product(outer[node.function], derivative(x, name))
+        return _product(outer[node.function], inner)
     if node.function == "hypot":
         y = node.arguments[1]
-        top = _sum(_product(x, derivative(x, name)), _product(y, derivative(y, name)))
+        top = _sum(
+            _product(x, derivative(x, name, radians)), _product(y, derivative(y, name, radians))
+        )
         return Binary("/", top, node)
     if node.function == "atan2":
         other = node.arguments[1]
         top = _sum(
-            _product(other, derivative(x, name)),
-            _negative(_product(x, derivative(other, name))),
+            _product(other, derivative(x, name, radians)),
+            _negative(_product(x, derivative(other, name, radians))),
         )
-        return Binary("/", top, Binary("+", square, Binary("^", other, Number(2.0))))
+        whole = Binary("/", top, Binary("+", square, Binary("^", other, Number(2.0))))
+        return whole if radians == 1.0 else _product(Number(1.0 / radians), whole)
     raise ValueError(f"{node.function} has no derivative in one formula")
 
 

@@ -29,7 +29,7 @@ class FrozenDict(dict[K, V]):
         return type(self), (dict(self),)
 
     def __hash__(self) -> int:  # type: ignore[override]
-        return hash(tuple(self.items()))
+        return hash(frozenset(self.items()))
 
     @classmethod
     def of(cls, mapping: Mapping[Any, Any] | None) -> FrozenDict[Any, Any]:

@@ -101,8 +101,12 @@ class PhaseGroups:
         s = np.ones((len(v), len(rows.row)))
         sliding = np.flatnonzero(rows.length >= 0)
         s[:, sliding] = v[:, rows.length[sliding]]
-        c = (s @ self._sorted_in).reshape(len(v), rows.rows, -1)
-        return np.abs(alpha @ c), np.abs(alpha @ self.pairs[2])
+        c = (s @ self._sorted_in).reshape(len(v), rows.rows, self.weights.shape[1])
+        d = self.pairs[2]
+        slack = (rows.rows + 8) * _UNIT  # cancellation in the sums
+        size = np.abs(alpha)
+        phase = np.abs(alpha @ c) + slack * (size @ np.abs(c))
+        return phase, np.abs(alpha @ d) + slack * (size @ np.abs(d))
 
     def rounding(self, v: Array) -> tuple[Array, Array]:
         """Bounds of |error of F|, (B, R), and sums of moduli of dF/dv, (B, R, N).

@@ -32,6 +32,10 @@ def check_linkage(linkage: Linkage, problems: Problems) -> None:
             *((("slots", k, "name"), slot.name) for k, slot in enumerate(linkage.slots)),
             *((("sliders", k, "name"), part.name) for k, part in enumerate(linkage.sliders)),
             *((("cylinders", k, "name"), part.name) for k, part in enumerate(linkage.cylinders)),
+            *(
+                (("cylinders", k, "name"), part.angle_name)
+                for k, part in enumerate(linkage.cylinders)
+            ),
         ],
     )
     _check_points(linkage, problems)
@@ -180,6 +184,9 @@ def _check_slider(linkage: Linkage, slider: Slider, key: Key, problems: Problems
     for point in slider.points:
         if point not in linkage.points:
             problems.add((*key, "points"), _no_point(linkage, point))
+        elif slider.link != slider.on and point in linkage.links.get(slider.on, ()):
+            message = f'point "{point}" is fixed on "{slider.on}" and cannot slide on it'
+            problems.add((*key, "points"), message)
         elif point not in linkage.links[slider.link]:
             own = choices("points", linkage.links[slider.link])
             problems.add((*key, "points"), f'point "{point}" is not on link "{slider.link}" {own}')

@@ -117,7 +117,8 @@ class Cylinder:
     @property
     def angle_name(self) -> str:
         """The name of its angle in results."""
-        return f"{self.name}_angle"
+        stem = self.name.rstrip("'")
+        return f"{stem}_angle{self.name[len(stem) :]}"  # primes stand at the end of a name
 
 
 def replaced_names(part: Any, spelled: dict[str, str], canonical: Any) -> Any:

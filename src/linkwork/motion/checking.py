@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from linkwork.foundation.arrays import Array
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
 from linkwork.motion.model import Model
@@ -14,6 +15,7 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["check", "grubler_count"]
 
+_LARGEST = 100  # unknowns up to which a singular mechanism is looked at as one matrix
 _RANK_TOLERANCE = 1e-9  # relative to the largest singular value of the scaled Jacobian
 
 
@@ -23,7 +25,8 @@ def check(model: Model) -> CheckReport:
     start = first_position(model, model.start_inputs, NewtonOptions())
     rank = None
     if start.status.ok:
-        rank = len(equations.variables) - _rank(model, start.v)
+        found = _rank(model, start.v)
+        rank = None if found is None else len(equations.variables) - found
     measured: tuple[tuple[str, str, float], ...] = ()
     links = joints = 0
     count = None
@@ -81,11 +84,29 @@ def grubler_count(linkage: Linkage) -> int:
     return 3 * (bodies - 1) - 2 * lower_pairs - len(linkage.slots) + len(linkage.cylinders)
 
 
-def _rank(model: Model, v: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> int:
-    """Rank of all equations by all variables, inputs included, scaled."""
+def _rank(model: Model, v: Array) -> int | None:
+    """Rank of all equations by all variables, inputs included, scaled.
+
+    Regular blocks have full rank together. Otherwise all equations are looked at as one matrix,
+    unless that would be very large.
+    """
+    solver = model.compiled.solver
+    full = True
+    for block in solver.blocks:
+        n = len(block.unknowns)
+        system = block.system
+        j = system.jacobian(v[None, block.variables])[0, :, :n]
+        full &= _rank_of(j * system.variable_scale[:n] / system.equation_scale[:, None]) == n
+    if full:
+        return solver.unknowns
+    if solver.unknowns > _LARGEST:
+        return None
     table = model.compiled.table
     jacobian = table.jacobian(v[None, :])[0]
-    scaled = jacobian * table.variable_scale / table.equation_scale[:, None]
+    return _rank_of(jacobian * table.variable_scale / table.equation_scale[:, None])
+
+
+def _rank_of(scaled: Array) -> int:
     if not scaled.size:
         return 0
     return int(np.linalg.matrix_rank(scaled, tol=_RANK_TOLERANCE * np.linalg.norm(scaled, 2)))

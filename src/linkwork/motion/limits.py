@@ -64,7 +64,7 @@ def _located(
     short = round(point.t / scale, 9)
     return Limit(
         kind=kind,
-        input=float(short if low <= short <= high else point.t / scale),
+        input=float(short if low <= short <= high else point.t / scale) + 0.0,
         bracket=(float(point.bracket[0] / scale), float(point.bracket[1] / scale)),
         located=bool(point.located),
         status=status,

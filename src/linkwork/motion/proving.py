@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,18 +12,25 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.proven_path import Beads, prove_path
-from linkwork.numerics.track import InputPath, Rows, Track
+from linkwork.numerics.track import InputPath, Node, Rows, Track
 
-__all__ = ["RowProofs", "prove_rows", "unproved"]
+__all__ = ["RowProofs", "prove_rows", "unproved", "way_is_proved"]
+
+
+_FAR_FROM_SINGULAR = 1e5  # condition up to which a track's nodes must be proved
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RowProofs:
-    """(B,) codes of :class:`Certification`, radii of existence and of uniqueness (weighted)."""
+    """(B,) codes of :class:`Certification`, radii of existence and of uniqueness (weighted).
+
+    ``up_to_ends`` tells whether the track itself is proved up to where it ends.
+    """
 
     code: StatusArray
     radius: Array
     unique: Array
+    up_to_ends: bool = True
 
 
 def unproved(count: int, why: Certification) -> RowProofs:
@@ -57,7 +64,11 @@ def prove_rows(
         return unproved(count, Certification.NO_POSITION)
     begin = track.nodes[track.start].t
     low, high = min(begin, t[found].min()), max(begin, t[found].max())
-    nodes = [k for k, node in enumerate(track.nodes) if low <= node.t <= high]
+    nodes = [
+        k
+        for k, node in enumerate(track.nodes)
+        if low <= node.t <= high or node.condition < _FAR_FROM_SINGULAR
+    ]
     all_t = np.concatenate([[track.nodes[k].t for k in nodes], t[found]])
     order = np.argsort(all_t, kind="stable")
 
@@ -88,4 +99,17 @@ def prove_rows(
     )
     proofs.radius[found] = np.where(position, proof.position.radius[mine], np.nan)
     proofs.unique[found] = np.where(position, proof.position.alone_within[mine], np.nan)
-    return proofs
+    return replace(proofs, up_to_ends=bool(joined[place[: len(nodes)]].all()))
+
+
+def way_is_proved(solver: BlockSolver, path: InputPath, nodes: Sequence[Node]) -> bool:
+    """Whether every node of a track and every step between them is proved."""
+    if not all(block.system.bends_boundedly for block in solver.blocks):
+        return False
+    beads = Beads(
+        t=np.array([node.t for node in nodes]),
+        v=np.stack([node.v for node in nodes]),
+        first=np.stack([node.first for node in nodes]),
+        second=np.stack([node.second for node in nodes]),
+    )
+    return bool(prove_path(solver, path, beads).connected_to(0).all())

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, CountArray, StatusArray
+from linkwork.foundation.arrays import Array, BoolArray, CountArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.motion.limits import limits_of
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
-from linkwork.motion.proving import RowProofs, prove_rows, unproved
+from linkwork.motion.proving import RowProofs, prove_rows, unproved, way_is_proved
 from linkwork.motion.reading import Named, named_series
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.tracking import leading_scale, track_to, turns_freely
@@ -83,28 +83,32 @@ def sweep(
     path = InputPath(origin=rows[0] - rate * rows[0, lead], rate=rate)
     scale = leading_scale(model, lead)
     t = rows[:, lead]
-    anchor = _onto_path(model, path, start, t, lead)
+    anchor, led = _onto_path(model, path, start, t, lead)
     if anchor is None:
         message = "no row of the table could be reached from the guess's own input values"
         return _without_start(model, rows, replace(start, message=message))
     report = _Report(progress, anchor.t, float(t.min()), float(t.max()))
-    tries = (BOLD, None) if certify else (None,)
+    provable = all(block.system.bends_boundedly for block in model.compiled.solver.blocks)
+    tries = (BOLD, None) if certify and provable else (None,)
     for care in tries:
         track = _covering(model, path, anchor, t, scale, report, care)
         placed = _placed(track, t, turns_freely(model))
         solved = _solve_rows(model, path, track, placed, scale, report, certify)
         if care is None or not _doubtful(solved, placed):
             break
+    if not led:
+        certified = solved.proofs.code == Certification.CERTIFIED.code
+        solved.proofs.code[certified] = Certification.MOTION_NOT_PROVED.code
     limits = limits_of(model, path, track, lead)
-    solved.status[np.isnan(placed)] = _status_outside(limits).code
+    _mark_missing(solved, track, t, np.isnan(placed), limits)
     return _motion(model, solved, limits, start)
 
 
 def _doubtful(solved: _Solved, placed: Array) -> bool:
     """Whether a bold track left rows that are on it unproved."""
     there = ~np.isnan(placed)
-    wanted = (Certification.CERTIFIED.code, Certification.NO_BOUND.code)
-    return bool((~np.isin(solved.proofs.code[there], wanted)).any())
+    unproved_rows = solved.proofs.code[there] != Certification.CERTIFIED.code
+    return bool(unproved_rows.any()) or not solved.proofs.up_to_ends
 
 
 class _Report:
@@ -133,32 +137,38 @@ class _Report:
             self.progress((2.0 + fraction) / 3.0)
 
 
-def _onto_path(model: Model, path: InputPath, start: Start, t: Array, lead: int) -> Node | None:
-    """The start as a node of the table's path; several inputs are first led onto it."""
+def _onto_path(
+    model: Model, path: InputPath, start: Start, t: Array, lead: int
+) -> tuple[Node | None, bool]:
+    """The start as a node of the table's path, and whether the way onto it is proved.
+
+    Several inputs are first led from the guess's values to a row of the table.
+    """
     solver = model.compiled.solver
     own = model.start_inputs
     here = float(own[lead])
     if np.allclose(path.at(here), own, rtol=0, atol=1e-12 * leading_scale(model, lead)):
-        return node_at(solver, path, here, start.v)
+        return node_at(solver, path, here, start.v), True
     weights = solver.variable_scale[solver.unknowns :]
     distance = np.abs((path.at(t) - own) / weights).max(axis=1)
     nearest = np.argsort(distance, kind="stable")
     spread = np.linspace(0, len(t) - 1, min(len(t), _ENTRIES)).astype(np.intp)
     for row in (nearest[0], *nearest[spread[1:]]):
-        node = _led_to(model, path, start, float(t[row]))
+        node, proved = _led_to(model, path, start, float(t[row]))
         if node is not None:
-            return node
-    return None
+            return node, proved
+    return None, False
 
 
-def _led_to(model: Model, path: InputPath, start: Start, t: float) -> Node | None:
+def _led_to(model: Model, path: InputPath, start: Start, t: float) -> tuple[Node | None, bool]:
     """The start led to one row of the table along the straight line between their inputs."""
     solver = model.compiled.solver
     way = InputPath(origin=model.start_inputs, rate=path.at(t) - model.start_inputs)
-    nodes, end = follow(solver, way, node_at(solver, way, 0.0, start.v), 1.0, 1.0)
+    first = node_at(solver, way, 0.0, start.v)
+    nodes, end = follow(solver, way, first, 1.0, 1.0)
     if end is not None:
-        return None
-    return node_at(solver, path, t, nodes[-1].v)
+        return None, False
+    return node_at(solver, path, t, nodes[-1].v), way_is_proved(solver, way, [first, *nodes])
 
 
 def _covering(
@@ -244,13 +254,16 @@ def _solve_rows(
     )
 
 
-def _status_outside(limits: tuple[Limit, ...]) -> Status:
-    """What rows say that lie beyond the limits, the most definite reason first."""
-    reasons = [limit.status for limit in limits]
-    for status in (Status.START_SINGULAR, Status.OUT_OF_REACH, Status.CHANGE_POINT):
-        if status in reasons:
-            return status
-    return Status.LOST
+def _mark_missing(
+    solved: _Solved, track: Track, t: Array, missing: BoolArray, limits: tuple[Limit, ...]
+) -> None:
+    """Rows that are nowhere on the track say what was met on the straight way to them."""
+    if not limits:
+        return
+    lower = limits[0] if track.below is not None else limits[-1]
+    upper = limits[-1] if track.above is not None else limits[0]
+    solved.status[missing & (t < track.first_t)] = lower.status.code
+    solved.status[missing & (t > track.last_t)] = upper.status.code
 
 
 def _motion(model: Model, solved: _Solved, limits: tuple[Limit, ...], start: Start) -> Motion:

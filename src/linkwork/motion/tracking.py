@@ -14,8 +14,13 @@ __all__ = ["leading_scale", "track_to", "turns_freely"]
 
 
 def leading_scale(model: Model, lead: int) -> float:
-    """The natural size of a step of the leading input: a radian or the longest link."""
+    """The natural size of a step of the leading input: a radian, the longest link, or for a plain
+    number a tenth of its table.
+    """
     solver = model.compiled.solver
+    if model.equations.inputs[lead].kind == "number":
+        span = float(np.ptp(model.rows[:, lead]))
+        return span / 10.0 or float(solver.variable_scale[solver.unknowns + lead])
     return float(solver.variable_scale[solver.unknowns + lead])
 
 

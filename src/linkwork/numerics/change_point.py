@@ -74,8 +74,9 @@ def locate_change_point(
     if found is None:
         return None
     x, t, w, beta, error = found
-    near = 1e-3 * max(1.0, abs(t))
-    if abs(beta) > _UNFOLDED or (t - last.t) * side < -near or abs(t - last.t) > near:
+    inputs = solver.variable_scale[solver.unknowns :]
+    near = 1e-3 * float(np.min(inputs[path.rate != 0.0] / np.abs(path.rate[path.rate != 0.0])))
+    if abs(beta) > _UNFOLDED or (t - last.t) * side < -1e-3 * near or abs(t - last.t) > near:
         return None
     tangents = crossing.tangents(x, t, w)
     if tangents is None:

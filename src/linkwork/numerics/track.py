@@ -179,7 +179,7 @@ def follow(
             failed_at = t
             h *= 0.5 if correction is None else max(0.1, min(0.5, correction))
             if h < opt.smallest_step * max(scale, abs(here.t)):
-                status = _kind_of_end(solver, start, here)
+                status = _kind_of_end(solver, start, here, scale)
                 return nodes, End(reached=here.t, failed=failed_at, status=status)
             continue
         nodes.append(following)
@@ -227,11 +227,11 @@ def _step(
     return _node(t, found.v[0], rates), factor
 
 
-def _kind_of_end(solver: BlockSolver, start: Node, here: Node) -> Status:
+def _kind_of_end(solver: BlockSolver, start: Node, here: Node, scale: float) -> Status:
     """Rates that grow without bound are the mark of a dead point; otherwise nothing is claimed."""
     weights = solver.variable_scale
-    fast = float(np.abs(here.first / weights).max())
-    usual = float(np.abs(start.first / weights).max())
+    fast = scale * float(np.abs(here.first / weights).max())
+    usual = scale * float(np.abs(start.first / weights).max())
     return Status.OUT_OF_REACH if fast > 1e3 * max(usual, 1.0) else Status.LOST
 
 

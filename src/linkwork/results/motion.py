@@ -143,6 +143,12 @@ class Motion:
     limits: tuple[Limit, ...] = ()
     q: Array
 
+    def __post_init__(self) -> None:
+        for field in ("residual", "iterations", "condition", "radius", "unique_within", "q"):
+            object.__setattr__(self, field, read_only(getattr(self, field)))
+        inputs = {name: read_only(values) for name, values in self.inputs.items()}
+        object.__setattr__(self, "inputs", FrozenDict(inputs))
+
     def __len__(self) -> int:
         return len(self.status)
 
