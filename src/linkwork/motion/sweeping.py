@@ -88,7 +88,8 @@ def sweep(
         message = "no row of the table could be reached from the guess's own input values"
         return _without_start(model, rows, replace(start, message=message))
     report = _Report(progress, anchor.t, float(t.min()), float(t.max()))
-    tries = (BOLD, None) if certify else (None,)
+    provable = all(block.system.bends_boundedly for block in model.compiled.solver.blocks)
+    tries = (BOLD, None) if certify and provable else (None,)
     for care in tries:
         track = _covering(model, path, anchor, t, scale, report, care)
         placed = _placed(track, t, turns_freely(model))
@@ -229,7 +230,15 @@ def _solve_rows(
         residual[chunk], condition[chunk] = rows.residual, rows.rates.condition
         report.solved((begin + len(chunk)) / len(there))
     if certify and pieces:
-        found = prove_rows(solver, path, track, placed[there], joined_rows(pieces), report.proved)
+        found = prove_rows(
+            solver,
+            path,
+            track,
+            placed[there],
+            joined_rows(pieces),
+            model.rows[there],
+            report.proved,
+        )
         proofs.code[there], proofs.radius[there] = found.code, found.radius
         proofs.unique[there] = found.unique
     return _Solved(
