@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,9 +13,9 @@ from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.proof import rounding_of_inputs
 from linkwork.numerics.proven_path import Beads, prove_path
-from linkwork.numerics.track import InputPath, Rows, Track
+from linkwork.numerics.track import InputPath, Node, Rows, Track
 
-__all__ = ["RowProofs", "prove_rows", "unproved"]
+__all__ = ["RowProofs", "prove_rows", "unproved", "way_is_proved"]
 
 _UNIT = np.finfo(float).eps / 2
 _TURN = 1e-9  # rad: an input this near to whole turns away from what was asked is the same one
@@ -97,6 +97,21 @@ def prove_rows(
     proofs.radius[found] = np.where(position, proof.position.radius[mine], np.nan)
     proofs.unique[found] = np.where(position, proof.position.alone_within[mine], np.nan)
     return proofs
+
+
+def way_is_proved(solver: BlockSolver, path: InputPath, nodes: Sequence[Node]) -> bool:
+    """Whether every position and every step of a track is proved."""
+    if not all(block.system.bends_boundedly for block in solver.blocks):
+        return False
+    v = np.stack([node.v for node in nodes])
+    beads = Beads(
+        t=np.array([node.t for node in nodes]),
+        v=v,
+        first=np.stack([node.first for node in nodes]),
+        second=np.stack([node.second for node in nodes]),
+        spread=rounding_of_inputs(v, solver.unknowns),
+    )
+    return bool(prove_path(solver, path, beads).connected_to(0).all())
 
 
 def _apart(solver: BlockSolver, v: Array, asked: Array) -> Array:

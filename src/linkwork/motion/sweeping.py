@@ -13,7 +13,7 @@ from linkwork.foundation.status import Status
 from linkwork.motion.limits import limits_of
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
-from linkwork.motion.proving import RowProofs, prove_rows, unproved
+from linkwork.motion.proving import RowProofs, prove_rows, unproved, way_is_proved
 from linkwork.motion.reading import Named, named_series
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.tracking import leading_scale, track_to, turns_freely
@@ -83,10 +83,11 @@ def sweep(
     path = InputPath(origin=rows[0] - rate * rows[0, lead], rate=rate)
     scale = leading_scale(model, lead)
     t = rows[:, lead]
-    anchor = _onto_path(model, path, start, t, lead)
-    if anchor is None:
+    entry = _onto_path(model, path, start, t, lead, certify)
+    if entry is None:
         message = "no row of the table could be reached from the guess's own input values"
         return _without_start(model, rows, replace(start, message=message))
+    anchor, entered = entry
     report = _Report(progress, anchor.t, float(t.min()), float(t.max()))
     provable = all(block.system.bends_boundedly for block in model.compiled.solver.blocks)
     tries = (BOLD, None) if certify and provable else (None,)
@@ -96,6 +97,9 @@ def sweep(
         solved = _solve_rows(model, path, track, placed, scale, report, certify)
         if care is None or not _doubtful(solved, placed):
             break
+    if not entered:
+        proved = solved.proofs.code == Certification.CERTIFIED.code
+        solved.proofs.code[proved] = Certification.MOTION_NOT_PROVED.code
     limits = limits_of(model, path, track, lead)
     solved.status[np.isnan(placed)] = _status_outside(limits).code
     return _motion(model, solved, limits, start)
@@ -134,32 +138,41 @@ class _Report:
             self.progress((2.0 + fraction) / 3.0)
 
 
-def _onto_path(model: Model, path: InputPath, start: Start, t: Array, lead: int) -> Node | None:
-    """The start as a node of the table's path; several inputs are first led onto it."""
+def _onto_path(
+    model: Model, path: InputPath, start: Start, t: Array, lead: int, certify: bool
+) -> tuple[Node, bool] | None:
+    """The start as a node of the table's path, and whether the way to it is proved.
+
+    Several inputs are first led onto the path.
+    """
     solver = model.compiled.solver
     own = model.start_inputs
     here = float(own[lead])
     if np.allclose(path.at(here), own, rtol=0, atol=1e-12 * leading_scale(model, lead)):
-        return node_at(solver, path, here, start.v)
+        return node_at(solver, path, here, start.v), True
     weights = solver.variable_scale[solver.unknowns :]
     distance = np.abs((path.at(t) - own) / weights).max(axis=1)
     nearest = np.argsort(distance, kind="stable")
     spread = np.linspace(0, len(t) - 1, min(len(t), _ENTRIES)).astype(np.intp)
     for row in (nearest[0], *nearest[spread[1:]]):
-        node = _led_to(model, path, start, float(t[row]))
+        node = _led_to(model, path, start, float(t[row]), certify)
         if node is not None:
             return node
     return None
 
 
-def _led_to(model: Model, path: InputPath, start: Start, t: float) -> Node | None:
+def _led_to(
+    model: Model, path: InputPath, start: Start, t: float, certify: bool
+) -> tuple[Node, bool] | None:
     """The start led to one row of the table along the straight line between their inputs."""
     solver = model.compiled.solver
     way = InputPath(origin=model.start_inputs, rate=path.at(t) - model.start_inputs)
-    nodes, end = follow(solver, way, node_at(solver, way, 0.0, start.v), 1.0, 1.0)
+    first = node_at(solver, way, 0.0, start.v)
+    nodes, end = follow(solver, way, first, 1.0, 1.0)
     if end is not None:
         return None
-    return node_at(solver, path, t, nodes[-1].v)
+    entered = certify and way_is_proved(solver, way, [first, *nodes])
+    return node_at(solver, path, t, nodes[-1].v), entered
 
 
 def _covering(
