@@ -109,7 +109,7 @@ class PhaseGroups:
         s = np.ones((len(v), len(rows.row)))
         sliding = np.flatnonzero(rows.length >= 0)
         s[:, sliding] = v[:, rows.length[sliding]]
-        c = (s @ self._sorted_in).reshape(len(v), rows.rows, -1)
+        c = (s @ self._sorted_in).reshape(len(v), rows.rows, self.weights.shape[1])
         size = (np.abs(s) @ np.abs(self._sorted_in)).reshape(c.shape)
         slip = _UNIT * (len(rows.row) + rows.rows + 8) * np.abs(alpha)
         d = self.pairs[2]
