@@ -11,6 +11,7 @@ Linear rows do not bend; function rows have no bound here.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -32,7 +33,7 @@ class Curvature:
     ``phase`` (B, n, G): |Σ_l α_il C_lg|. ``slide`` (B, n, P): |Σ_l α_il D_lp| for every pair p of
     a variable length and a phase. ``weights`` (N, G): |W|. ``pair_length``, ``pair_group`` (P,):
     the pair's variable and phase. ``rounding`` (B, m): bounds of the error of computing F.
-    ``jacobian_size`` (B, m, N): sums of the moduli of the terms of dF/dv.
+    ``jacobian_rounding`` (B, m, N): of computing dF/dv and its products with m numbers of size 1.
     """
 
     loop_rows: int
@@ -42,7 +43,7 @@ class Curvature:
     pair_length: IndexArray
     pair_group: IndexArray
     rounding: Array
-    jacobian_size: Array
+    jacobian_rounding: Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -52,8 +53,8 @@ class PhaseGroups:
     rows: PhasorRows
 
     @cached_property
-    def _grouped(self) -> tuple[Array, IndexArray]:
-        """|W| by group, (N, G), and the group of each term."""
+    def _grouped(self) -> tuple[Array, IndexArray, IndexArray]:
+        """|W| by group, (N, G), the group of each term, and roundings in computing a phase."""
         rows = self.rows
         columns: list[list[tuple[int, float]]] = [[] for _ in rows.row]
         for t, k, w in zip(rows.phase_term, rows.phase_variable, rows.phase_weight, strict=True):
@@ -64,7 +65,11 @@ class PhaseGroups:
         for column, g in number.items():
             for k, w in column:
                 weights[k, g] += abs(w)
-        return weights, np.array(group, dtype=np.intp)
+        roundings = [
+            0 if len(column) < 2 and all(_doubles(w) for _, w in column) else len(column)
+            for column in number
+        ]
+        return weights, np.array(group, dtype=np.intp), np.array(roundings, dtype=np.intp)
 
     @property
     def weights(self) -> Array:
@@ -96,30 +101,48 @@ class PhaseGroups:
         return lengths, groups, d
 
     def moduli(self, v: Array, alpha: ComplexArray) -> tuple[Array, Array]:
-        """``phase`` (B, n, G) and ``slide`` (B, n, P) of :class:`Curvature`."""
+        """``phase`` (B, n, G) and ``slide`` (B, n, P) of :class:`Curvature`.
+
+        With the rounding of the sums, which is all that is left where their terms cancel.
+        """
         rows = self.rows
         s = np.ones((len(v), len(rows.row)))
         sliding = np.flatnonzero(rows.length >= 0)
         s[:, sliding] = v[:, rows.length[sliding]]
         c = (s @ self._sorted_in).reshape(len(v), rows.rows, self.weights.shape[1])
+        size = (np.abs(s) @ np.abs(self._sorted_in)).reshape(c.shape)
+        slip = _UNIT * (len(rows.row) + rows.rows + 8) * np.abs(alpha)
         d = self.pairs[2]
-        slack = (rows.rows + 8) * _UNIT  # cancellation in the sums
-        size = np.abs(alpha)
-        phase = np.abs(alpha @ c) + slack * (size @ np.abs(c))
-        return phase, np.abs(alpha @ d) + slack * (size @ np.abs(d))
+        phase = np.abs(alpha @ c) + slip @ size
+        return phase, np.abs(alpha @ d) + slip @ self._pair_size
 
-    def rounding(self, v: Array) -> tuple[Array, Array]:
-        """Bounds of |error of F|, (B, R), and sums of moduli of dF/dv, (B, R, N).
+    @cached_property
+    def _pair_size(self) -> Array:
+        """Sums of moduli behind the pairs' coefficients, (R, P)."""
+        rows, (lengths, groups, d) = self.rows, self.pairs
+        size = np.zeros(d.shape)
+        for p, (j, g) in enumerate(zip(lengths, groups, strict=True)):
+            mine = (rows.length == j) & (self._grouped[1] == g)
+            np.add.at(size[:, p], rows.row[mine], np.abs(rows.coefficient[mine]))
+        return size
 
-        A phase that is a sum of several variables is itself rounded, in proportion to its parts.
+    def rounding(self, v: Array, products: int) -> tuple[Array, Array]:
+        """Bounds of |error of F|, (B, R), and of |error of dF/dv|, (B, R, N).
+
+        A phase that has to be computed from its variables is itself rounded, in proportion to its
+        parts. ``products``: of how many summands the Jacobian's products with a matrix are.
         """
         rows = self.rows
-        modulus, slopes = rows.moduli(v)
+        _, group, roundings = self._grouped
         parts = np.abs(v) @ self.weights  # (B, G)
-        several = (self.weights > 0).sum(axis=0)
-        slip = np.where(several > 1, several * parts, 0.0)[:, self._grouped[1]]
-        terms_in_row = np.bincount(rows.row, minlength=rows.rows)
+        terms_in_row = np.bincount(rows.row, minlength=rows.rows)[rows.row]
+        factor = terms_in_row + 8.0 + (roundings * parts)[:, group]
+        modulus, slopes = rows.moduli(v, factor + products + 2.0)
         gather = np.zeros((len(rows.row), rows.rows))
         gather[np.arange(len(rows.row)), rows.row] = 1.0
-        error = (modulus @ gather) * (terms_in_row + 8) + (modulus * slip) @ gather
-        return _UNIT * error, slopes
+        return _UNIT * ((modulus * factor) @ gather), _UNIT * slopes
+
+
+def _doubles(weight: float) -> bool:
+    """Whether multiplying by it rounds nothing: a power of two."""
+    return abs(math.frexp(weight)[0]) == 0.5

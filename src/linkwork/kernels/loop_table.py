@@ -159,12 +159,12 @@ class LoopTable:
         alpha = matrix[:, :, :count] - 1j * matrix[:, :, count : 2 * count]
         groups = self._groups
         phase, slide = groups.moduli(v, alpha)
-        error, slopes = groups.rounding(v)
+        error, slopes = groups.rounding(v, self.equations)
         a = np.abs(self._linear_matrix)
         line_error = (np.abs(v) @ a.T + np.abs(self.linear.constant)) * (
             _UNIT * (self.variables + 2)
         )
-        lines = np.broadcast_to(a, (len(v), *a.shape))
+        lines = np.broadcast_to(_UNIT * (self.equations + 4) * a, (len(v), *a.shape))
         lengths, group, _ = groups.pairs
         return Curvature(
             loop_rows=2 * count,
@@ -174,7 +174,7 @@ class LoopTable:
             pair_length=lengths,
             pair_group=group,
             rounding=np.concatenate([error, error, line_error], axis=1),
-            jacobian_size=np.concatenate([slopes, slopes, lines], axis=1),
+            jacobian_rounding=np.concatenate([slopes, slopes, lines], axis=1),
         )
 
     def _real_rows(self, v: Array) -> tuple[Array, Array]:

@@ -117,11 +117,11 @@ class PhasorRows:
         g = self._gather
         return value @ g, first @ g, second @ g
 
-    def moduli(self, v: Array) -> tuple[Array, Array]:
-        """|terms|, (B, T), and the sums of moduli of the terms of dF/dv, (B, R, N)."""
-        modulus = np.broadcast_to(np.abs(self.coefficient), (len(v), len(self.row)))
+    def moduli(self, v: Array, factor: Array) -> tuple[Array, Array]:
+        """|terms|, (B, T), and in dF/dv sums of moduli times each term's factor, (B, R, N)."""
+        modulus = np.broadcast_to(np.abs(self.coefficient), factor.shape)
         terms = np.abs(self._terms(v, modulus.astype(complex)))
         sliding = self._sliding
-        both = np.concatenate([terms, modulus[:, sliding]], axis=1)
+        both = np.concatenate([terms * factor, (modulus * factor)[:, sliding]], axis=1)
         slopes = both @ np.abs(self._slopes)
         return terms, slopes.reshape(len(v), self.rows, self.variables)

@@ -25,7 +25,8 @@ def lock_step(rows: Array) -> tuple[int, Array]:
         1 for the leading input.
     """
     inputs = rows.shape[1]
-    changes = rows[1] - rows[0] if len(rows) > 1 else np.zeros(inputs)
+    # from end to end, so that the rounding of one step is not multiplied by their number
+    changes = rows[-1] - rows[0] if len(rows) > 1 else np.zeros(inputs)
     moving = np.flatnonzero(changes)
     if not len(moving):
         return 0, np.eye(1, inputs)[0]

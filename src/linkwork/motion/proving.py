@@ -11,13 +11,15 @@ from linkwork.foundation.arrays import Array, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.proof import rounding_of_inputs
 from linkwork.numerics.proven_path import Beads, prove_path
 from linkwork.numerics.track import InputPath, Node, Rows, Track
 
 __all__ = ["RowProofs", "prove_rows", "unproved", "way_is_proved"]
 
-
 _FAR_FROM_SINGULAR = 1e5  # condition up to which a track's nodes must be proved
+_UNIT = np.finfo(float).eps / 2
+_TURN = 1e-9  # rad: an input this near to whole turns away from what was asked is the same one
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -48,9 +50,10 @@ def prove_rows(
     track: Track,
     t: Array,
     rows: Rows,
+    asked: Array,
     progress: Callable[[float], None] | None = None,
 ) -> RowProofs:
-    """Prove the rows solved at the values t (B,) of a track.
+    """Prove the rows solved at the values t (B,) of a track for the inputs ``asked`` (B, p).
 
     The rows and the track's nodes around them are sorted along the path; every position and every
     step between neighbours is proved, and a row is certified if proved steps join it to the
@@ -77,11 +80,14 @@ def prove_rows(
         return joined
 
     chosen = [track.nodes[k] for k in nodes]
+    apart = _apart(solver, rows.v[found], asked[found])
+    spread = [rounding_of_inputs(node.v[None, :], solver.unknowns)[0] for node in chosen]
     beads = Beads(
         t=all_t[order],
         v=gathered([node.v for node in chosen], rows.v),
         first=gathered([node.first for node in chosen], rows.rates.first),
         second=gathered([node.second for node in chosen], rows.rates.second),
+        spread=np.concatenate([np.stack(spread), apart])[order],
     )
     proof = prove_path(solver, path, beads, progress)
     place = np.empty(len(order), dtype=np.intp)
@@ -103,13 +109,29 @@ def prove_rows(
 
 
 def way_is_proved(solver: BlockSolver, path: InputPath, nodes: Sequence[Node]) -> bool:
-    """Whether every node of a track and every step between them is proved."""
+    """Whether every position and every step of a track is proved."""
     if not all(block.system.bends_boundedly for block in solver.blocks):
         return False
+    v = np.stack([node.v for node in nodes])
     beads = Beads(
         t=np.array([node.t for node in nodes]),
-        v=np.stack([node.v for node in nodes]),
+        v=v,
         first=np.stack([node.first for node in nodes]),
         second=np.stack([node.second for node in nodes]),
+        spread=rounding_of_inputs(v, solver.unknowns),
     )
     return bool(prove_path(solver, path, beads).connected_to(0).all())
+
+
+def _apart(solver: BlockSolver, v: Array, asked: Array) -> Array:
+    """How far the inputs meant may be from those in v, whole turns aside, (B, p).
+
+    The conversion of units, what a straight line rounds, and 2π, which is no float.
+    """
+    inputs = v[:, solver.unknowns :]
+    gap = np.abs(inputs - asked)
+    turns = np.round(gap / (2.0 * np.pi))
+    rest = np.abs(gap - turns * (2.0 * np.pi)) + _UNIT * 2.0 * (np.abs(inputs) + np.abs(asked))
+    turned = (turns > 0) & (rest < _TURN)
+    apart: Array = rounding_of_inputs(v, solver.unknowns) + np.where(turned, rest, gap)
+    return apart

@@ -198,7 +198,8 @@ def _from_row(
     path, track, t = place
     certificate = Certificate()
     if certify:
-        proofs = prove_rows(solver, path, track, np.array([t]), rows)
+        asked = (target * model.input_scale)[None, :]
+        proofs = prove_rows(solver, path, track, np.array([t]), rows, asked)
         proved = bool(np.isfinite(proofs.radius[0]))
         certificate = Certificate(
             certification=Certification.of_code(int(proofs.code[0])),

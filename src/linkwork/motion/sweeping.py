@@ -83,10 +83,11 @@ def sweep(
     path = InputPath(origin=rows[0] - rate * rows[0, lead], rate=rate)
     scale = leading_scale(model, lead)
     t = rows[:, lead]
-    anchor, led = _onto_path(model, path, start, t, lead)
-    if anchor is None:
+    entry = _onto_path(model, path, start, t, lead, certify)
+    if entry is None:
         message = "no row of the table could be reached from the guess's own input values"
         return _without_start(model, rows, replace(start, message=message))
+    anchor, entered = entry
     report = _Report(progress, anchor.t, float(t.min()), float(t.max()))
     provable = all(block.system.bends_boundedly for block in model.compiled.solver.blocks)
     tries = (BOLD, None) if certify and provable else (None,)
@@ -96,9 +97,9 @@ def sweep(
         solved = _solve_rows(model, path, track, placed, scale, report, certify)
         if care is None or not _doubtful(solved, placed):
             break
-    if not led:
-        certified = solved.proofs.code == Certification.CERTIFIED.code
-        solved.proofs.code[certified] = Certification.MOTION_NOT_PROVED.code
+    if not entered:
+        proved = solved.proofs.code == Certification.CERTIFIED.code
+        solved.proofs.code[proved] = Certification.MOTION_NOT_PROVED.code
     limits = limits_of(model, path, track, lead)
     _mark_missing(solved, track, t, np.isnan(placed), limits)
     return _motion(model, solved, limits, start)
@@ -138,11 +139,11 @@ class _Report:
 
 
 def _onto_path(
-    model: Model, path: InputPath, start: Start, t: Array, lead: int
-) -> tuple[Node | None, bool]:
-    """The start as a node of the table's path, and whether the way onto it is proved.
+    model: Model, path: InputPath, start: Start, t: Array, lead: int, certify: bool
+) -> tuple[Node, bool] | None:
+    """The start as a node of the table's path, and whether the way to it is proved.
 
-    Several inputs are first led from the guess's values to a row of the table.
+    Several inputs are first led onto the path.
     """
     solver = model.compiled.solver
     own = model.start_inputs
@@ -154,21 +155,24 @@ def _onto_path(
     nearest = np.argsort(distance, kind="stable")
     spread = np.linspace(0, len(t) - 1, min(len(t), _ENTRIES)).astype(np.intp)
     for row in (nearest[0], *nearest[spread[1:]]):
-        node, proved = _led_to(model, path, start, float(t[row]))
-        if node is not None:
-            return node, proved
-    return None, False
+        entry = _led_to(model, path, start, float(t[row]), certify)
+        if entry is not None:
+            return entry
+    return None
 
 
-def _led_to(model: Model, path: InputPath, start: Start, t: float) -> tuple[Node | None, bool]:
+def _led_to(
+    model: Model, path: InputPath, start: Start, t: float, certify: bool
+) -> tuple[Node, bool] | None:
     """The start led to one row of the table along the straight line between their inputs."""
     solver = model.compiled.solver
     way = InputPath(origin=model.start_inputs, rate=path.at(t) - model.start_inputs)
     first = node_at(solver, way, 0.0, start.v)
     nodes, end = follow(solver, way, first, 1.0, 1.0)
     if end is not None:
-        return None, False
-    return node_at(solver, path, t, nodes[-1].v), way_is_proved(solver, way, [first, *nodes])
+        return None
+    entered = certify and way_is_proved(solver, way, [first, *nodes])
+    return node_at(solver, path, t, nodes[-1].v), entered
 
 
 def _covering(
@@ -239,7 +243,15 @@ def _solve_rows(
         residual[chunk], condition[chunk] = rows.residual, rows.rates.condition
         report.solved((begin + len(chunk)) / len(there))
     if certify and pieces:
-        found = prove_rows(solver, path, track, placed[there], joined_rows(pieces), report.proved)
+        found = prove_rows(
+            solver,
+            path,
+            track,
+            placed[there],
+            joined_rows(pieces),
+            model.rows[there],
+            report.proved,
+        )
         proofs.code[there], proofs.radius[there] = found.code, found.radius
         proofs.unique[there] = found.unique
     return _Solved(

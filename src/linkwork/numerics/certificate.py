@@ -80,7 +80,7 @@ def bounds(system: System, v: Array, jacobian: Array, matrix: Array, known: Arra
     turned = known @ bend.weights[n:]  # (B, G): how far the known angles turn each phase
     own = w @ bend.weights[:n]  # (G,): how far unknowns of norm 1 turn it
     pairs = _Pairs(bend, w, known)
-    loss = (n + 10 + jacobian.shape[1]) * _UNIT * (size @ bend.jacobian_size)
+    loss = size @ bend.jacobian_rounding
 
     residual = system.residual(v)
     y = np.abs(_apply(matrix, residual))
@@ -146,6 +146,7 @@ def _as_a_whole(
     """The same by the moduli alone; better where a phase turns far."""
     n, loops = matrix.shape[1], bend.loop_rows
     lines = np.abs(matrix[:, :, loops:] @ jacobian[:, loops:, n:])
+    lines += np.abs(matrix[:, :, loops:]) @ bend.jacobian_rounding[:, loops:, n:]
     change = _apply(bend.phase, turned) + _apply(pairs.known, pairs.spread)
     return change + _apply(lines, known)
 
@@ -173,7 +174,7 @@ def radii(b: Bounds, weights: Array) -> Radii:
         square = room**2 - 2.0 * whole * y * _SLACK
         holds = (room > 0.0) & (square > 0.0)
         root = np.sqrt(square)
-        # r- without cancellation; a system without curvature has r- = Y/(1 - Z0) and no r+
+        # r- without cancellation; a system without curvature has r- = Y/(1 - Z0) and r+ = ∞
         exists = np.where(holds, 2.0 * y / (room + root) * _SLACK, np.inf)
         unique = np.where(holds, np.minimum((room + root) / whole, rho) / _SLACK, 0.0)
     with np.errstate(all="ignore"):

@@ -18,22 +18,31 @@ __all__ = ["Beads", "ProvenPath", "prove_path"]
 _CONVERGED = Status.CONVERGED.code
 _ROUNDS = 45  # halvings of one step before it counts as not proved
 _MOST = 200_000  # steps looked at in one round
+_UNIT = np.finfo(float).eps / 2
 _PIECE = 1024  # positions proved together: arrays that fit the cache
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Beads:
-    """Positions along a path with their derivatives by t: t (K,), the others (K, N)."""
+    """Positions along a path with their derivatives by t: t (K,), the others (K, N).
+
+    ``spread`` (K, p): how far the inputs may be from those in v, in their own units.
+    """
 
     t: Array
     v: Array
     first: Array
     second: Array
+    spread: Array
 
     def take(self, index: IndexArray | slice) -> Beads:
         """Some of them, in the order of ``index``."""
         return Beads(
-            t=self.t[index], v=self.v[index], first=self.first[index], second=self.second[index]
+            t=self.t[index],
+            v=self.v[index],
+            first=self.first[index],
+            second=self.second[index],
+            spread=self.spread[index],
         )
 
 
@@ -99,18 +108,18 @@ def _behind_first(p: Proof) -> Proof:
 
 def _piece(solver: BlockSolver, path: InputPath, beads: Beads) -> ProvenPath:
     parts = solver.linearise(beads.v)
-    position = prove(solver, beads.v, rounding_of_inputs(beads.v, solver.unknowns), parts)
+    position = prove(solver, beads.v, beads.spread, parts)
     count = len(beads.t)
     if count < 2:
         return ProvenPath(position=position, linked=np.zeros(0, dtype=bool))
     left, right = beads.take(slice(None, -1)), beads.take(slice(1, None))
-    linked = _steps(solver, path, left, right, position.exists[1:], _cut(parts, slice(None, -1)))
+    linked = _steps(solver, left, right, position.exists[1:], _cut(parts, slice(None, -1)))
     linked &= position.holds[1:] & position.holds[:-1]
     open_ = np.flatnonzero(~linked & position.holds[1:] & position.holds[:-1])
     if len(open_):
         back = _cut(parts, open_ + 1)
         arrival = position.exists[open_]
-        linked[open_] = _steps(solver, path, right.take(open_), left.take(open_), arrival, back)
+        linked[open_] = _steps(solver, right.take(open_), left.take(open_), arrival, back)
         open_ = open_[~linked[open_]]
     if len(open_):
         linked[open_] = _halved(
@@ -128,17 +137,17 @@ def _cut(parts: Sequence[Linearised], index: IndexArray | slice) -> list[Lineari
 
 def _steps(
     solver: BlockSolver,
-    path: InputPath,
     start: Beads,
     goal: Beads,
     arrival: Array,
     linear: Sequence[Linearised] | None = None,
 ) -> BoolArray:
-    """Which steps are proved from their start."""
-    spread = np.abs(goal.t - start.t)[:, None] * np.abs(path.rate)
-    spread = spread + 2.0 * rounding_of_inputs(
-        np.maximum(np.abs(start.v), np.abs(goal.v)), solver.unknowns
-    )
+    """Which steps are proved from their start, for all inputs from those of one end to the other's.
+
+    The inputs are taken from the positions: those of a row may differ from the path's by rounding.
+    """
+    spread = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
+    spread += start.spread + goal.spread
     reach = prove(solver, start.v, spread, linear)
     return links_hold(solver, start.v, goal.v, reach, arrival)
 
@@ -151,7 +160,7 @@ def _halved(
     proved = np.ones(len(left.t), dtype=bool)
     for _ in range(_ROUNDS):
         middle, found = _between(solver, path, left, right)
-        proof = prove(solver, middle.v, rounding_of_inputs(middle.v, solver.unknowns))
+        proof = prove(solver, middle.v, middle.spread)
         good = found & proof.holds
         proved[owner[~good]] = False
         keep = np.flatnonzero(good & proved[owner])
@@ -159,8 +168,8 @@ def _halved(
         halfway, arrival, owner = proof.exists[keep], arrival[keep], owner[keep]
         if not len(keep):
             return proved
-        first = _steps(solver, path, left, middle, halfway)
-        second = _steps(solver, path, middle, right, arrival)
+        first = _steps(solver, left, middle, halfway)
+        second = _steps(solver, middle, right, arrival)
         left = _joined(left.take(np.flatnonzero(~first)), middle.take(np.flatnonzero(~second)))
         right = _joined(middle.take(np.flatnonzero(~first)), right.take(np.flatnonzero(~second)))
         arrival = np.concatenate([halfway[~first], arrival[~second]])
@@ -179,6 +188,7 @@ def _joined(a: Beads, b: Beads) -> Beads:
         v=np.concatenate([a.v, b.v]),
         first=np.concatenate([a.first, b.first]),
         second=np.concatenate([a.second, b.second]),
+        spread=np.concatenate([a.spread, b.spread]),
     )
 
 
@@ -193,5 +203,6 @@ def _between(
     guess[:, solver.unknowns :] = path.at(t)
     done = solver.solve(guess)
     rates: Rates = solver.rates(done.v, path.rate)
-    beads = Beads(t=t, v=done.v, first=rates.first, second=rates.second)
+    spread = rounding_of_inputs(done.v, solver.unknowns)
+    beads = Beads(t=t, v=done.v, first=rates.first, second=rates.second, spread=spread)
     return beads, done.status == _CONVERGED

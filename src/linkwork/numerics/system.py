@@ -83,5 +83,5 @@ class Curvature(Protocol):
         """(B, m) bounds of the error of computing F."""
 
     @property
-    def jacobian_size(self) -> Array:
-        """(B, m, N) sums of the moduli of the terms of dF/dv."""
+    def jacobian_rounding(self) -> Array:
+        """(B, m, N) bounds of the error of computing dF/dv and its products with m numbers."""

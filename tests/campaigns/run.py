@@ -1,0 +1,66 @@
+"""Campaigns by name, split over processes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from time import perf_counter
+
+from tests.campaigns.certificates import judge
+from tests.campaigns.motion import sweep_campaign
+from tests.campaigns.positions import library_positions, random_position
+from tests.campaigns.steps import judge_steps
+
+__all__ = ["CAMPAIGNS", "Report", "run"]
+
+_PART = 50
+
+
+@dataclass(frozen=True)
+class Report:
+    """Counts and false claims of one campaign."""
+
+    counts: Counter[str]
+    false: tuple[str, ...]
+    seconds: float
+
+
+def _certificates(part: int) -> tuple[Counter[str], list[str]]:
+    first = part * _PART
+    random = [random_position(k) for k in range(first, first + _PART - 10)]
+    verdict = judge([*random, *library_positions(10, part)], part)
+    return verdict.counts, verdict.false
+
+
+def _steps(part: int) -> tuple[Counter[str], list[str]]:
+    verdict = judge_steps(_PART, part)
+    return verdict.counts, verdict.false
+
+
+def _motion(part: int) -> tuple[Counter[str], list[str]]:
+    tally = sweep_campaign(range(part * _PART, (part + 1) * _PART))
+    return tally.counts, tally.wrong
+
+
+#: What one part does, and how many things the whole campaign looks at.
+CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {
+    "certificates": (_certificates, 10_000),
+    "steps": (_steps, 1_000),
+    "motion": (_motion, 10_000),
+}
+
+
+def run(name: str, count: int | None = None) -> Report:
+    """Run a campaign on all cores; ``count`` replaces its usual size."""
+    work, usual = CAMPAIGNS[name]
+    parts = range(-(-(count or usual) // _PART))
+    begin = perf_counter()
+    counts: Counter[str] = Counter()
+    false: list[str] = []
+    with ProcessPoolExecutor() as pool:
+        for part_counts, part_false in pool.map(work, parts):
+            counts += part_counts
+            false += part_false
+    return Report(counts, tuple(false), perf_counter() - begin)
