@@ -42,7 +42,7 @@ class Notation(Protocol):
 
 
 def _compound(angle: str) -> bool:
-    return " " in angle or angle.startswith("-")
+    return " " in angle or "·" in angle or angle.startswith("-")
 
 
 class PlainText:

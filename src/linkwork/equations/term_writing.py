@@ -46,8 +46,8 @@ class TermWriter:
         for symbol, weight in term.phase:
             w = weight * sign
             name = self.notation.name(self.names[symbol])
-            factor = "" if abs(w) == 1 else f"{abs(w):g}"
-            parts.append(Signed(-1 if w < 0 else 1, f"{factor}{name}"))
+            shown = name if abs(w) == 1 else self.notation.product([f"{abs(w):g}", name])
+            parts.append(Signed(-1 if w < 0 else 1, shown))
         if with_turn and term.turn:
             turn = term.turn * sign
             parts.append(Signed(-1 if turn < 0 else 1, self.notation.degrees(abs(turn))))
