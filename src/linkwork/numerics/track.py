@@ -144,6 +144,7 @@ def follow(
     scale: float,
     options: TrackOptions | None = None,
     progress: Progress | None = None,
+    until: Callable[[Node, Node], bool] | None = None,
 ) -> tuple[list[Node], End | None]:
     """Follow the branch of ``start`` to ``t = goal``.
 
@@ -151,11 +152,13 @@ def follow(
     ----------
     scale : float
         Natural size of t: one radian for an angle, a length of the mechanism for a length.
+    until : callable, optional
+        Told every step's two nodes; the track is finished where it returns true.
 
     Returns
     -------
     nodes, end
-        The nodes after ``start`` in the order reached; ``None`` if the goal was reached.
+        The nodes after ``start`` in the order reached; ``None`` if it was not cut short.
     """
     opt = options or TrackOptions()
     quick = replace(
@@ -183,10 +186,10 @@ def follow(
                 return nodes, End(reached=here.t, failed=failed_at, status=status)
             continue
         nodes.append(following)
-        here = following
+        before, here = here, following
         if progress is not None:
             progress(here.t)
-        if here.t == goal:
+        if here.t == goal or (until is not None and until(before, here)):
             return nodes, None
         h *= min(2.0, max(0.5, correction or 2.0))
     return nodes, End(reached=here.t, failed=goal, status=Status.LOST)

@@ -1,0 +1,431 @@
+"""Following a curve of positions beyond dead points, by changing which variable leads.
+
+The curve F(x, t) = 0 turns back in t at a dead point, where dx/dt is infinite. With one of the fast
+unknowns in the lead it is an ordinary branch again (local parametrisation: Rheinboldt & Burkardt
+1983, doi:10.1145/357456.357460). A curve is therefore a chain of legs, each followed and proved by
+the same means as a sweep; only a crossing of curves stops it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.foundation.status import Status
+from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.track import BOLD, InputPath, Node, TrackOptions, follow, node_at
+
+__all__ = [
+    "Curve",
+    "CurveOptions",
+    "Led",
+    "Leads",
+    "Leg",
+    "TurningPoint",
+    "trace",
+    "turning_points",
+]
+
+_CONVERGED = Status.CONVERGED.code
+_SAME = 1e-6  # weighted distance below which two positions at one input can be the same
+_UNIT = np.finfo(float).eps
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Led:
+    """The equations with the variable ``lead`` known.
+
+    ``order`` (N,): the variables of the whole in the solver's order, the leading one last.
+    """
+
+    lead: int
+    solver: BlockSolver
+    order: IndexArray
+
+    @property
+    def path(self) -> InputPath:
+        """The leading variable is its own path."""
+        return InputPath(origin=np.zeros(1), rate=np.ones(1))
+
+    def node(self, v: Array) -> Node:
+        """The node of a position (N,) given in the whole's order."""
+        return node_at(self.solver, self.path, float(v[self.lead]), v[self.order])
+
+    def whole(self, part: Array) -> Array:
+        """Variables (..., N) of the solver's order in the whole's order."""
+        found = np.empty_like(part)
+        found[..., self.order] = part
+        return found
+
+
+class Leads(Protocol):
+    """Equations that can be solved with any variable in the lead."""
+
+    parameter: int
+    scale: Array
+    turns: BoolArray
+
+    def by(self, lead: int) -> Led | None:
+        """The equations led by one variable; ``None`` if it does not determine the others."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurveOptions:
+    """When another variable takes the lead, and when a curve is given up.
+
+    ``fast``: the leader is replaced where another variable moves so many times faster [weighted].
+    ``slow``: the parameter leads again where nothing moves faster than so many times its rate.
+    ``far``: a length so many times the mechanism's own has run to infinity.
+    ``most_turns``: of the parameter, after which the curve counts as never closing.
+    """
+
+    fast: float = 6.0
+    slow: float = 3.0
+    far: float = 1e4
+    most_turns: int = 60
+    most_legs: int = 2000
+    track: TrackOptions = field(default_factory=lambda: BOLD)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Leg:
+    """A piece of a curve with one leader; nodes in the order traced, in the solver's order."""
+
+    led: Led
+    nodes: tuple[Node, ...]
+
+    @property
+    def v(self) -> Array:
+        """(K, N) in the whole's order."""
+        return self.led.whole(np.stack([node.v for node in self.nodes]))
+
+    @property
+    def first(self) -> Array:
+        """Derivatives by the leader, (K, N), in the whole's order."""
+        return self.led.whole(np.stack([node.first for node in self.nodes]))
+
+    @property
+    def second(self) -> Array:
+        """Second derivatives by the leader, (K, N)."""
+        return self.led.whole(np.stack([node.second for node in self.nodes]))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Curve:
+    """Legs in the order traced and why the curve ends.
+
+    ``passes``: the positions (N,) at which the parameter came by its starting value, whole turns
+    aside, each with the number of the leg that it ends.
+    """
+
+    legs: tuple[Leg, ...]
+    end: CircuitEnd
+    passes: tuple[tuple[int, Array], ...]
+
+    @property
+    def last(self) -> tuple[Led, Node]:
+        """Where it ends."""
+        leg = self.legs[-1]
+        return leg.led, leg.nodes[-1]
+
+
+def trace(leads: Leads, start: Array, side: float, options: CurveOptions | None = None) -> Curve:
+    """Follow the curve through a position until it closes or ends.
+
+    Parameters
+    ----------
+    start : (N,)
+        A position at which the parameter can lead.
+    side : float
+        +1 to begin with the parameter growing, -1 falling.
+    """
+    return _Tracer(leads, start, side, options or CurveOptions()).run()
+
+
+class _Tracer:
+    """The state of one trace: the position reached and the direction of travel."""
+
+    def __init__(self, leads: Leads, start: Array, side: float, options: CurveOptions) -> None:
+        self.leads, self.start, self.options = leads, start, options
+        self.here = start
+        self.heading = np.zeros(len(start))  # direction of travel, only its signs count
+        self.heading[leads.parameter] = side
+        self.legs: list[Leg] = []
+        self.passes: list[tuple[int, Array]] = []
+        own = self._own()
+        if own is None:
+            raise ValueError("the parameter of a curve must determine the position")
+        self.own = own
+
+    def _own(self) -> Led | None:
+        return self.leads.by(self.leads.parameter)
+
+    def run(self) -> Curve:
+        """Leg after leg."""
+        opt, stuck = self.options, 0
+        avoid: int | None = None
+        for _ in range(opt.most_legs):
+            led, node = self._leader(avoid)
+            if led is None:
+                return self._ended(CircuitEnd.SINGULAR)
+            leg, end = self._leg(led, node)
+            moved = len(leg.nodes) > 1
+            if moved:
+                self.legs.append(leg)
+                self._arrive(leg)
+            if end is not None:
+                stuck = 0 if moved else stuck + 1
+                avoid = led.lead
+                if stuck > 1:
+                    return self._ended(CircuitEnd.SINGULAR)
+                continue
+            stuck, avoid = 0, None
+            ending = self._ending()
+            if ending is not None:
+                return self._ended(ending)
+        return self._ended(CircuitEnd.NEVER_CLOSES)
+
+    def _ended(self, end: CircuitEnd) -> Curve:
+        return Curve(legs=tuple(self.legs), end=end, passes=tuple(self.passes))
+
+    def _arrive(self, leg: Leg) -> None:
+        last = leg.nodes[-1]
+        self.here = leg.led.whole(last.v)
+        sign = math.copysign(1.0, last.t - leg.nodes[0].t)
+        self.heading = sign * leg.led.whole(last.first)
+
+    def _leader(self, avoid: int | None) -> tuple[Led | None, Node | None]:
+        """The parameter where it is fast enough, else the fastest variable that determines all."""
+        scale, parameter = self.leads.scale, self.leads.parameter
+        speed = np.abs(self.heading) / scale
+        if not self.legs and avoid is None:
+            return self.own, self.own.node(self.here)
+        by_speed = [int(k) for k in np.argsort(-speed, kind="stable")]
+        if speed[parameter] * self.options.slow >= speed.max():
+            by_speed.insert(0, parameter)
+        for lead in by_speed:
+            led = self.leads.by(lead) if lead != avoid else None
+            if led is not None and speed[lead] > 0.0:
+                node = led.node(self.here)
+                if np.isfinite(node.second).all():
+                    return led, node
+        return None, None
+
+    def _leg(self, led: Led, node: Node) -> tuple[Leg, object]:
+        """One leg: up to a change of leader, a pass of the starting value, or an end."""
+        opt = self.options
+        parameter, scale = self.leads.parameter, self.leads.scale
+        place = np.empty(len(scale), dtype=np.intp)
+        place[led.order] = np.arange(len(scale))
+        sign = math.copysign(1.0, self.heading[led.lead])
+        weights = scale[led.order]
+        own = led.lead == parameter
+        passed: list[tuple[float, float, float]] = []
+
+        def done(before: Node, after: Node) -> bool:
+            speed = np.abs(after.first) / weights
+            if not own:
+                passed.extend(self._planes(place[parameter], before, after))
+                if passed or speed[place[parameter]] * opt.slow >= speed.max():
+                    return True
+            if bool((np.abs(after.v / weights)[~self.leads.turns[led.order]] > opt.far).any()):
+                return True
+            return bool(speed.max() > opt.fast * speed[-1])
+
+        goal = node.t + sign * 8.0 * weights[-1]
+        if own:
+            goal = self._next_plane(node.t, sign)
+        nodes, end = follow(
+            led.solver, led.path, node, goal, float(weights[-1]), opt.track, until=done
+        )
+        chain = [node, *nodes]
+        if passed:
+            crossing = self._crossing(led, chain[-2], chain[-1], passed[0])
+            if crossing is not None:
+                chain[-1] = crossing
+                self.passes.append((len(self.legs), led.whole(crossing.v)))
+        elif own and nodes and nodes[-1].t == goal:
+            self.passes.append((len(self.legs), led.whole(nodes[-1].v)))
+        return Leg(led=led, nodes=tuple(chain)), end
+
+    @property
+    def _period(self) -> float:
+        return 2.0 * np.pi if self.leads.turns[self.leads.parameter] else np.inf
+
+    def _next_plane(self, t: float, sign: float) -> float:
+        """The next value of the parameter that equals the starting one, whole turns aside."""
+        home, period = float(self.start[self.leads.parameter]), self._period
+        if not np.isfinite(period):
+            if (home - t) * sign > 0.0:
+                return home
+            return t + sign * 1e3 * float(self.leads.scale[self.leads.parameter])
+        turns = (t - home) / period
+        nearest = round(turns)
+        if abs(turns - nearest) < 1e-12:
+            turns = nearest
+        following = math.floor(turns) + 1 if sign > 0 else math.ceil(turns) - 1
+        return home + following * period
+
+    def _planes(self, place: int, before: Node, after: Node) -> list[tuple[float, float, float]]:
+        """The first pass of the starting value (whole turns aside) between two nodes, if any.
+
+        The value, and the piece of the step (as fractions) in which it is passed: where the
+        parameter turns back within the step, it may pass on the way there or on the way back.
+        """
+        ends = (before.v[place], before.first[place], after.v[place], after.first[place])
+        h = after.t - before.t
+        cuts = [0.0, 1.0]
+        if ends[1] * ends[3] < 0.0:
+            cuts.insert(1, ends[1] / (ends[1] - ends[3]))
+        values = [_hermite(s, h, *ends) for s in cuts]
+        for s0, s1, t0, t1 in zip(cuts, cuts[1:], values, values[1:], strict=False):
+            if t0 == t1:
+                continue
+            following = self._next_plane(float(t0), math.copysign(1.0, t1 - t0))
+            if (following - t0) * (following - t1) <= 0.0:
+                return [(float(following), s0, s1)]
+        return []
+
+    def _crossing(
+        self, led: Led, before: Node, after: Node, plane: tuple[float, float, float]
+    ) -> Node | None:
+        """The position in a piece of a step at which the parameter has a given value."""
+        ends = [led.whole(part) for part in (before.v, before.first, after.v, after.first)]
+        p, h = self.leads.parameter, after.t - before.t
+        value, s0, s1 = plane
+        rising = _hermite(s1, h, *ends)[p] > _hermite(s0, h, *ends)[p]
+        for _ in range(60):
+            s = 0.5 * (s0 + s1)
+            if (_hermite(s, h, *ends)[p] < value) == rising:
+                s0 = s
+            else:
+                s1 = s
+        guess = _hermite(0.5 * (s0 + s1), h, *ends)
+        guess[p] = value
+        own = self.own
+        found = own.solver.solve(guess[own.order][None, :])
+        if found.status[0] != _CONVERGED:
+            return None
+        v = own.whole(found.v[0])
+        if np.abs((v - guess) / self.leads.scale).max() > 0.2:
+            return None
+        return led.node(v)
+
+    def _ending(self) -> CircuitEnd | None:
+        v, scale = self.here, self.leads.scale
+        lengths = ~self.leads.turns
+        if np.abs(v / scale)[lengths].max(initial=0.0) > self.options.far:
+            return CircuitEnd.RUNS_TO_INFINITY
+        if self.passes and self.passes[-1][0] == len(self.legs) - 1:
+            if same_position(self.leads, v, self.start):
+                return CircuitEnd.CLOSED
+        if abs(v - self.start)[self.leads.parameter] > self.options.most_turns * 2.0 * np.pi:
+            return CircuitEnd.NEVER_CLOSES
+        return None
+
+
+def _hermite(s: float, h: float, v0: Array, d0: Array, v1: Array, d1: Array) -> Array:
+    """The cubic through both ends of a step, at the fraction s of it."""
+    rise = v1 - v0
+    bend = 3.0 * rise - h * (2.0 * d0 + d1) + s * (h * (d0 + d1) - 2.0 * rise)
+    value: Array = v0 + s * (h * d0 + s * bend)
+    return value
+
+
+def apart(leads: Leads, a: Array, b: Array) -> Array:
+    """b - a with angles reduced to half a turn, (..., N)."""
+    gap: Array = b - a
+    turned = gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi))
+    return np.where(leads.turns, turned, gap)
+
+
+def same_position(leads: Leads, a: Array, b: Array) -> bool:
+    """Whether two positions agree, whole turns aside."""
+    return bool(np.abs(apart(leads, a, b) / leads.scale).max() < _SAME)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TurningPoint:
+    """Where the parameter turns back on a curve: a dead point.
+
+    ``v`` (N,) the position; ``bracket`` of the parameter around it; ``direction`` (N,) how the
+    variables move through it (weighted norm 1); ``leg``, ``after``: behind which node.
+    """
+
+    t: float
+    bracket: tuple[float, float]
+    v: Array
+    direction: Array
+    located: bool
+    leg: int
+    after: int
+
+
+def turning_points(leads: Leads, curve: Curve) -> Iterator[TurningPoint]:
+    """The dead points on a curve, in its order.
+
+    The parameter's rate by the leader changes sign between two nodes; Newton-Raphson on that rate,
+    kept inside the sign change, finds where.
+    """
+    p = leads.parameter
+    for number, leg in enumerate(curve.legs):
+        if leg.led.lead == p:
+            continue
+        rate = leg.first[:, p]
+        for k in np.flatnonzero(rate[:-1] * rate[1:] < 0.0):
+            found = _refined(leads, leg, int(k))
+            yield replace(found, leg=number)
+
+
+def _refined(leads: Leads, leg: Leg, k: int) -> TurningPoint:
+    led, p = leg.led, leads.parameter
+    place = int(np.flatnonzero(led.order == p)[0])
+    low, high = leg.nodes[k], leg.nodes[k + 1]
+    here = low if abs(low.first[place]) < abs(high.first[place]) else high
+    located, step = False, np.inf
+    for _ in range(60):
+        step = -here.first[place] / here.second[place] if here.second[place] else np.inf
+        s = here.t + step
+        edges = sorted((low.t, high.t))
+        if not edges[0] < s < edges[1]:
+            s = 0.5 * (low.t + high.t)
+            step = s - here.t
+        if abs(step) <= 4.0 * _UNIT * max(1.0, abs(s)):
+            located = True
+            break
+        guess = here.v + step * here.first + 0.5 * step * step * here.second
+        guess[-1] = s
+        found = led.solver.solve(guess[None, :])
+        if found.status[0] != _CONVERGED:
+            break
+        last = here
+        here = node_at(led.solver, led.path, s, found.v[0])
+        if here.first[place] * low.first[place] > 0.0:
+            low = here
+        else:
+            high = here
+        if here.first[place] == 0.0:
+            located = True
+            break
+        if abs(here.first[place]) >= abs(last.first[place]) and abs(step) < 1e-9:
+            located = True  # rounding
+            break
+    v = led.whole(here.v)
+    direction = led.whole(here.first)
+    # t is quadratic in the leader here, so the leader's last step counts squared
+    error = abs(here.second[place]) * step * step + 4.0 * _UNIT * max(1.0, abs(float(v[p])))
+    return TurningPoint(
+        t=float(v[p]),
+        bracket=(float(v[p] - error), float(v[p] + error)),
+        v=v,
+        direction=direction / np.abs(direction / leads.scale).max(),
+        located=located,
+        leg=0,
+        after=k,
+    )

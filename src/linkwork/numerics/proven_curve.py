@@ -1,0 +1,103 @@
+"""Proof that a traced curve is one curve: every leg, every change of leader, and its closing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.numerics.curve import Curve, Led, Leads, Leg, apart
+from linkwork.numerics.proof import prove
+from linkwork.numerics.proven_path import Beads, prove_path
+
+__all__ = ["ProvenCurve", "prove_curve", "same_solution"]
+
+_UNIT = np.finfo(float).eps / 2
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ProvenCurve:
+    """``legs`` (L,): every step of the leg. ``joints`` (L-1,): from a leg to the next.
+    ``closed``: that the last position is the first one again.
+    """
+
+    legs: BoolArray
+    joints: BoolArray
+    closed: bool
+
+    @property
+    def whole(self) -> bool:
+        """Whether the curve is proved from its first to its last position."""
+        return bool(self.legs.all() and self.joints.all())
+
+
+def prove_curve(leads: Leads, curve: Curve) -> ProvenCurve:
+    """Prove every step of a curve, as far as it goes."""
+    legs = np.zeros(len(curve.legs), dtype=bool)
+    joints = np.zeros(max(len(curve.legs) - 1, 0), dtype=bool)
+    if all(_provable(leg.led) for leg in curve.legs):
+        legs[:] = [_leg_holds(leg) for leg in curve.legs]
+        for k, (leg, following) in enumerate(zip(curve.legs, curve.legs[1:], strict=False)):
+            joints[k] = same_solution(leg.led, following.led, leg.v[-1])
+    own = leads.by(leads.parameter)
+    closed = False
+    if curve.end.closed and own is not None and _provable(own):
+        last = curve.legs[-1]
+        closed = same_solution(last.led, own, last.v[-1])
+        closed = closed and _meets(leads, own, curve.legs[0].v[0], last.v[-1])
+    return ProvenCurve(legs=legs, joints=joints, closed=closed)
+
+
+def _provable(led: Led) -> bool:
+    return all(block.system.bends_boundedly for block in led.solver.blocks)
+
+
+def _leg_holds(leg: Leg) -> bool:
+    nodes = leg.nodes
+    sign = np.sign(nodes[-1].t - nodes[0].t) or 1.0
+    beads = Beads(
+        t=sign * np.array([node.t for node in nodes]),
+        v=np.stack([node.v for node in nodes]),
+        first=sign * np.stack([node.first for node in nodes]),
+        second=np.stack([node.second for node in nodes]),
+        spread=np.zeros((len(nodes), 1)),
+    )
+    path = leg.led.path
+    backwards = type(path)(origin=path.origin, rate=sign * path.rate)
+    return bool(prove_path(leg.led.solver, backwards, beads).connected_to(0).all())
+
+
+def same_solution(one: Led, other: Led, v: Array) -> bool:
+    """Whether the position that one leader proves near v (N,) is the one that another proves.
+
+    The true position of the first may differ from v in the other's leader, by at most its radius
+    of existence; the second is proved for all those values, and alone in its ball.
+    """
+    if one.lead == other.lead:
+        return True
+    nothing = np.zeros((1, 1))
+    first = prove(one.solver, v[one.order][None, :], nothing)
+    if not first.holds[0]:
+        return False
+    radius = float(first.radius[0])
+    weight = float(other.solver.variable_scale[-1])
+    second = prove(other.solver, v[other.order][None, :], nothing + radius * weight)
+    return bool(second.holds[0] and radius < second.alone_within[0])
+
+
+def _meets(leads: Leads, own: Led, start: Array, end: Array) -> bool:
+    """Whether two proved positions at one value of the parameter are one, whole turns aside."""
+    gap = apart(leads, start, end)
+    p = leads.parameter
+    # whole turns are no floats: what is left of them, and their rounding, may be off
+    left = abs(float(gap[p])) + 8.0 * _UNIT * max(abs(float(end[p])), abs(float(start[p])))
+    near = np.array([[left]])
+    first = prove(own.solver, start[own.order][None, :], near)
+    last = prove(own.solver, end[own.order][None, :], near)
+    if not (first.holds[0] and last.holds[0]):
+        return False
+    distance = float(np.abs(gap / leads.scale).max()) + 8.0 * _UNIT * float(
+        np.abs(end / leads.scale).max()
+    )
+    return bool(distance + last.radius[0] < first.alone_within[0])
