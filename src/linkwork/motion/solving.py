@@ -11,6 +11,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
+from linkwork.motion.failing import another_root, beyond_reach
 from linkwork.motion.limits import limits_of
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
@@ -20,7 +21,8 @@ from linkwork.motion.start import Start, first_position
 from linkwork.motion.tracking import leading_scale, track_to, turns_freely
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.track import InputPath, Rows, Track, node_at, rows_on_track
-from linkwork.results.motion import Limit, Series
+from linkwork.results.failure import Failure
+from linkwork.results.motion import Series
 from linkwork.results.position import Certificate, NewtonTrail, Position
 
 __all__ = ["solve"]
@@ -73,7 +75,7 @@ def solve(
     inputs = target * model.input_scale
     start = first_position(model, inputs if from_guess else model.start_inputs, options, with_steps)
     if not start.status.ok:
-        position = _failed(model, target, start.status, start.message, start)
+        position = _failed(model, target, start.status, start.failure, start)
     elif from_guess or np.array_equal(inputs, model.start_inputs):
         position = _arrived(model, target, start, certify)
     else:
@@ -109,6 +111,7 @@ class _Evidence:
     condition: float
     certificate: Certificate
     trails: tuple[NewtonTrail, ...]
+    failure: Failure | None
 
 
 def _arrived(model: Model, target: Array, start: Start, certify: bool) -> Position:
@@ -127,7 +130,8 @@ def _arrived(model: Model, target: Array, start: Start, certify: bool) -> Positi
         rates=solver.rates(start.v[None, :], _rate(model)),
     )
     track = Track(nodes=(node,), start=0)
-    return _from_row(model, target, (path, track, t), rows, start, certify)
+    missed = another_root(model, start.v)
+    return _from_row(model, target, (path, track, t), rows, start, certify, missed)
 
 
 def _followed(model: Model, target: Array, start: Start, certify: bool) -> Position:
@@ -149,7 +153,11 @@ def _followed(model: Model, target: Array, start: Start, certify: bool) -> Posit
         track = track_to(solver, path, first, [goal], scale)
         limits += limits_of(model, path, track, lead)
     if track.ends:
-        return _stopped(model, target, limits, lead, start)
+        reasons = {limit.status for limit in limits}
+        status = reasons.pop() if len(reasons) == 1 else limits[0].status
+        place = (path, lead, float(inputs[lead]))
+        failure = beyond_reach(model, start.v, place, status, limits)
+        return _failed(model, target, status, failure, start)
     rows = rows_on_track(solver, path, track, np.array([goal]), scale)
     return _from_row(model, target, (path, track, goal), rows, start, certify)
 
@@ -158,29 +166,20 @@ def _input_weights(model: Model) -> Array:
     return model.compiled.solver.variable_scale[model.compiled.solver.unknowns :]
 
 
-def _stopped(
-    model: Model, target: Array, limits: tuple[Limit, ...], lead: int, start: Start
+def _failed(
+    model: Model, target: Array, status: Status, failure: Failure | None, start: Start
 ) -> Position:
-    """A position beyond the limits that were met both ways."""
-    name = model.equations.inputs[lead].name
-    unit = model.units.angle.sign if model.input_scale[lead] != 1.0 else ""
-    met = " and ".join(f"{limit.input:.10g}{unit}" for limit in limits)
-    reasons = {limit.status for limit in limits}
-    status = reasons.pop() if len(reasons) == 1 else limits[0].status
-    return _failed(model, target, status, f"{status.value} (met at {name} = {met})", start)
-
-
-def _failed(model: Model, target: Array, status: Status, message: str, start: Start) -> Position:
     nothing = np.full((1, model.compiled.solver.variables), np.nan)
     named = named_series(model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool))
     evidence = _Evidence(
         status=status,
-        message=message,
+        message=status.value if failure is None else failure.message,
         residual=start.residual,
         iterations=start.iterations,
         condition=np.inf,
         certificate=Certificate(certification=Certification.NO_POSITION),
         trails=start.trails,
+        failure=failure,
     )
     return _position(model, named, evidence, nothing[0, : model.compiled.solver.unknowns])
 
@@ -192,6 +191,7 @@ def _from_row(
     rows: Rows,
     start: Start,
     certify: bool,
+    failure: Failure | None = None,
 ) -> Position:
     """The one row of a batch as a position, with its certificate."""
     solver = model.compiled.solver
@@ -210,14 +210,16 @@ def _from_row(
     rates = solver.rates(rows.v, _rate(model))
     found = np.array([status.ok])
     named = named_series(model, rows.v, rates.first, rates.second, target[None, :], found)
+    message = status.value if failure is None else failure.message
     evidence = _Evidence(
         status=status,
-        message=_SINGULAR if status.ok and rates.condition[0] > _HOPELESS else status.value,
+        message=_SINGULAR if status.ok and rates.condition[0] > _HOPELESS else message,
         residual=float(rows.residual[0]),
         iterations=int(rows.iterations[0]),
         condition=float(rates.condition[0]),
         certificate=certificate,
         trails=start.trails,
+        failure=failure,
     )
     return _position(model, named, evidence, rows.v[0, : solver.unknowns])
 
@@ -259,6 +261,7 @@ def _position(model: Model, named: Named, evidence: _Evidence, q: Array) -> Posi
         certificate=evidence.certificate,
         q=q,
         steps=evidence.trails,
+        failure=evidence.failure,
     )
 
 

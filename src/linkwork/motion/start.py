@@ -8,9 +8,10 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
-from linkwork.motion.closing import explain
+from linkwork.motion.failing import no_position
 from linkwork.motion.model import Model
 from linkwork.numerics.newton import NewtonOptions, Watch
+from linkwork.results.failure import Failure
 from linkwork.results.position import NewtonStep, NewtonTrail
 from linkwork.results.quantity import Kind
 
@@ -19,7 +20,10 @@ __all__ = ["Start", "first_position"]
 
 @dataclass(frozen=True, kw_only=True)
 class Start:
-    """A solved (or failed) first position: variables (N,), evidence and the iterates."""
+    """A solved (or failed) first position: variables (N,), evidence and the iterates.
+
+    ``failure`` explains why there is none.
+    """
 
     v: Array
     status: Status
@@ -27,6 +31,7 @@ class Start:
     iterations: int
     residual: float
     trails: tuple[NewtonTrail, ...]
+    failure: Failure | None = None
 
 
 def first_position(
@@ -40,9 +45,9 @@ def first_position(
     watches: list[Watch | None] = list(watchers) if with_steps else [None] * len(watchers)
     done = solver.solve(v[None, :], options, watches)
     status = Status.of_code(int(done.status[0]))
-    message = status.value
+    failure = None
     if not status.ok:
-        status, message = explain(model, v, status, int(done.failed_block[0]))
+        status, failure = no_position(model, v, status, int(done.failed_block[0]), options)
     trails = []
     for k, watcher in enumerate(watchers):
         if watcher.steps:
@@ -52,10 +57,11 @@ def first_position(
     return Start(
         v=done.v[0],
         status=status,
-        message=message,
+        message=status.value if failure is None else failure.message,
         iterations=int(done.iterations[0]),
         residual=float(done.residual[0]),
         trails=tuple(trails),
+        failure=failure,
     )
 
 

@@ -300,7 +300,7 @@ def _without_start(model: Model, rows: Array, start: Start) -> Motion:
     named = named_series(
         model, nothing, nothing, nothing, model.everyday_rows, np.zeros(count, dtype=bool)
     )
-    return _assembled(model, named, solved, (), start.message)
+    return replace(_assembled(model, named, solved, (), start.message), failure=start.failure)
 
 
 def _assembled(

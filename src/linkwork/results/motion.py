@@ -16,6 +16,7 @@ from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
+from linkwork.results.failure import Failure
 from linkwork.results.quantity import Quantity, Units
 from linkwork.results.summary import motion_summary
 from linkwork.results.table import Table, table_of
@@ -116,6 +117,8 @@ class Motion:
         Where the branch ends before the table does.
     q : array (N, n)
         The unknowns with angles in radians.
+    failure : Failure, optional
+        Why no position was found at the guess.
     """
 
     mechanism: str
@@ -142,6 +145,7 @@ class Motion:
     speed: float | None = None
     limits: tuple[Limit, ...] = ()
     q: Array
+    failure: Failure | None = None
 
     def __post_init__(self) -> None:
         for field in ("residual", "iterations", "condition", "radius", "unique_within", "q"):

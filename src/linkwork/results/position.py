@@ -14,6 +14,7 @@ from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
+from linkwork.results.failure import Failure
 from linkwork.results.quantity import Units
 from linkwork.results.summary import position_summary
 
@@ -96,6 +97,8 @@ class Position:
         Largest condition number (largest norm, weighted) of a block's Jacobian.
     q : array, shape (n,)
         The unknowns with angles in radians.
+    failure : Failure, optional
+        Why there is no position, or why it is another one than the one beside the guess.
     """
 
     mechanism: str
@@ -122,6 +125,7 @@ class Position:
     branch: str = ""
     q: Array
     steps: tuple[NewtonTrail, ...] = ()
+    failure: Failure | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "q", read_only(self.q))
@@ -168,6 +172,7 @@ class Position:
                 "reason": self.certificate.certification.value,
             },
             "branch": self.branch,
+            **({} if self.failure is None else {"failure": self.failure.to_dict()}),
             **({"steps": [_trail(trail) for trail in self.steps]} if self.steps else {}),
         }
 

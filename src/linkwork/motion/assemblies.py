@@ -1,0 +1,134 @@
+"""The positions that exist at one input value, as far as they are known.
+
+Blocks are taken in solving order, every block for every position of those before it: dyads in
+closed form, others by Newton-Raphson from many starts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.status import Status
+from linkwork.kernels.loop_table import LoopTable
+from linkwork.motion.dyads import dyad_of
+from linkwork.motion.model import Model
+from linkwork.numerics.block_solver import Block
+from linkwork.numerics.newton import NewtonOptions, newton
+
+__all__ = ["Assemblies", "AssembliesAt", "assemblies_at", "block_positions", "distance"]
+
+_STARTS = 192  # per block that is no dyad
+_MOST = 64  # positions; a chain of dyads has 2^blocks
+_SAME = 1e-6  # weighted
+_REACH = 2.0  # lengths are looked for within so many times the longest link around the guess
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Assemblies:
+    """All variables of every position found, (K, N); ``complete``: whether there are no others."""
+
+    v: Array
+    complete: bool
+
+
+#: What tells the positions that exist for given inputs (p,), internal units.
+AssembliesAt = Callable[[Model, Array], Assemblies]
+
+
+def assemblies_at(model: Model, inputs: Array) -> Assemblies:
+    """The positions of a mechanism for the inputs (p,), block by block."""
+    solver = model.compiled.solver
+    guess = model.equations.start.copy()
+    guess[solver.unknowns :] = inputs
+    found, complete = guess[None, :], True
+    for block in solver.blocks:
+        pieces = []
+        for v in found:
+            here, all_of_them = block_positions(block, v)
+            complete &= all_of_them
+            piece = np.repeat(v[None, :], len(here), axis=0)
+            piece[:, block.unknowns] = here
+            pieces.append(piece)
+        found = np.concatenate(pieces) if pieces else found[:0]
+        if len(found) > _MOST:
+            found, complete = found[:_MOST], False
+    return Assemblies(v=found, complete=complete)
+
+
+def block_positions(block: Block, v: Array) -> tuple[Array, bool]:
+    """The positions (K, n) of one block for the known variables in v (N,), and whether all.
+
+    ``v`` also holds the block's guess, around which lengths and plain numbers are looked for.
+    """
+    dyad = dyad_of(block, v)
+    if dyad is not None:
+        polished, good = _solved(block, v, dyad.roots)
+        return polished, bool(good.all())
+    start = v[block.variables]
+    n = len(block.unknowns)
+    linear = _is_linear(block)
+    found, _ = _solved(block, v, start[None, :n] if linear else _starts(block, start[:n]))
+    distinct: list[Array] = []
+    for x in found:
+        if all(distance(block, x, other) > _SAME for other in distinct):
+            distinct.append(x)
+    return np.array(distinct).reshape(-1, n), linear and len(distinct) == 1
+
+
+def _is_linear(block: Block) -> bool:
+    """Relative angles alone: one position."""
+    table = block.system
+    return isinstance(table, LoopTable) and not table.loops.rows and not table.functions
+
+
+def _solved(block: Block, v: Array, starts: Array) -> tuple[Array, BoolArray]:
+    """Newton-Raphson from the starts (K, n); the positions found, and which starts led to one."""
+    n = len(block.unknowns)
+    if not len(starts):
+        return np.zeros((0, n)), np.ones(0, dtype=bool)
+    lanes = np.repeat(v[block.variables][None, :], len(starts), axis=0)
+    lanes[:, :n] = starts
+    done = newton(block.system, lanes, NewtonOptions(max_steps=40))
+    good = (done.status == Status.CONVERGED.code) & (done.residual < 1e-10)
+    return done.v[good, :n], good
+
+
+def _starts(block: Block, guess: Array) -> Array:
+    """Starts spread evenly by an additive recurrence: angles around, the rest around the guess."""
+    n = len(guess)
+    root = _recurrence_root(n)
+    steps = root ** -np.arange(1.0, n + 1.0)
+    even = np.mod(0.5 + np.multiply.outer(np.arange(_STARTS), steps), 1.0)
+    turns = block.system.turns[:n]
+    size = block.system.variable_scale[:n]
+    lengths = guess + _REACH * size * (2.0 * even - 1.0)
+    # a plain number has no natural size: most starts near the guess, some far away
+    numbers = guess + size * np.tan(np.pi * 0.99 * (even - 0.5))
+    spread = numbers if _is_plain(block) else lengths
+    starts: Array = np.where(turns, guess + 2.0 * np.pi * even, spread)
+    return starts
+
+
+def _is_plain(block: Block) -> bool:
+    return not block.system.bends_boundedly
+
+
+def _recurrence_root(n: int) -> float:
+    """The root of x^(n+1) = x + 1 above 1, whose powers are badly approximable."""
+    x = 2.0
+    for _ in range(30):
+        x = (1.0 + x) ** (1.0 / (n + 1.0))
+    return x
+
+
+def distance(block: Block, a: Array, b: Array) -> float:
+    """How far apart two positions (n,) of a block are, weighted, whole turns aside."""
+    n = len(block.unknowns)
+    gap = b - a
+    turned = gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi))
+    gap = np.where(block.system.turns[:n], turned, gap)
+    return float(np.abs(gap / block.system.variable_scale[:n]).max(initial=0.0))

@@ -1,0 +1,237 @@
+"""Why there is no position: what does not close, what would help, what is within reach."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.newton_trouble import NewtonTrouble
+from linkwork.foundation.status import Status
+from linkwork.motion.assemblies import AssembliesAt, assemblies_at, block_positions
+from linkwork.motion.dyads import dyad_of
+from linkwork.motion.lock_step import lock_step
+from linkwork.motion.model import Model
+from linkwork.motion.newton_reasons import Miss, miss_of, root_beside_guess, trouble_of
+from linkwork.motion.reach import Reach, assembled_near, reach_towards
+from linkwork.motion.remedies import remedies_of
+from linkwork.numerics.block_solver import Block
+from linkwork.numerics.newton import NewtonOptions
+from linkwork.numerics.track import InputPath
+from linkwork.results.failure import Failure
+from linkwork.results.motion import Limit
+from linkwork.results.quantity import Kind
+
+__all__ = ["another_root", "beyond_reach", "no_position"]
+
+#: How the positions that exist at given inputs are found, for every explanation.
+ELSEWHERE: AssembliesAt = assemblies_at
+
+
+def no_position(
+    model: Model, v: Array, status: Status, failed_block: int, options: NewtonOptions
+) -> tuple[Status, Failure]:
+    """Why Newton-Raphson from v (N,), inputs included, did not solve one block.
+
+    Blocks before it are solved first. If the block has no position, that is told with its gap and
+    what would help; otherwise why Newton-Raphson missed those that exist.
+    """
+    solver = model.compiled.solver
+    here = solver.solve(v[None, :], options).v[0]
+    block = solver.blocks[failed_block]
+    here[block.unknowns] = v[block.unknowns]
+    miss = miss_of(block, here)
+    exists = miss.closed
+    if not exists and miss.known:
+        exists = bool(len(block_positions(block, here)[0]))
+    if not exists and miss.known and _loops_in(model, block):
+        here[block.unknowns] = miss.v[: len(block.unknowns)]
+        return Status.CANNOT_CLOSE, _cannot_close(model, block, failed_block, here, miss)
+    trouble = trouble_of(block, here, status, miss, options)
+    if trouble is NewtonTrouble.LOCAL_EXTREMUM and not exists:
+        trouble = None
+    what = status.value if trouble is None else f"{_head(status)}: {trouble.value}"
+    meant: dict[str, float] = {}
+    if miss.closed:
+        meant = _named(model, block, miss.v[: len(block.unknowns)])
+    elif not exists and miss.known:
+        what += "; " + _stays_at(model, block, miss)
+    return status, _failure(
+        model,
+        v[solver.unknowns :],
+        what=what,
+        loops=_labels(model, block),
+        trouble=trouble,
+        meant=meant,
+    )
+
+
+def another_root(model: Model, found: Array) -> Failure | None:
+    """What to say of a position (N,) that is another one than the one beside the guess."""
+    solver = model.compiled.solver
+    here = found.copy()
+    here[: solver.unknowns] = model.equations.start[: solver.unknowns]
+    for block in solver.blocks:
+        meant = root_beside_guess(block, here, found)
+        if meant is not None:
+            return _failure(
+                model,
+                found[solver.unknowns :],
+                what=f"position found, but {NewtonTrouble.ANOTHER_ROOT.value}",
+                loops=_labels(model, block),
+                trouble=NewtonTrouble.ANOTHER_ROOT,
+                meant=_named(model, block, meant),
+            )
+        here[block.unknowns] = found[block.unknowns]
+    return None
+
+
+def beyond_reach(
+    model: Model,
+    v: Array,
+    place: tuple[InputPath, int, float],
+    status: Status,
+    limits: tuple[Limit, ...],
+) -> Failure:
+    """Why the branch of a start v (N,) does not lead to a value of its path, and what does.
+
+    Parameters
+    ----------
+    place : (path, lead, asked)
+        The path, the number of the input that measures it, and the value asked for.
+    limits
+        What was met on the way.
+    """
+    path, lead, asked = place
+    name = model.equations.inputs[lead].name
+    unit = model.units.angle.sign if model.equations.inputs[lead].kind == "angle" else ""
+    met = " and ".join(f"{limit.input:.10g}{unit}" for limit in limits)
+    reach = reach_towards(model, path, lead, v, asked) if status is Status.OUT_OF_REACH else None
+    return _failure(
+        model,
+        path.at(asked),
+        what=f"{status.value} (met at {name} = {met})",
+        loops=tuple(dict.fromkeys(loop for limit in limits for loop in limit.loops)),
+        reach=reach,
+    )
+
+
+def _head(status: Status) -> str:
+    return status.value.partition(":")[0]
+
+
+def _labels(model: Model, block: Block) -> tuple[str, ...]:
+    return tuple(model.equations.labels[e] for e in block.equations)
+
+
+def _loops_in(model: Model, block: Block) -> int:
+    return sum(e < len(model.equations.loops) for e in block.equations)
+
+
+def _named(model: Model, block: Block, x: Array) -> dict[str, float]:
+    """The unknowns (n,) of a block by name, everyday units."""
+    unknowns = [model.equations.unknowns[int(k)] for k in block.unknowns]
+    return {
+        u.name: float(value / model.units.scale(Kind(u.kind)))
+        for u, value in zip(unknowns, x, strict=True)
+    }
+
+
+def _stays_at(model: Model, block: Block, miss: Miss) -> str:
+    labels = _labels(model, block)
+    worst = int(np.argmax(np.abs(miss.f)))
+    return f'"{labels[worst % len(labels)]}" stays at {miss.f[worst]:.6g} at best nearby'
+
+
+def _cannot_close(model: Model, block: Block, number: int, here: Array, miss: Miss) -> Failure:
+    """Which loop, how large the gap, which lengths would help, what can be reached."""
+    solver = model.compiled.solver
+    inputs = here[solver.unknowns :]
+    count = _loops_in(model, block)
+    gaps = np.hypot(miss.f[:count], miss.f[count : 2 * count])
+    dyad = dyad_of(block, here)
+    total = dyad.gap if dyad is not None else float(np.linalg.norm(gaps))
+    worst, unit = int(np.argmax(gaps)), model.units.length
+    labels = _labels(model, block)[:count]
+    names = f'loop "{labels[worst]}"'
+    size = total
+    if count > 1:
+        names += f" (largest of {count} coupled loops, together {total:.6g} {unit})"
+        size = float(gaps[worst])
+    where = _inputs_text(model, inputs)
+    what = (
+        f"{names} cannot be closed{' at ' if where else ''}{where}: "
+        f"nearest to the guess a gap of {size:.6g} {unit} remains"
+    )
+    reach, reachable = None, True
+    if len(inputs):
+        lead, rate = lock_step(model.rows)
+        path = InputPath(origin=inputs - rate * inputs[lead], rate=rate)
+        assembled = assembled_near(model, path, lead, here)
+        reachable = assembled is not None
+        if assembled is not None:
+            reach = reach_towards(model, path, lead, assembled, float(inputs[lead]))
+    order = np.argsort(-gaps, kind="stable")
+    return _failure(
+        model,
+        inputs,
+        what=what,
+        loops=tuple(labels[k] for k in order),
+        gap=total,
+        remedies=remedies_of(model, number, here),
+        reach=reach,
+        unreachable=not reachable,
+    )
+
+
+def _inputs_text(model: Model, inputs: Array) -> str:
+    return ", ".join(
+        f"{variable.name} = {value / scale:.6g}"
+        f"{model.units.angle.sign if variable.kind == 'angle' else ' ' + model.units.length}"
+        for variable, value, scale in zip(
+            model.equations.inputs, inputs, model.input_scale, strict=True
+        )
+    )
+
+
+def _everyday_inputs(model: Model, inputs: Array) -> Array:
+    units = model.units
+    values = [
+        units.angle.from_radians(float(value)) if variable.kind == "angle" else float(value)
+        for variable, value in zip(model.equations.inputs, inputs, strict=True)
+    ]
+    return np.array(values, dtype=float)
+
+
+def _failure(model: Model, inputs: Array, reach: Reach | None = None, **parts: object) -> Failure:
+    """The explanation with the positions that exist at the inputs (p,)."""
+    driven = [u.name for u in model.equations.inputs]
+    found = ELSEWHERE(model, inputs)
+    n = model.compiled.solver.unknowns
+    scales = np.array([model.units.scale(Kind(u.kind)) for u in model.equations.unknowns])
+    turns = np.array([u.kind == "angle" for u in model.equations.unknowns], dtype=bool)
+    x = found.v[:, :n]
+    x = np.where(turns, np.angle(np.exp(1j * np.where(turns, x, 0.0))), x) / scales
+    x = np.array(sorted(x.tolist(), key=lambda row: [round(value, 6) for value in row]))
+    names = [u.name for u in model.equations.unknowns]
+
+    def by_name(values: Array) -> dict[str, float]:
+        return {name: float(value) for name, value in zip(driven, values, strict=True)}
+
+    towards: dict[str, object] = {}
+    if reach is not None:
+        towards = {
+            "nearest_input": by_name(reach.inputs),
+            "nearest_kind": reach.kind,
+            "nearest_proved": reach.proved,
+        }
+        if not reach.kind and reach.first_dead_point is not None:
+            towards["through"] = by_name(reach.first_dead_point)
+    return Failure(
+        asked=by_name(_everyday_inputs(model, inputs)),
+        configurations=tuple(dict(zip(names, map(float, row), strict=True)) for row in x),
+        complete=found.complete,
+        units=model.units,
+        kinds={u.name: Kind(u.kind) for u in model.equations.variables},
+        **towards,  # type: ignore[arg-type]
+        **parts,  # type: ignore[arg-type]
+    )

@@ -1,0 +1,133 @@
+"""Telling apart why Newton-Raphson misses the position that was meant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.newton_trouble import NewtonTrouble
+from linkwork.foundation.status import Status
+from linkwork.motion.assemblies import block_positions, distance
+from linkwork.numerics.block_solver import Block
+from linkwork.numerics.least_squares import nearest_miss
+from linkwork.numerics.newton import NewtonOptions, newton
+
+__all__ = ["Miss", "miss_of", "root_beside_guess", "trouble_of"]
+
+_CLOSED = 1e-10  # scaled residual of a position
+_FLAT = 1e-8  # of its natural size: a slope or curvature that is none
+_ASIDE = 0.5  # of the way from the root to the guess, where the bending is compared
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Miss:
+    """Where a damped iteration ends: ``v`` in the block's order, unscaled residuals ``f`` (m,),
+    ``closed`` if that is a position after all.
+    """
+
+    v: Array
+    f: Array
+    closed: bool
+
+    @property
+    def known(self) -> bool:
+        """Whether the equations have values there."""
+        return bool(np.isfinite(self.f).all())
+
+
+def miss_of(block: Block, v: Array) -> Miss:
+    """The block as near to closing as a damped iteration from v (N,) gets."""
+    nearest, f = nearest_miss(block.system, v[block.variables])
+    closed = np.isfinite(f).all() and np.abs(f / block.system.equation_scale).max() <= _CLOSED
+    return Miss(v=nearest, f=f, closed=bool(closed))
+
+
+def trouble_of(
+    block: Block, v: Array, status: Status, miss: Miss, options: NewtonOptions
+) -> NewtonTrouble | None:
+    """Why Newton-Raphson failed on a block from v (N,), where a position exists; ``None``: other.
+
+    - stopped where J is singular: an extremum if F lies across the range of J and bends there,
+      else a singular derivative;
+    - the damped iteration is held where Jᵀ F = 0, F ≠ 0: a local extremum;
+    - it finds a root beside which the equations bend both ways, and Newton's steps grew: an
+      inflection.
+    """
+    iterates: list[Array] = []
+    sizes: list[float] = []
+    n = len(block.unknowns)
+    weights = block.system.variable_scale[:n]
+
+    def watch(k: int, x: Array, residual: Array, change: Array | None) -> None:
+        iterates.append(x[0].copy())
+        if change is not None:
+            sizes.append(float(np.abs(change[0] / weights).max()))
+
+    newton(block.system, v[block.variables][None, :], options, watch)
+    if status is Status.SINGULAR_JACOBIAN:
+        extremum = _is_extremum(block, iterates[-1])
+        return NewtonTrouble.LOCAL_EXTREMUM if extremum else NewtonTrouble.SINGULAR_DERIVATIVE
+    if not miss.closed:
+        return NewtonTrouble.LOCAL_EXTREMUM if miss.known else None
+    grew = sum(b > a for a, b in zip(sizes, sizes[1:], strict=False))
+    if 2 * grew > len(sizes) - 1 and _bends_both_ways(block, miss.v, v[block.variables]):
+        return NewtonTrouble.INFLECTION
+    return None
+
+
+def _is_extremum(block: Block, v: Array) -> bool:
+    """Whether |F| is stationary at v (N,) and bends along the null direction of J."""
+    system, n = block.system, len(block.unknowns)
+    weights, scale = system.variable_scale[:n], system.equation_scale
+    f, jacobian = (part[0] for part in system.residual_and_jacobian(v[None, :]))
+    r, j = f / scale, jacobian[:, :n] * weights / scale[:, None]
+    size = float(np.linalg.norm(r))
+    if not size or np.linalg.norm(j.T @ r) > _FLAT * size:
+        return False
+    _, _, right = np.linalg.svd(j)
+    direction = np.zeros_like(v)
+    direction[:n] = right[-1] * weights
+    bend = system.second(v[None, :], direction[None, :])[0] / scale
+    return bool(abs(r @ bend) > _FLAT * size)
+
+
+def _bends_both_ways(block: Block, root: Array, guess: Array) -> bool:
+    """Whether J⁻¹ D²F[d, d] points to opposite sides before and behind the root on the line d."""
+    system, n = block.system, len(block.unknowns)
+    d = np.zeros_like(root)
+    d[:n] = guess[:n] - root[:n]
+    sides = np.stack([root + _ASIDE * d, root - _ASIDE * d])
+    bends = system.second(sides, np.stack([d, d]))
+    try:
+        inverse = np.linalg.inv(system.jacobian(root[None, :])[0, :, :n])
+    except np.linalg.LinAlgError:
+        return False
+    before, behind = (inverse @ bend / system.variable_scale[:n] for bend in bends)
+    return bool(before @ behind < 0.0)
+
+
+def root_beside_guess(block: Block, guess: Array, found: Array) -> Array | None:
+    """The position (n,) that was meant where another one was found; ``None`` if it was found.
+
+    A root was passed over if det J has another sign at the root found than at the guess, and one
+    with the guess's sign lies nearer to the guess. Both ``guess`` and ``found`` (N,) hold the
+    known variables as solved.
+    """
+    n = len(block.unknowns)
+    ends = np.stack([guess[block.variables], found[block.variables]])
+    signs = np.sign(np.linalg.det(block.system.jacobian(ends)[:, :, :n]))
+    if not np.isfinite(signs).all() or signs[0] * signs[1] >= 0.0:
+        return None
+    others, _ = block_positions(block, guess)
+    start = guess[block.unknowns]
+    reached = distance(block, start, found[block.unknowns])
+    for x in sorted(others, key=lambda x: distance(block, start, x)):
+        if distance(block, start, x) >= reached * (1.0 - 1e-9):
+            return None
+        there = guess[block.variables].copy()
+        there[:n] = x
+        if np.linalg.det(block.system.jacobian(there[None, :])[0, :, :n]) * signs[0] > 0.0:
+            return np.asarray(x)
+    return None

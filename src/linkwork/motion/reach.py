@@ -1,0 +1,173 @@
+"""The input value nearest to the one asked that a mechanism reaches on one circuit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.equations.leading import LeadTable
+from linkwork.foundation.arrays import Array
+from linkwork.motion.model import Model
+from linkwork.motion.tracking import turns_freely
+from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.numerics.curve import Curve, CurveOptions, Leg, TurningPoint, trace, turning_points
+from linkwork.numerics.least_squares import nearest_miss
+from linkwork.numerics.proven_curve import prove_curve
+from linkwork.numerics.track import BOLD, InputPath, follow
+
+__all__ = ["Reach", "assembled_near", "reach_towards"]
+
+_CLOSED = 1e-9  # relative gap of a position that was found with the input free
+_HELD = 0.1  # weight of the input beside the unknowns: it moves as little as need be
+_TRIES = 8  # input values around the circle from which an assembled position is looked for
+_TURN = 2.0 * np.pi
+_FAST = 6.0  # where a variable moves so many times faster than the input, a dead point is near
+_ASIDE = 0.2  # weighted: how far from it a circuit is begun
+_OPTIONS = CurveOptions(most_legs=200, track=replace(BOLD, most_steps=2000))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reach:
+    """The nearest input values that a circuit reaches.
+
+    ``inputs`` (p,): everyday units. ``kind``: what ends the circuit there; empty if the circuit
+    reaches what was asked. ``proved``: whether it was followed with proof. ``first_dead_point``
+    (p,): the first one met on the way from the start.
+    """
+
+    inputs: Array
+    kind: str
+    proved: bool
+    first_dead_point: Array | None
+
+
+def assembled_near(model: Model, path: InputPath, lead: int, v: Array) -> Array | None:
+    """An assembled position (N,) near v, the input moved as little as need be; ``None`` if none."""
+    locked = LeadTable(model.compiled.table, path, lead).table
+    n = model.compiled.solver.unknowns
+    scale = locked.variable_scale.copy()
+    scale[n:] *= _HELD
+    free = replace(locked, unknowns=locked.variables, variable_scale=scale)
+    tries = _TRIES if turns_freely(model) else 1
+    for k in range(tries):
+        start = v.copy()
+        turn = (k + 1) // 2 * (1.0 if k % 2 else -1.0) * _TURN / tries
+        start[n:] += path.rate * turn
+        found, f = nearest_miss(free, start)
+        if np.isfinite(f).all() and np.abs(f / locked.equation_scale).max() <= _CLOSED:
+            return found
+    return None
+
+
+def reach_towards(model: Model, path: InputPath, lead: int, v: Array, asked: float) -> Reach | None:
+    """How near the circuit through a position comes to the value ``asked`` of the path.
+
+    A circuit is connected: it reaches all values between its smallest and its largest, which lie
+    at turning points if it closes.
+
+    Parameters
+    ----------
+    v : (N,)
+        A position on the circuit.
+    """
+    leads = LeadTable(model.compiled.table, path, lead)
+    p = leads.parameter
+    period = _TURN if turns_freely(model) else None
+    away = asked - float(v[p])
+    if period is not None:
+        away = math.remainder(away, period)
+    curves = _circuit(leads, v, math.copysign(1.0, away))
+    if not curves:
+        return None
+    points = [point for curve in curves for point in turning_points(leads, curve)]
+    edges: list[tuple[float, TurningPoint | None]] = [
+        (float(t), None) for curve in curves for leg in curve.legs for t in leg.v[:, p]
+    ]
+    edges += [(point.t, point) for point in points]
+    low, high = min(edges, key=lambda e: e[0]), max(edges, key=lambda e: e[0])
+    proved = all(prove_curve(leads, curve).whole for curve in curves)
+    first = None if not points else _everyday(model, path, lead, points[0].t, points[0], 0)
+    nearest = _nearest(low[0], high[0], asked, period)
+    if nearest is None:
+        inputs, kind = path.at(asked) / model.input_scale, ""
+    else:
+        end, turns = nearest
+        t, point = low if end == "low" else high
+        inputs = _everyday(model, path, lead, t, point, turns)
+        kind = "dead point" if point is not None else "as far as the circuit was followed"
+    return Reach(inputs=inputs, kind=kind, proved=proved, first_dead_point=first)
+
+
+def _nearest(
+    low: float, high: float, asked: float, period: float | None
+) -> tuple[str, int] | None:
+    """Which end of an interval, so many periods on, is nearest; ``None`` if it holds the value."""
+    slack = 1e-12 * max(1.0, abs(asked))
+    if period is None:
+        shifts = [0]
+    elif high - low >= period - slack:
+        return None
+    else:
+        middle = round((asked - 0.5 * (low + high)) / period)
+        shifts = [middle, middle - 1, middle + 1]
+    found: list[tuple[float, str, int]] = []
+    for k in shifts:
+        moved = 0.0 if period is None else k * period
+        if low + moved - slack <= asked <= high + moved + slack:
+            return None
+        found += [(low + moved - asked, "low", k), (high + moved - asked, "high", k)]
+    # of two that are equally near, the one ahead
+    _, end, k = min(found, key=lambda entry: (round(abs(entry[0]), 9), -entry[0]))
+    return end, k
+
+
+def _everyday(
+    model: Model, path: InputPath, lead: int, t: float, point: TurningPoint | None, turns: int
+) -> Array:
+    """All inputs at a value of the path, the leading one as the short number in its bracket."""
+    scale = float(model.input_scale[lead])
+    inputs: Array = path.at(t) / model.input_scale
+    value = t / scale
+    if point is not None:
+        short = round(value, 9)
+        value = short if point.bracket[0] / scale <= short <= point.bracket[1] / scale else value
+    inputs[lead] = value + (turns * model.units.angle.turn if turns else 0.0) + 0.0
+    return inputs
+
+
+def _circuit(leads: LeadTable, v: Array, side: float) -> list[Curve]:
+    """The whole circuit: one curve if it closes, else one each way, behind what led to it."""
+    try:
+        aside = _off_dead_point(leads, v)
+        start = v if aside is None else aside.legs[-1].v[-1]
+        first = trace(leads, start, side, _OPTIONS)
+        found = [first]
+        if not first.end.closed:
+            found.append(trace(leads, start, -side, _OPTIONS))
+    except (ValueError, np.linalg.LinAlgError):
+        return []
+    return [curve for curve in (aside, *found) if curve is not None and curve.legs]
+
+
+def _off_dead_point(leads: LeadTable, v: Array) -> Curve | None:
+    """A way from a position (N,) at which the parameter is slow to one where it can lead."""
+    table = leads.table
+    slope = table.jacobian(v[None, :])[0] * table.variable_scale / table.equation_scale[:, None]
+    direction = np.linalg.svd(slope)[2][-1]
+    speed = np.abs(direction)
+    if speed.max() <= _FAST * speed[leads.parameter]:
+        return None
+    lead = int(np.argmax(speed))
+    led = leads.by(lead)
+    if led is None:
+        raise ValueError("the fastest variable must determine the position")
+    node, weight = led.node(v), float(table.variable_scale[lead])
+    for sign in (1.0, -1.0):
+        goal = node.t + sign * _ASIDE * weight
+        nodes, _ = follow(led.solver, led.path, node, goal, weight, _OPTIONS.track)
+        if nodes:
+            leg = Leg(led=led, nodes=(node, *nodes))
+            return Curve(legs=(leg,), end=CircuitEnd.SINGULAR, passes=())
+    return None

@@ -1,0 +1,178 @@
+"""Where a family of systems begins to have solutions: the fold between none and two.
+
+At a fold F(x, p) = 0 and dF/dx has the left and right null vectors w and z; beside it, on the side
+where -2 (wᵀF_p)(p - p0) / wᵀD²F[z, z] > 0, there are two solutions x + a z ± ..., beyond it none.
+The singularity is measured by bordering (Griewank & Reddien 1984, doi:10.1093/imanum/4.3.295).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.status import Status
+from linkwork.numerics.newton import NewtonOptions, newton
+from linkwork.numerics.system import System
+
+__all__ = ["Bending", "Family", "Fold", "locate_fold"]
+
+
+class Bending(System, Protocol):
+    """A system that also knows D²F[a, b]."""
+
+    def mixed(self, v: Array, a: Array, b: Array) -> Array:
+        """D²F[a, b], (B, m)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Family:
+    """Systems with a parameter p and the same unknowns; ``inputs`` are their known variables.
+
+    ``low``, ``high``: the systems at two values ``step`` apart, for derivatives by p; they need
+    not lie at the p in question, since lengths stand in loops as factors.
+    ``size``: the natural size of a change of p.
+    """
+
+    at: Callable[[float], Bending]
+    inputs: Array
+    low: Bending
+    high: Bending
+    step: float
+    size: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Fold:
+    """``p`` and the unknowns ``x`` (n,) at which a solution just exists; ``opens`` is the sign of
+    the change of p that gives two. ``checked``: that a solution was found there, a little further.
+    """
+
+    p: float
+    x: Array
+    opens: float
+    checked: bool
+
+
+_MOST_STEPS = 40
+_LONGEST = 0.5  # weighted: a step is shortened as a whole
+_STILL = 1e-13
+_FURTHER = 1e-6  # of the parameter's size: how far behind the fold a solution is looked for
+_CLOSED = 1e-10
+
+
+class _At:
+    """The scaled system and its parameter's derivatives at one (x, p)."""
+
+    def __init__(self, family: Family, x: Array, p: float) -> None:
+        self.system, inputs = family.at(p), family.inputs
+        n = self.n = self.system.unknowns
+        self.weights = np.concatenate([self.system.variable_scale[:n], np.zeros(len(inputs))])
+        self.scale = self.system.equation_scale
+        self.v = np.concatenate([x, inputs])
+        self.f, self.j = self._scaled(self.system)
+        (f_low, j_low), (f_high, j_high) = map(self._scaled, (family.low, family.high))
+        self.f_p, self.j_p = (f_high - f_low) / family.step, (j_high - j_low) / family.step
+        left, _, right = np.linalg.svd(self.j)
+        self.w, self.z = left[:, -1], right[-1]
+
+    def _scaled(self, system: Bending) -> tuple[Array, Array]:
+        f, j = system.residual_and_jacobian(self.v[None, :])
+        return f[0] / self.scale, j[0, :, : self.n] * self.weights[: self.n] / self.scale[:, None]
+
+    def bend(self, direction: Array) -> float:
+        """wᵀ D²F[z, direction], both scaled (n,)."""
+        inputs = np.zeros(len(self.v) - self.n)
+        a, b = (
+            (np.concatenate([part, inputs]) * self.weights)[None, :] for part in (self.z, direction)
+        )
+        return float(self.w @ (self.system.mixed(self.v[None, :], a, b)[0] / self.scale))
+
+    def correction(self) -> Array:
+        """The Newton step of (x / weights, p) for F = 0 and g = 0, where g = 0 when J is singular.
+
+        g solves [[J, w], [zᵀ, 0]] [u; g] = [0; 1], with lᵀ its left counterpart; dg = -lᵀ dJ u.
+        """
+        n = self.n
+        bordered = np.zeros((n + 1, n + 1))
+        bordered[:n, :n], bordered[:n, n], bordered[n, :n] = self.j, self.w, self.z
+        unit = np.eye(n + 1)[n]
+        right, left = np.linalg.solve(bordered, unit), np.linalg.solve(bordered.T, unit)
+        self.z, self.w = right[:n], left[:n]
+        whole = np.zeros((n + 1, n + 1))
+        whole[:n, :n], whole[:n, n] = self.j, self.f_p
+        whole[n, :n] = [-self.bend(e) for e in np.eye(n)]
+        whole[n, n] = -self.w @ self.j_p @ self.z
+        step: Array = -np.linalg.solve(whole, np.concatenate([self.f, [right[n]]]))
+        return step
+
+
+def locate_fold(family: Family, x: Array, p: float) -> Fold | None:
+    """The value of p nearest to ``p``, to first order, at which solutions begin to exist.
+
+    Parameters
+    ----------
+    x : (n,)
+        Where the system at ``p`` comes nearest to a solution: Jᵀ F = 0.
+
+    Returns
+    -------
+    Fold or None
+        ``None`` where the parameter does not help: it does not change the gap, or Newton-Raphson
+        on the fold ends nowhere, or on one at which solutions are lost instead of won.
+
+    Notes
+    -----
+    Starts from the first-order estimate δp = -wᵀF / wᵀF_p.
+    """
+    begin = p
+    with np.errstate(all="ignore"):
+        try:
+            here = _At(family, x, p)
+            slope = float(here.w @ here.f_p) * family.size
+            if abs(slope) < 1e-9:
+                return None
+            p -= float(here.w @ here.f) / slope * family.size
+            found = _refined(family, x, p)
+            return None if found is None else _opening(family, begin, *found)
+        except (np.linalg.LinAlgError, ValueError):
+            return None
+
+
+def _refined(family: Family, x: Array, p: float) -> tuple[Array, float] | None:
+    for _ in range(_MOST_STEPS):
+        here = _At(family, x, p)
+        step = here.correction()
+        if not np.isfinite(step).all():
+            return None
+        size = max(float(np.abs(step[:-1]).max()), abs(float(step[-1])) / family.size)
+        step *= min(1.0, _LONGEST / size) if size else 1.0
+        x = x + step[:-1] * here.weights[: here.n]
+        p += float(step[-1])
+        if size <= _STILL * max(1.0, abs(p) / family.size):
+            break
+    else:
+        if size > 1e-9:
+            return None
+    return x, p
+
+
+def _opening(family: Family, begin: float, x: Array, p: float) -> Fold | None:
+    """The fold with the side on which solutions exist, and one of them found there."""
+    here = _At(family, x, p)
+    if np.abs(here.f).max() > _CLOSED:
+        return None
+    towards = np.sign(p - begin) or 1.0
+    ratio = -2.0 * float(here.w @ here.f_p) / here.bend(here.z)
+    if not np.isfinite(ratio) or ratio * towards <= 0.0:
+        return None
+    further = towards * _FURTHER * family.size
+    system, inputs = family.at(p + further), family.inputs
+    start = x + np.sqrt(ratio * further) * here.z * here.weights[: here.n]
+    options = replace(NewtonOptions(), equation_tolerance=1e-13)
+    done = newton(system, np.concatenate([start, inputs])[None, :], options)
+    found = done.status[0] == Status.CONVERGED.code and done.residual[0] <= _CLOSED
+    return Fold(p=p, x=x, opens=float(towards), checked=bool(found))

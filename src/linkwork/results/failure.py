@@ -1,0 +1,190 @@
+"""Why there is no position, or another one than was meant: numbers, and sentences from them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.newton_trouble import NewtonTrouble
+from linkwork.results.quantity import Kind, Units
+
+__all__ = ["Failure", "Remedy"]
+
+_MOST_REMEDIES = 3
+_MOST_CONFIGURATIONS = 4
+_MOST_VALUES = 4
+_NOTHING = 1e-12  # rounding, shown as 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Remedy:
+    """One length that alone would let the loops just close.
+
+    Parameters
+    ----------
+    length : str
+        Its name, as the user wrote it.
+    now, needed : float
+        Its value and the one with which the loops just close [length].
+    exact : bool
+        Whether this follows from a closed form and holds wherever the search begins (dyads).
+        Otherwise it is the value nearest to first order, corrected until the loops just close,
+        and checked by a position found a little further.
+    """
+
+    length: str
+    now: float
+    needed: float
+    exact: bool
+
+    @property
+    def change(self) -> float:
+        """By how much the length has to grow; negative if it has to shrink."""
+        return self.needed - self.now
+
+
+@dataclass(frozen=True, kw_only=True)
+class Failure:
+    """What was found out about a position that does not exist, or is not the one meant.
+
+    Parameters
+    ----------
+    what : str
+        What happened, in a sentence.
+    loops : tuple of str
+        The loops that do not close or lock.
+    gap : float, optional
+        How much is missing at best near the guess [length]; the root of the sum of squares for
+        coupled loops.
+    remedies : tuple of Remedy
+        Smallest relative change first.
+    nearest_input : Mapping[str, float]
+        The input values nearest to those asked that the mechanism's circuit reaches (the circuit
+        through the start, or, if there is none, the one found nearest to the guess); everyday
+        units, empty if none is known.
+    nearest_kind : str
+        What is there: ``dead point``, ``end of what was followed``; empty if the circuit reaches
+        the values asked.
+    nearest_proved : bool
+        Whether the circuit was followed with proof.
+    through : Mapping[str, float]
+        The dead point behind which the circuit reaches the values asked.
+    unreachable : bool
+        Whether no input value was found at which the mechanism can be assembled.
+    trouble : NewtonTrouble, optional
+        Which of the four ways of missing a root it was.
+    meant : Mapping[str, float]
+        The root beside the guess, if Newton-Raphson missed it.
+    configurations : tuple of Mapping[str, float]
+        The positions that exist at the values asked: unknowns by name.
+    complete : bool, optional
+        Whether these are all; ``None`` if none were looked for.
+    """
+
+    what: str
+    asked: Mapping[str, float] = FrozenDict()
+    loops: tuple[str, ...] = ()
+    gap: float | None = None
+    remedies: tuple[Remedy, ...] = ()
+    nearest_input: Mapping[str, float] = FrozenDict()
+    nearest_kind: str = ""
+    nearest_proved: bool = False
+    through: Mapping[str, float] = FrozenDict()
+    unreachable: bool = False
+    trouble: NewtonTrouble | None = None
+    configurations: tuple[Mapping[str, float], ...] = ()
+    complete: bool | None = None
+    meant: Mapping[str, float] = FrozenDict()
+    units: Units
+    kinds: Mapping[str, Kind] = FrozenDict()
+
+    @property
+    def message(self) -> str:
+        """The whole story in sentences."""
+        return "; ".join(text for _, text in self.sentences())
+
+    def sentences(self) -> Iterator[tuple[str, str]]:
+        """A word that says what each is about, and the sentence."""
+        yield "why", self.what
+        if self.meant:
+            yield "beside", f"the root beside the guess is {self._values(self.meant, _MOST_VALUES)}"
+        if self.remedies:
+            yield "remedy", self._remedy_text()
+        if self.nearest_input:
+            yield "nearest", self._nearest_text()
+        elif self.unreachable:
+            yield "nearest", "no input value was found at which it could be assembled"
+        if self.complete is not None:
+            yield "elsewhere", self._configurations_text()
+
+    def _remedy_text(self) -> str:
+        unit = self.units.length
+        texts = []
+        for remedy in self.remedies[:_MOST_REMEDIES]:
+            way = "longer" if remedy.change > 0 else "shorter"
+            if remedy.length.startswith("offset of "):
+                way = "more" if remedy.change > 0 else "less"
+            change = f"{abs(remedy.change):.6g} {unit} {way}"
+            texts.append(f"{remedy.length} = {remedy.needed:.6g} {unit} ({change})")
+        alone = "it just closes with" if len(texts) == 1 else "it just closes with one of"
+        return f"{alone} {', '.join(texts)}"
+
+    def _nearest_text(self) -> str:
+        where = self._values(self.nearest_input)
+        if self.through:
+            return f"the same circuit reaches it, through the dead point at {self._values(self.through)}"
+        if not self.nearest_kind:
+            return f"the circuit nearest to the guess does reach {where}"
+        return f"nearest reachable input: {where} ({self.nearest_kind})"
+
+    def _configurations_text(self) -> str:
+        at = f" at {self._values(self.asked)}" if self.asked else ""
+        if not self.configurations:
+            if self.complete:
+                return f"no configuration exists{at}"
+            return f"no position was found{at} from other guesses either"
+        shown = [self._values(c, _MOST_VALUES) for c in self.configurations[:_MOST_CONFIGURATIONS]]
+        more = len(self.configurations) - len(shown)
+        texts = " or ".join(shown) + (f" or {more} more" if more else "")
+        count = len(self.configurations)
+        exist = "exists" if count == 1 else "exist"
+        known = "" if self.complete else ", perhaps not all"
+        noun = "position" if count == 1 else "positions"
+        return f"{count} {noun} {exist}{at}{known}: {texts}"
+
+    def _values(self, values: Mapping[str, float], most: int = 99) -> str:
+        texts = []
+        for name, value in list(values.items())[:most]:
+            kind = self.kinds.get(name, Kind.NUMBER)
+            unit = self.units.angle.sign if kind is Kind.ANGLE else ""
+            unit = f" {self.units.length}" if kind is Kind.LENGTH else unit
+            short = 0.0 if abs(value) < _NOTHING else value
+            texts.append(f"{name} = {short:.10g}{unit}")
+        return ", ".join(texts) + (", …" if len(values) > most else "")
+
+    def to_dict(self) -> dict[str, Any]:
+        """The numbers as JSON-ready data."""
+        return {
+            "what": self.what,
+            "loops": list(self.loops),
+            "gap": self.gap,
+            "remedies": [
+                {
+                    "length": r.length,
+                    "now": r.now,
+                    "needed": r.needed,
+                    "change": r.change,
+                    "exact": r.exact,
+                }
+                for r in self.remedies
+            ],
+            "nearest_input": dict(self.nearest_input),
+            "nearest_kind": self.nearest_kind,
+            "nearest_proved": self.nearest_proved,
+            "through": dict(self.through),
+            "trouble": None if self.trouble is None else self.trouble.name,
+            "configurations": [dict(c) for c in self.configurations],
+            "configurations_complete": self.complete,
+        }
