@@ -34,9 +34,12 @@ def position_lines(mechanism: Mechanism, position: Position, *, from_guess: bool
     lines = title_lines(position.mechanism)
     if not position.status.ok:
         lines += sentence(bad, "No position found", where)
-        lines += fields([("why", position.message)])
+        told = position.failure
+        lines += fields([("why", position.message)] if told is None else told.sentences())
         return [*lines, *_steps(mechanism, position, from_guess)]
     lines += sentence(good, "Position found", where)
+    if position.failure is not None:
+        lines += fields(position.failure.sentences())
     lines += _quantities(mechanism, position)
     if position.points:
         lines += ["", *_points(position)]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import unicodedata
+from collections.abc import Iterable
 
-__all__ = ["GREEK", "canonical", "is_name", "latex_name", "pretty"]
+__all__ = ["GREEK", "canonical", "is_name", "latex_name", "pretty", "spelled"]
 
 GREEK = {
     "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta",
@@ -21,6 +22,12 @@ def canonical(name: str) -> str:
     """The one form under which a name is looked up: NFKC, Greek letters spelled out."""
     folded = unicodedata.normalize("NFKC", name)
     return "".join(GREEK.get(letter, letter) for letter in folded)
+
+
+def spelled(name: str, known: Iterable[str]) -> str:
+    """The spelling among ``known`` of a name that may be written otherwise, else the name."""
+    folded = canonical(name)
+    return next((other for other in known if canonical(other) == folded), name)
 
 
 def is_name(text: str) -> bool:

@@ -45,6 +45,7 @@ def check_linkage(linkage: Linkage, problems: Problems) -> None:
         _check_slot(linkage, slot, ("slots", k), problems)
     for k, slider in enumerate(linkage.sliders):
         _check_slider(linkage, slider, ("sliders", k), problems)
+    _check_guided_once(linkage, problems)
     for k, cylinder in enumerate(linkage.cylinders):
         _check_cylinder(linkage, cylinder, ("cylinders", k), problems)
     _check_dimension_keys(linkage, problems)
@@ -168,6 +169,27 @@ def _check_slot(linkage: Linkage, slot: Slot, key: Key, problems: Problems) -> N
             (*key, "point"),
             f'point "{slot.point}" is fixed on "{slot.on}" and cannot run in its slot',
         )
+
+
+def _check_guided_once(linkage: Linkage, problems: Problems) -> None:
+    """A point has one place in a body: on one line of it."""
+    guides = [
+        *((("slots", k, "point"), s.name, s.point, s.on) for k, s in enumerate(linkage.slots)),
+        *(
+            (("sliders", k, "points"), s.name, s.points[0], s.on)
+            for k, s in enumerate(linkage.sliders)
+            if s.points
+        ),
+    ]
+    first: dict[tuple[str, str], str] = {}
+    for key, name, point, on in guides:
+        other = first.setdefault((point, on), name)
+        if other != name:
+            problems.add(
+                key,
+                f'point "{point}" is guided twice by "{on}": "{other}" already leads it along '
+                "a line there, and a second line leaves it no freedom",
+            )
 
 
 def _check_slider(linkage: Linkage, slider: Slider, key: Key, problems: Problems) -> None:

@@ -22,6 +22,7 @@ from linkwork.numerics.newton import NewtonOptions, newton
 __all__ = ["Assemblies", "AssembliesAt", "assemblies_at", "block_positions", "distance"]
 
 _STARTS = 192  # per block that is no dyad
+_MOST_BLOCKS = 24
 _MOST = 64  # positions; a chain of dyads has 2^blocks
 _SAME = 1e-6  # weighted
 _REACH = 2.0  # lengths are looked for within so many times the longest link around the guess
@@ -35,13 +36,16 @@ class Assemblies:
     complete: bool
 
 
-#: What tells the positions that exist for given inputs (p,), internal units.
-AssembliesAt = Callable[[Model, Array], Assemblies]
+#: What tells the positions that exist for given inputs (p,), internal units; ``None``: not looked
+#: for.
+AssembliesAt = Callable[[Model, Array], Assemblies | None]
 
 
-def assemblies_at(model: Model, inputs: Array) -> Assemblies:
+def assemblies_at(model: Model, inputs: Array) -> Assemblies | None:
     """The positions of a mechanism for the inputs (p,), block by block."""
     solver = model.compiled.solver
+    if len(solver.blocks) > _MOST_BLOCKS:
+        return None
     guess = model.equations.start.copy()
     guess[solver.unknowns :] = inputs
     found, complete = guess[None, :], True
@@ -106,8 +110,10 @@ def _starts(block: Block, guess: Array) -> Array:
     turns = block.system.turns[:n]
     size = block.system.variable_scale[:n]
     lengths = guess + _REACH * size * (2.0 * even - 1.0)
-    # a plain number has no natural size: most starts near the guess, some far away
-    numbers = guess + size * np.tan(np.pi * 0.99 * (even - 0.5))
+    # a plain number has no natural size: some starts near the guess, some far away
+    wide = np.maximum(size, 1.0) * np.array([1.0, 30.0])[:, None]
+    sizes = np.stack([size, *wide])[np.arange(_STARTS) % 3]
+    numbers = guess + sizes * np.tan(np.pi * 0.99 * (even - 0.5))
     spread = numbers if _is_plain(block) else lengths
     starts: Array = np.where(turns, guess + 2.0 * np.pi * even, spread)
     return starts

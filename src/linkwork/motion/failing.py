@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from linkwork.foundation.arrays import Array
@@ -12,8 +14,9 @@ from linkwork.motion.dyads import dyad_of
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.newton_reasons import Miss, miss_of, root_beside_guess, trouble_of
-from linkwork.motion.reach import Reach, assembled_near, reach_towards
+from linkwork.motion.reach import MOST_UNKNOWNS, Reach, assembled_near, reach_towards
 from linkwork.motion.remedies import remedies_of
+from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.block_solver import Block
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.track import InputPath
@@ -35,6 +38,13 @@ def no_position(
     Blocks before it are solved first. If the block has no position, that is told with its gap and
     what would help; otherwise why Newton-Raphson missed those that exist.
     """
+    with np.errstate(all="ignore"):
+        return _explained(model, v, status, failed_block, options)
+
+
+def _explained(
+    model: Model, v: Array, status: Status, failed_block: int, options: NewtonOptions
+) -> tuple[Status, Failure]:
     solver = model.compiled.solver
     here = solver.solve(v[None, :], options).v[0]
     block = solver.blocks[failed_block]
@@ -102,17 +112,38 @@ def beyond_reach(
         What was met on the way.
     """
     path, lead, asked = place
+    near = None
+    if status is Status.OUT_OF_REACH:
+        near = reach_towards(model, path, lead, v, asked)
+    elif all(limit.located for limit in limits):
+        near = _nearest_limit(model, path, lead, asked, limits)
     name = model.equations.inputs[lead].name
     unit = model.units.angle.sign if model.equations.inputs[lead].kind == "angle" else ""
     met = " and ".join(f"{limit.input:.10g}{unit}" for limit in limits)
-    reach = reach_towards(model, path, lead, v, asked) if status is Status.OUT_OF_REACH else None
     return _failure(
         model,
         path.at(asked),
         what=f"{status.value} (met at {name} = {met})",
         loops=tuple(dict.fromkeys(loop for limit in limits for loop in limit.loops)),
-        reach=reach,
+        reach=near,
     )
+
+
+def _nearest_limit(
+    model: Model, path: InputPath, lead: int, asked: float, limits: tuple[Limit, ...]
+) -> Reach:
+    """The limit that was met nearest to the value asked."""
+    scale = float(model.input_scale[lead])
+
+    def away(limit: Limit) -> float:
+        gap = limit.input * scale - asked
+        return abs(math.remainder(gap, 2.0 * np.pi) if turns_freely(model) else gap)
+
+    limit = min(limits, key=away)
+    inputs = path.at(limit.input * scale) / model.input_scale
+    inputs[lead] = limit.input
+    kind = limit.kind.value.partition(":")[0]
+    return Reach(inputs=inputs, kind=kind, proved=False, first_dead_point=None)
 
 
 def _head(status: Status) -> str:
@@ -128,11 +159,12 @@ def _loops_in(model: Model, block: Block) -> int:
 
 
 def _named(model: Model, block: Block, x: Array) -> dict[str, float]:
-    """The unknowns (n,) of a block by name, everyday units."""
+    """The unknowns (n,) of a block by name, everyday units, angles within half a turn."""
     unknowns = [model.equations.unknowns[int(k)] for k in block.unknowns]
+    turned = np.where(block.system.turns[: len(x)], np.remainder(x + np.pi, 2.0 * np.pi) - np.pi, x)
     return {
         u.name: float(value / model.units.scale(Kind(u.kind)))
-        for u, value in zip(unknowns, x, strict=True)
+        for u, value in zip(unknowns, turned, strict=True)
     }
 
 
@@ -163,7 +195,7 @@ def _cannot_close(model: Model, block: Block, number: int, here: Array, miss: Mi
         f"nearest to the guess a gap of {size:.6g} {unit} remains"
     )
     reach, reachable = None, True
-    if len(inputs):
+    if len(inputs) and solver.unknowns <= MOST_UNKNOWNS:
         lead, rate = lock_step(model.rows)
         path = InputPath(origin=inputs - rate * inputs[lead], rate=rate)
         assembled = assembled_near(model, path, lead, here)
@@ -206,10 +238,11 @@ def _failure(model: Model, inputs: Array, reach: Reach | None = None, **parts: o
     """The explanation with the positions that exist at the inputs (p,)."""
     driven = [u.name for u in model.equations.inputs]
     found = ELSEWHERE(model, inputs)
+    everywhere = model.equations.start[None, :][:0] if found is None else found.v
     n = model.compiled.solver.unknowns
     scales = np.array([model.units.scale(Kind(u.kind)) for u in model.equations.unknowns])
     turns = np.array([u.kind == "angle" for u in model.equations.unknowns], dtype=bool)
-    x = found.v[:, :n]
+    x = everywhere[:, :n]
     x = np.where(turns, np.angle(np.exp(1j * np.where(turns, x, 0.0))), x) / scales
     x = np.array(sorted(x.tolist(), key=lambda row: [round(value, 6) for value in row]))
     names = [u.name for u in model.equations.unknowns]
@@ -229,7 +262,7 @@ def _failure(model: Model, inputs: Array, reach: Reach | None = None, **parts: o
     return Failure(
         asked=by_name(_everyday_inputs(model, inputs)),
         configurations=tuple(dict(zip(names, map(float, row), strict=True)) for row in x),
-        complete=found.complete,
+        complete=None if found is None else found.complete,
         units=model.units,
         kinds={u.name: Kind(u.kind) for u in model.equations.variables},
         **towards,  # type: ignore[arg-type]

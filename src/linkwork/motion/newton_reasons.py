@@ -83,6 +83,8 @@ def _is_extremum(block: Block, v: Array) -> bool:
     weights, scale = system.variable_scale[:n], system.equation_scale
     f, jacobian = (part[0] for part in system.residual_and_jacobian(v[None, :]))
     r, j = f / scale, jacobian[:, :n] * weights / scale[:, None]
+    if not (np.isfinite(r).all() and np.isfinite(j).all()):
+        return False
     size = float(np.linalg.norm(r))
     if not size or np.linalg.norm(j.T @ r) > _FLAT * size:
         return False
@@ -117,8 +119,10 @@ def root_beside_guess(block: Block, guess: Array, found: Array) -> Array | None:
     """
     n = len(block.unknowns)
     ends = np.stack([guess[block.variables], found[block.variables]])
-    signs = np.sign(np.linalg.det(block.system.jacobian(ends)[:, :, :n]))
-    if not np.isfinite(signs).all() or signs[0] * signs[1] >= 0.0:
+    weights, scale = block.system.variable_scale[:n], block.system.equation_scale
+    slopes = block.system.jacobian(ends)[:, :, :n] * weights / scale[:, None]
+    signs = np.linalg.det(slopes) / np.linalg.norm(slopes, axis=(1, 2)) ** n
+    if not (np.abs(signs) > _FLAT).all() or signs[0] * signs[1] > 0.0:
         return None
     others, _ = block_positions(block, guess)
     start = guess[block.unknowns]

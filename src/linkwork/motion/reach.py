@@ -17,8 +17,9 @@ from linkwork.numerics.least_squares import nearest_miss
 from linkwork.numerics.proven_curve import prove_curve
 from linkwork.numerics.track import BOLD, InputPath, follow
 
-__all__ = ["Reach", "assembled_near", "reach_towards"]
+__all__ = ["MOST_UNKNOWNS", "Reach", "assembled_near", "reach_towards"]
 
+MOST_UNKNOWNS = 200  # of a mechanism whose circuit is followed for an explanation
 _CLOSED = 1e-9  # relative gap of a position that was found with the input free
 _HELD = 0.1  # weight of the input beside the unknowns: it moves as little as need be
 _TRIES = 8  # input values around the circle from which an assembled position is looked for
@@ -72,6 +73,8 @@ def reach_towards(model: Model, path: InputPath, lead: int, v: Array, asked: flo
     v : (N,)
         A position on the circuit.
     """
+    if model.compiled.solver.unknowns > MOST_UNKNOWNS:
+        return None
     leads = LeadTable(model.compiled.table, path, lead)
     p = leads.parameter
     period = _TURN if turns_freely(model) else None

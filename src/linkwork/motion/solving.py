@@ -19,10 +19,11 @@ from linkwork.motion.proving import prove_rows
 from linkwork.motion.reading import Named, named_series
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.tracking import leading_scale, track_to, turns_freely
+from linkwork.motion.whole_turns import laps_to
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.track import InputPath, Rows, Track, node_at, rows_on_track
 from linkwork.results.failure import Failure
-from linkwork.results.motion import Series
+from linkwork.results.motion import Limit, Series
 from linkwork.results.position import Certificate, NewtonTrail, Position
 
 __all__ = ["solve"]
@@ -114,6 +115,22 @@ class _Evidence:
     failure: Failure | None
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Place:
+    """Where on a track the position lies.
+
+    ``asked`` (p,): the input values meant there, everyday units, whole turns aside. ``gain`` (N,):
+    what whole turns that were left out add to the variables; ``joined``: whether they are proved.
+    """
+
+    path: InputPath
+    track: Track
+    t: float
+    asked: Array
+    gain: Array | None = None
+    joined: bool = True
+
+
 def _arrived(model: Model, target: Array, start: Start, certify: bool) -> Position:
     """The start itself is the position asked for."""
     solver = model.compiled.solver
@@ -130,15 +147,17 @@ def _arrived(model: Model, target: Array, start: Start, certify: bool) -> Positi
         rates=solver.rates(start.v[None, :], _rate(model)),
     )
     track = Track(nodes=(node,), start=0)
-    missed = another_root(model, start.v)
-    return _from_row(model, target, (path, track, t), rows, start, certify, missed)
+    place = _Place(path=path, track=track, t=t, asked=target)
+    return _from_row(model, target, place, rows, start, certify, another_root(model, start.v))
 
 
 def _followed(model: Model, target: Array, start: Start, certify: bool) -> Position:
     """Along the straight line from the guess's inputs to the target."""
     solver = model.compiled.solver
     origin = model.start_inputs
-    inputs = target * model.input_scale
+    laps = laps_to(model, start.v, target)
+    asked = target if laps is None else laps.inputs
+    inputs = asked * model.input_scale
     span = inputs - origin
     lead = int(np.argmax(np.abs(span / _input_weights(model))))
     scale = leading_scale(model, lead)
@@ -146,20 +165,37 @@ def _followed(model: Model, target: Array, start: Start, certify: bool) -> Posit
     path = InputPath(origin=origin - rate * origin[lead], rate=rate)
     first = node_at(solver, path, float(origin[lead]), start.v)
     goal = float(inputs[lead])
-    track = track_to(solver, path, first, [goal], scale)
-    limits = limits_of(model, path, track, lead)
-    if limits and turns_freely(model):
-        goal -= np.copysign(2.0 * np.pi, goal - first.t)
-        track = track_to(solver, path, first, [goal], scale)
-        limits += limits_of(model, path, track, lead)
-    if track.ends:
+    limits: tuple[Limit, ...] = ()
+    for turns in _turns_away(model, goal - first.t):
+        t = goal - turns * 2.0 * np.pi
+        track = track_to(solver, path, first, [t], scale)
+        if not track.ends:
+            break
+        met = limits_of(model, path, track, lead)
+        limits += tuple(limit for limit in met if limit.input not in [old.input for old in limits])
+    else:
         reasons = {limit.status for limit in limits}
         status = reasons.pop() if len(reasons) == 1 else limits[0].status
-        place = (path, lead, float(inputs[lead]))
-        failure = beyond_reach(model, start.v, place, status, limits)
+        failure = beyond_reach(model, start.v, (path, lead, goal), status, limits)
         return _failed(model, target, status, failure, start)
-    rows = rows_on_track(solver, path, track, np.array([goal]), scale)
-    return _from_row(model, target, (path, track, goal), rows, start, certify)
+    rows = rows_on_track(solver, path, track, np.array([t]), scale)
+    place = _Place(
+        path=path,
+        track=track,
+        t=t,
+        asked=asked - (turns * model.units.angle.turn if turns else 0.0),
+        gain=None if laps is None else laps.gain,
+        joined=laps is None or laps.proved,
+    )
+    return _from_row(model, target, place, rows, start, certify)
+
+
+def _turns_away(model: Model, way: float) -> list[int]:
+    """By how many whole turns to come short of a value this far away [rad], in order of trial."""
+    if not turns_freely(model):
+        return [0]
+    whole = int(way / (2.0 * np.pi))
+    return list(dict.fromkeys([0, whole, whole + int(np.copysign(1.0, way))]))
 
 
 def _input_weights(model: Model) -> Array:
@@ -187,7 +223,7 @@ def _failed(
 def _from_row(
     model: Model,
     target: Array,
-    place: tuple[InputPath, Track, float],
+    place: _Place,
     rows: Rows,
     start: Start,
     certify: bool,
@@ -195,21 +231,24 @@ def _from_row(
 ) -> Position:
     """The one row of a batch as a position, with its certificate."""
     solver = model.compiled.solver
-    path, track, t = place
     certificate = Certificate()
     if certify:
-        asked = (target * model.input_scale)[None, :]
-        proofs = prove_rows(solver, path, track, np.array([t]), rows, asked)
+        asked = (place.asked * model.input_scale)[None, :]
+        proofs = prove_rows(solver, place.path, place.track, np.array([place.t]), rows, asked)
         proved = bool(np.isfinite(proofs.radius[0]))
+        certification = Certification.of_code(int(proofs.code[0]))
+        if certification is Certification.CERTIFIED and not place.joined:
+            certification = Certification.MOTION_NOT_PROVED
         certificate = Certificate(
-            certification=Certification.of_code(int(proofs.code[0])),
+            certification=certification,
             radius=float(proofs.radius[0]) if proved else None,
             unique_within=float(proofs.unique[0]) if proved else None,
         )
     status = Status.of_code(int(rows.status[0]))
     rates = solver.rates(rows.v, _rate(model))
     found = np.array([status.ok])
-    named = named_series(model, rows.v, rates.first, rates.second, target[None, :], found)
+    v = rows.v if place.gain is None else rows.v + place.gain
+    named = named_series(model, v, rates.first, rates.second, target[None, :], found)
     message = status.value if failure is None else failure.message
     evidence = _Evidence(
         status=status,
@@ -221,7 +260,7 @@ def _from_row(
         trails=start.trails,
         failure=failure,
     )
-    return _position(model, named, evidence, rows.v[0, : solver.unknowns])
+    return _position(model, named, evidence, v[0, : solver.unknowns])
 
 
 def _position(model: Model, named: Named, evidence: _Evidence, q: Array) -> Position:

@@ -109,7 +109,9 @@ class Failure:
         """A word that says what each is about, and the sentence."""
         yield "why", self.what
         if self.meant:
-            yield "beside", f"the root beside the guess is {self._values(self.meant, _MOST_VALUES)}"
+            another = self.trouble is NewtonTrouble.ANOTHER_ROOT
+            which = "the root beside the guess is" if another else "a damped iteration does find"
+            yield "beside", f"{which} {self._values(self.meant, _MOST_VALUES)}"
         if self.remedies:
             yield "remedy", self._remedy_text()
         if self.nearest_input:
@@ -124,35 +126,36 @@ class Failure:
         texts = []
         for remedy in self.remedies[:_MOST_REMEDIES]:
             way = "longer" if remedy.change > 0 else "shorter"
-            if remedy.length.startswith("offset of "):
+            if remedy.now <= 0.0 or remedy.needed <= 0.0:  # an offset
                 way = "more" if remedy.change > 0 else "less"
-            change = f"{abs(remedy.change):.6g} {unit} {way}"
-            texts.append(f"{remedy.length} = {remedy.needed:.6g} {unit} ({change})")
-        alone = "it just closes with" if len(texts) == 1 else "it just closes with one of"
-        return f"{alone} {', '.join(texts)}"
+            name = f'"{remedy.length}"' if " " in remedy.length else remedy.length
+            change = f"{abs(remedy.change):.6g} {way}"
+            texts.append(f"{name} = {remedy.needed:.6g} {unit} ({change})")
+        where = "" if all(remedy.exact for remedy in self.remedies) else " near the guess"
+        return f"it just closes{where} with {' or '.join(texts)}"
 
     def _nearest_text(self) -> str:
         where = self._values(self.nearest_input)
         if self.through:
-            return f"the same circuit reaches it, through the dead point at {self._values(self.through)}"
+            passed = self._values(self.through)
+            return f"the same circuit does reach it, through the dead point at {passed}"
         if not self.nearest_kind:
-            return f"the circuit nearest to the guess does reach {where}"
+            return "the circuit nearest to the guess does reach it"
         return f"nearest reachable input: {where} ({self.nearest_kind})"
 
     def _configurations_text(self) -> str:
-        at = f" at {self._values(self.asked)}" if self.asked else ""
         if not self.configurations:
             if self.complete:
-                return f"no configuration exists{at}"
-            return f"no position was found{at} from other guesses either"
+                return "no configuration exists there"
+            return "no position was found there from other guesses either"
         shown = [self._values(c, _MOST_VALUES) for c in self.configurations[:_MOST_CONFIGURATIONS]]
         more = len(self.configurations) - len(shown)
         texts = " or ".join(shown) + (f" or {more} more" if more else "")
         count = len(self.configurations)
-        exist = "exists" if count == 1 else "exist"
-        known = "" if self.complete else ", perhaps not all"
-        noun = "position" if count == 1 else "positions"
-        return f"{count} {noun} {exist}{at}{known}: {texts}"
+        plain = all(kind is Kind.NUMBER for kind in self.kinds.values())
+        noun = ("root" if plain else "configuration") + ("" if count == 1 else "s")
+        noun += " exists" if count == 1 else " exist"
+        return f"{count} {noun} there{'' if self.complete else ' (perhaps not all)'}: {texts}"
 
     def _values(self, values: Mapping[str, float], most: int = 99) -> str:
         texts = []

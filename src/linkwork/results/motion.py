@@ -14,6 +14,7 @@ from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, CountArra
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
+from linkwork.foundation.names import spelled
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
@@ -158,16 +159,19 @@ class Motion:
 
     def __getitem__(self, name: str) -> Array:
         """Values of one column by name, shape (N,): ``motion["s16"]``, ``motion["A.x"]``."""
-        if name in self.inputs:
-            return self.inputs[name]
+        own = spelled(name, self.inputs)
+        if own in self.inputs:
+            return self.inputs[own]
         return self.series(name).value
 
     def series(self, name: str) -> Series:
         """The series of a name: unknown, link, slider, output or ``<point>.x``."""
         for table in (self.unknowns, self.links, self.sliders, self.outputs):
-            if name in table:
-                return table[name]
+            own = spelled(name, table)
+            if own in table:
+                return table[own]
         point, _, axis = name.rpartition(".")
+        point = spelled(point, self.points)
         if point in self.points and axis in ("x", "y"):
             return self.points[point][axis == "y"]
         tables = (self.inputs, self.unknowns, self.links, self.sliders, self.outputs)
@@ -212,6 +216,7 @@ class Motion:
 
     def trace(self, point: str) -> ComplexArray:
         """The path of a point as x + iy, shape (N,), NaN where there is no position."""
+        point = spelled(point, self.points)
         if point not in self.points:
             raise UnknownNameError(
                 f'there is no point "{point}" {choices("points", self.points, point)}'

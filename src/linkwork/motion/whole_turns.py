@@ -1,0 +1,82 @@
+"""Far input values of a mechanism that turns freely: laps that bring it back are left out."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.equations.leading import LeadTable
+from linkwork.foundation.arrays import Array
+from linkwork.motion.model import Model
+from linkwork.motion.tracking import turns_freely
+from linkwork.numerics.curve import CurveOptions, trace
+from linkwork.numerics.proven_curve import prove_curve
+from linkwork.numerics.track import BOLD, InputPath
+
+__all__ = ["Laps", "laps_to"]
+
+_TURN = 2.0 * np.pi
+_FAR = 3.0  # turns up to which the motion is simply followed
+_OPTIONS = CurveOptions(most_turns=12, most_legs=200, track=replace(BOLD, most_steps=2000))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Laps:
+    """``inputs`` (p,): everyday values so many laps nearer to the start; ``gain`` (N,): what all
+    laps left out add to the variables; ``proved``: that a lap leads back to where it began.
+    """
+
+    inputs: Array
+    gain: Array
+    proved: bool
+
+
+def laps_to(model: Model, v: Array, target: Array) -> Laps | None:
+    """The laps between a position and a far value of a single input that turns freely.
+
+    Parameters
+    ----------
+    v : (N,)
+        The position at the start.
+    target : (1,)
+        The value asked, everyday units.
+
+    Returns
+    -------
+    Laps or None
+        ``None`` if the value is near, or if the motion does not come back to its start while the
+        input turns on (one lap may take several turns).
+    """
+    if not turns_freely(model):
+        return None
+    n, unit = model.compiled.solver.unknowns, model.units.angle.turn
+    begin = float(model.everyday_start[0])
+    span = float(target[0]) - begin
+    if not abs(span) > _FAR * unit:
+        return None
+    leads = LeadTable(
+        model.compiled.table, InputPath(origin=np.zeros(1), rate=np.ones(1)), 0
+    )
+    curve = trace(leads, v, math.copysign(1.0, span), _OPTIONS)
+    if not curve.end.closed or any(_turns_back(leg.v[:, n]) for leg in curve.legs):
+        return None
+    gain = curve.legs[-1].v[-1] - v
+    turns = round(float(gain[n]) / _TURN)
+    if turns == 0:
+        return None
+    gain = np.where(leads.turns, _TURN * np.round(gain / _TURN), 0.0)
+    laps = math.floor(abs(span) / (abs(turns) * unit))
+    if laps * abs(turns) * unit == abs(span):
+        laps -= 1  # the last one is followed
+    nearer = float(target[0]) - math.copysign(laps * abs(turns) * unit, span)
+    proof = prove_curve(leads, curve)
+    return Laps(
+        inputs=np.array([nearer]), gain=laps * gain, proved=proof.whole and proof.closed
+    )
+
+
+def _turns_back(values: Array) -> bool:
+    steps = np.diff(values)
+    return bool((steps > 0).any() and (steps < 0).any())
