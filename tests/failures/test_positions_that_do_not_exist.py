@@ -40,7 +40,9 @@ def test_links_too_short_name_the_loop_and_the_exact_gap() -> None:
     assert position.status is lw.Status.CANNOT_CLOSE
     assert position.message == (
         f'loop "O2 A B O4" cannot be closed at crank = 90°: nearest to the guess a gap of '
-        f"{gap:.6g} mm remains; change a length or start elsewhere"
+        f'{gap:.6g} mm remains; it just closes with "A B" = {30 + gap:.6g} mm ({gap:.6g} longer) '
+        f'or "O4 B" = {20 + gap:.6g} mm ({gap:.6g} longer) or "O2 O4" = 30 mm (70 shorter); '
+        "no input value was found at which it could be assembled; no configuration exists there"
     )
     assert math.isnan(position["coupler"])
 
@@ -79,7 +81,8 @@ def test_asking_beyond_a_dead_point_names_both_limits() -> None:
     position = four_bar(2, 5, 2, 4).solve(at=0)
     assert position.status is lw.Status.OUT_OF_REACH
     assert position.message == (
-        f"{lw.Status.OUT_OF_REACH.value} (met at crank = 46.56746344° and 313.4325366°)"
+        f"{lw.Status.OUT_OF_REACH.value} (met at crank = 46.56746344° and 313.4325366°); "
+        "nearest reachable input: crank = 46.56746344° (dead point); no configuration exists there"
     )
 
 

@@ -71,7 +71,7 @@ def block_positions(block: Block, v: Array) -> tuple[Array, bool]:
     dyad = dyad_of(block, v)
     if dyad is not None:
         polished, good = _solved(block, v, dyad.roots)
-        return polished, bool(good.all())
+        return polished, bool(good.all()) and dyad.all_roots
     start = v[block.variables]
     n = len(block.unknowns)
     linear = _is_linear(block)

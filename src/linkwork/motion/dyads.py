@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -35,11 +35,14 @@ class _Sums:
 
 @dataclass(frozen=True, kw_only=True)
 class Dyad:
-    """``gap``: the length that is missing, 0 if it closes. ``roots`` (K, 2): its positions."""
+    """``gap``: the length that is missing, 0 if it closes. ``roots`` (K, 2): its positions;
+    ``all_roots``: whether these are all. Otherwise it turns freely about a pin that meets another.
+    """
 
     kind: str
     gap: float
     roots: Array
+    all_roots: bool = True
 
 
 def dyad_of(block: Block, v: Array) -> Dyad | None:
@@ -66,7 +69,7 @@ def dyad_of(block: Block, v: Array) -> Dyad | None:
         found = _turning_line(sums.known, sums.turning.get(angle, 0j), slide)
     if found is None or angle == 0:
         return found
-    return Dyad(kind=found.kind, gap=found.gap, roots=found.roots[:, ::-1])
+    return replace(found, roots=found.roots[:, ::-1])
 
 
 def _sums(table: LoopTable, v: Array) -> _Sums | None:
@@ -107,7 +110,7 @@ def _two_links(known: complex, first: complex, second: complex) -> Dyad:
     gap = max(d - (a + b), abs(a - b) - d)
     size = max(d, a, b)
     if d == 0.0 or a == 0.0 or b == 0.0:  # no triangle: none, or a position for every angle
-        return Dyad(kind="RRR", gap=max(gap, 0.0), roots=np.zeros((0, 2)))
+        return replace(_dyad("RRR", gap, size, []), all_roots=gap > _TOUCHING * size)
     # the first link makes the angle ±ε with the vector -K that both have to span
     cosine = (d * d + (a - b) * (a + b)) / (2.0 * d * a)
     swing = math.acos(max(-1.0, min(1.0, cosine)))
@@ -146,7 +149,8 @@ def _turning_line(known: complex, arm: complex, along: complex) -> Dyad | None:
         reach = arm + s * along
         if reach != 0:
             roots.append((cmath.phase(-known / reach), s))
-    return _dyad("RPR", abs(beside) - d, max(d, abs(arm)), roots)
+    found = _dyad("RPR", abs(beside) - d, max(d, abs(arm)), roots)
+    return replace(found, all_roots=bool(roots) or found.gap > 0.0)
 
 
 def _two_slides(known: complex, first: complex, second: complex) -> Dyad | None:

@@ -203,13 +203,16 @@ def _cannot_close(model: Model, block: Block, number: int, here: Array, miss: Mi
         if assembled is not None:
             reach = reach_towards(model, path, lead, assembled, float(inputs[lead]))
     order = np.argsort(-gaps, kind="stable")
+    remedies = remedies_of(model, number, here)
+    if not remedies:
+        what += "; change a length or start elsewhere"
     return _failure(
         model,
         inputs,
         what=what,
         loops=tuple(labels[k] for k in order),
         gap=total,
-        remedies=remedies_of(model, number, here),
+        remedies=remedies,
         reach=reach,
         unreachable=not reachable,
     )
