@@ -31,10 +31,12 @@ if TYPE_CHECKING:
         Problem,
         UnknownNameError,
     )
+    from linkwork.foundation.newton_trouble import NewtonTrouble
     from linkwork.foundation.status import Status
     from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
     from linkwork.numerics.newton import NewtonOptions
     from linkwork.results.check import CheckReport
+    from linkwork.results.failure import Failure, Remedy
     from linkwork.results.motion import Limit, LimitKind, Motion, Series
     from linkwork.results.position import Certificate, Position
     from linkwork.results.table import Table
@@ -66,10 +68,12 @@ else:
                 "Problem",
                 "UnknownNameError",
             ),
+            "foundation.newton_trouble": ("NewtonTrouble",),
             "foundation.status": ("Status",),
             "mechanism.parts": ("Cylinder", "Input", "Slider", "Slot"),
             "numerics.newton": ("NewtonOptions",),
             "results.check": ("CheckReport",),
+            "results.failure": ("Failure", "Remedy"),
             "results.motion": ("Limit", "LimitKind", "Motion", "Series"),
             "results.position": ("Certificate", "Position"),
             "results.table": ("Table",),
@@ -83,6 +87,7 @@ __all__ = [
     "CheckReport",
     "Cylinder",
     "ExpressionError",
+    "Failure",
     "Input",
     "InputError",
     "Limit",
@@ -94,9 +99,11 @@ __all__ = [
     "MissingPackageError",
     "Motion",
     "NewtonOptions",
+    "NewtonTrouble",
     "NotConvergedError",
     "Position",
     "Problem",
+    "Remedy",
     "Series",
     "Slider",
     "Slot",

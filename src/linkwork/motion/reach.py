@@ -15,7 +15,7 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.numerics.curve import Curve, CurveOptions, Leg, TurningPoint, trace, turning_points
 from linkwork.numerics.least_squares import nearest_miss
 from linkwork.numerics.proven_curve import prove_curve
-from linkwork.numerics.track import BOLD, InputPath, follow
+from linkwork.numerics.track import BOLD, InputPath, TrackOptions, follow
 
 __all__ = ["MOST_UNKNOWNS", "Reach", "assembled_near", "reach_towards"]
 
@@ -26,7 +26,8 @@ _TRIES = 8  # input values around the circle from which an assembled position is
 _TURN = 2.0 * np.pi
 _FAST = 6.0  # where a variable moves so many times faster than the input, a dead point is near
 _ASIDE = 0.2  # weighted: how far from it a circuit is begun
-_OPTIONS = CurveOptions(most_legs=200, track=replace(BOLD, most_steps=2000))
+_MOST_LEGS = 200
+_CARES = (replace(BOLD, most_steps=2000), TrackOptions(most_steps=4000))  # until one is proved
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,7 +82,7 @@ def reach_towards(model: Model, path: InputPath, lead: int, v: Array, asked: flo
     away = asked - float(v[p])
     if period is not None:
         away = math.remainder(away, period)
-    curves = _circuit(leads, v, math.copysign(1.0, away))
+    curves, proved = _proven_circuit(leads, v, math.copysign(1.0, away))
     if not curves:
         return None
     points = [point for curve in curves for point in turning_points(leads, curve)]
@@ -90,7 +91,6 @@ def reach_towards(model: Model, path: InputPath, lead: int, v: Array, asked: flo
     ]
     edges += [(point.t, point) for point in points]
     low, high = min(edges, key=lambda e: e[0]), max(edges, key=lambda e: e[0])
-    proved = all(prove_curve(leads, curve).whole for curve in curves)
     first = None if not points else _everyday(model, path, lead, points[0].t, points[0], 0)
     nearest = _nearest(low[0], high[0], asked, period)
     if nearest is None:
@@ -140,21 +140,31 @@ def _everyday(
     return inputs
 
 
-def _circuit(leads: LeadTable, v: Array, side: float) -> list[Curve]:
+def _proven_circuit(leads: LeadTable, v: Array, side: float) -> tuple[list[Curve], bool]:
+    """The circuit through a position (N,), and whether it is proved: boldly, then with care."""
+    curves: list[Curve] = []
+    for care in _CARES:
+        curves = _circuit(leads, v, side, CurveOptions(most_legs=_MOST_LEGS, track=care))
+        if curves and all(prove_curve(leads, curve).whole for curve in curves):
+            return curves, True
+    return curves, False
+
+
+def _circuit(leads: LeadTable, v: Array, side: float, options: CurveOptions) -> list[Curve]:
     """The whole circuit: one curve if it closes, else one each way, behind what led to it."""
     try:
-        aside = _off_dead_point(leads, v)
+        aside = _off_dead_point(leads, v, options)
         start = v if aside is None else aside.legs[-1].v[-1]
-        first = trace(leads, start, side, _OPTIONS)
+        first = trace(leads, start, side, options)
         found = [first]
         if not first.end.closed:
-            found.append(trace(leads, start, -side, _OPTIONS))
+            found.append(trace(leads, start, -side, options))
     except (ValueError, np.linalg.LinAlgError):
         return []
     return [curve for curve in (aside, *found) if curve is not None and curve.legs]
 
 
-def _off_dead_point(leads: LeadTable, v: Array) -> Curve | None:
+def _off_dead_point(leads: LeadTable, v: Array, options: CurveOptions) -> Curve | None:
     """A way from a position (N,) at which the parameter is slow to one where it can lead."""
     table = leads.table
     slope = table.jacobian(v[None, :])[0] * table.variable_scale / table.equation_scale[:, None]
@@ -169,7 +179,7 @@ def _off_dead_point(leads: LeadTable, v: Array) -> Curve | None:
     node, weight = led.node(v), float(table.variable_scale[lead])
     for sign in (1.0, -1.0):
         goal = node.t + sign * _ASIDE * weight
-        nodes, _ = follow(led.solver, led.path, node, goal, weight, _OPTIONS.track)
+        nodes, _ = follow(led.solver, led.path, node, goal, weight, options.track)
         if nodes:
             leg = Leg(led=led, nodes=(node, *nodes))
             return Curve(legs=(leg,), end=CircuitEnd.SINGULAR, passes=())

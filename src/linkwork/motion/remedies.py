@@ -19,7 +19,7 @@ __all__ = ["remedies_of"]
 _MOST_LENGTHS = 40
 _MOST_UNKNOWNS = 80
 _STEP = 1e-6  # of the longest link, for derivatives by a length
-_ROUND = 1e-12  # of the longest link: a length this near to a short decimal number is that number
+_ROUND = 4e-15  # of the longest link: a length this near to a short decimal number is that number
 
 
 def remedies_of(model: Model, number: int, v: Array) -> tuple[Remedy, ...]:
