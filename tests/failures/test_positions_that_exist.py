@@ -113,9 +113,7 @@ def test_a_pin_that_meets_its_pivot_has_a_position_for_every_angle_and_none_is_c
 
 def test_a_long_chain_is_not_listed() -> None:
     count = 25
-    loops = {
-        f"L{k}": f"3*e^(i*a{k}) + 4*e^(i*b{k}) = 5 + 3*e^(i*a{k + 1})" for k in range(count)
-    }
+    loops = {f"L{k}": f"3*e^(i*a{k}) + 4*e^(i*b{k}) = 5 + 3*e^(i*a{k + 1})" for k in range(count)}
     guess = {"a0": 60.0}
     for k in range(count):
         guess |= {f"b{k}": 10.0, f"a{k + 1}": 60.0}

@@ -72,9 +72,7 @@ def test_a_family_that_ends_before_its_fold_has_none() -> None:
         return JoinedBlocks(blocks_of(dyad(a, 4.0)), [0])
 
     x, _ = nearest_miss(dyad(5.0, 4.0), np.array([0.3, -0.2, 0.0]))
-    family = Family(
-        at=at, inputs=np.zeros(1), low=at(4.99), high=at(5.01), step=0.02, size=10.0
-    )
+    family = Family(at=at, inputs=np.zeros(1), low=at(4.99), high=at(5.01), step=0.02, size=10.0)
     assert locate_fold(family, x[:2], 5.0) is None
     whole = replace(family, at=lambda a: JoinedBlocks(blocks_of(dyad(a, 4.0)), [0]))
     fold = locate_fold(whole, x[:2], 5.0)

@@ -87,4 +87,3 @@ class Jansen:
         left = circles_meet(pivot, self.d, upper, self.e, 1)
         heel = circles_meet(left, self.f, lower, self.g, -1)
         return circles_meet(heel, self.h, lower, self.i, -1)
-

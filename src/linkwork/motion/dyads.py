@@ -1,9 +1,9 @@
 """One loop with two unknowns in closed form: how far it is from closing, and its positions.
 
-    RRR   K + a e^{iα} + b e^{iβ} = 0      closes if |a - b| ≤ |K| ≤ a + b
-    RRP   K + a e^{iα} + s u = 0           closes if the line K + s u comes within a of the origin
-    RPR   K + (c + s d) e^{iα} = 0         closes if |K| is at least the distance of the line c + s d
-    PP    K + s u + t v = 0                always closes, once, unless the lines are parallel
+RRR   K + a e^{iα} + b e^{iβ} = 0      closes if |a - b| ≤ |K| ≤ a + b
+RRP   K + a e^{iα} + s u = 0           closes if the line K + s u comes within a of the origin
+RPR   K + (c + s d) e^{iα} = 0         closes if |K| is at least the distance of the line c + s d
+PP    K + s u + t v = 0                always closes, once, unless the lines are parallel
 """
 
 from __future__ import annotations

@@ -157,9 +157,7 @@ def _offsets(linkage: Linkage) -> Iterator[ChangeableLength]:
             return replace(linkage, sliders=tuple(parts))
 
         name = f"offset of {slider.name}"
-        yield ChangeableLength(
-            name=name, value=float(slider.offset), changed=changed, signed=True
-        )
+        yield ChangeableLength(name=name, value=float(slider.offset), changed=changed, signed=True)
 
 
 def _ground(linkage: Linkage) -> Iterator[ChangeableLength]:

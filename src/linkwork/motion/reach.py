@@ -103,9 +103,7 @@ def reach_towards(model: Model, path: InputPath, lead: int, v: Array, asked: flo
     return Reach(inputs=inputs, kind=kind, proved=proved, first_dead_point=first)
 
 
-def _nearest(
-    low: float, high: float, asked: float, period: float | None
-) -> tuple[str, int] | None:
+def _nearest(low: float, high: float, asked: float, period: float | None) -> tuple[str, int] | None:
     """Which end of an interval, so many periods on, is nearest; ``None`` if it holds the value."""
     slack = 1e-12 * max(1.0, abs(asked))
     if period is None:

@@ -42,7 +42,9 @@ def remedies_of(model: Model, number: int, v: Array) -> tuple[Remedy, ...]:
     joined = JoinedBlocks(solver, members)
     if joined.unknowns > _MOST_UNKNOWNS:
         return ()
-    exact = all(len(solver.blocks[k].unknowns) == 1 or dyad_of(solver.blocks[k], v) for k in members)
+    exact = all(
+        len(solver.blocks[k].unknowns) == 1 or dyad_of(solver.blocks[k], v) for k in members
+    )
     found = []
     for length in lengths_of(model.description)[:_MOST_LENGTHS]:
         needed = _needed(model, length, members, v)
@@ -52,9 +54,7 @@ def remedies_of(model: Model, number: int, v: Array) -> tuple[Remedy, ...]:
     return tuple(sorted(found, key=lambda r: float(f"{abs(r.change):.9e}")))
 
 
-def _needed(
-    model: Model, length: ChangeableLength, members: list[int], v: Array
-) -> float | None:
+def _needed(model: Model, length: ChangeableLength, members: list[int], v: Array) -> float | None:
     """The value of one length with which the blocks just close, if there is one."""
     solver = model.compiled.solver
     own = [solver.blocks[k].equations for k in members]

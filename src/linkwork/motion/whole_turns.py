@@ -56,9 +56,7 @@ def laps_to(model: Model, v: Array, target: Array) -> Laps | None:
     span = float(target[0]) - begin
     if not abs(span) > _FAR * unit:
         return None
-    leads = LeadTable(
-        model.compiled.table, InputPath(origin=np.zeros(1), rate=np.ones(1)), 0
-    )
+    leads = LeadTable(model.compiled.table, InputPath(origin=np.zeros(1), rate=np.ones(1)), 0)
     curve = trace(leads, v, math.copysign(1.0, span), _OPTIONS)
     if not curve.end.closed or any(_turns_back(leg.v[:, n]) for leg in curve.legs):
         return None
@@ -72,9 +70,7 @@ def laps_to(model: Model, v: Array, target: Array) -> Laps | None:
         laps -= 1  # the last one is followed
     nearer = float(target[0]) - math.copysign(laps * abs(turns) * unit, span)
     proof = prove_curve(leads, curve)
-    return Laps(
-        inputs=np.array([nearer]), gain=laps * gain, proved=proof.whole and proof.closed
-    )
+    return Laps(inputs=np.array([nearer]), gain=laps * gain, proved=proof.whole and proof.closed)
 
 
 def _turns_back(values: Array) -> bool:
