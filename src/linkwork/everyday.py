@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Self
@@ -130,6 +130,9 @@ class Mechanism:
         start: Number | None = None,
         stop: Number | None = None,
         step: Number | None = None,
+        through: bool = False,
+        change_points: str = "stop",
+        limits_of: Sequence[str] = (),
         certify: bool = True,
         options: NewtonOptions | None = None,
         progress: Callable[[float], None] | None = None,
@@ -140,13 +143,27 @@ class Mechanism:
         ----------
         start, stop, step : number, optional
             Replace the range of the (only) input, in everyday units.
+        through : bool
+            Go on through dead points, the input turning back, around the whole circuit.
+        change_points : str
+            ``stop`` at a change point, go ``straight`` on, or ``turn`` into the other branch.
+        limits_of : sequence of str
+            Quantities whose largest and smallest values are located.
         certify : bool
             Prove every position and the motion between them; without, a sweep is faster.
         """
         asked = self.model
         if not (start is None and stop is None and step is None):
             asked = motion.model_of(self.description.with_range(start, stop, step))
-        return motion.sweep(asked, certify=certify, options=options, progress=progress)
+        return motion.sweep(
+            asked,
+            through=through,
+            change_points=change_points,
+            limits_of=limits_of,
+            certify=certify,
+            options=options,
+            progress=progress,
+        )
 
     def scene(self, at: float | Mapping[str, float] | None = None) -> drawing.Scene:
         """A picture of one position with the traces of the traced points over the cycle."""

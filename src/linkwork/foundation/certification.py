@@ -23,6 +23,10 @@ class Certification(Enum):
     MOTION_NOT_PROVED = (
         "the position is proved, but not that the motion from the start to it stays on one branch"
     )
+    BRANCH_CHOSEN = (
+        "the position is proved; at a change point before it nothing but the chosen way of going "
+        "on decides the branch"
+    )
 
     @property
     def code(self) -> int:

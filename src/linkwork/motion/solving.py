@@ -11,7 +11,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
-from linkwork.motion.limits import limits_of
+from linkwork.motion.limits import ends_of
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.proving import prove_rows
@@ -143,15 +143,19 @@ def _followed(model: Model, target: Array, start: Start, certify: bool) -> Posit
     first = node_at(solver, path, float(origin[lead]), start.v)
     goal = float(inputs[lead])
     track = track_to(solver, path, first, [goal], scale)
-    limits = limits_of(model, path, track, lead)
+    limits = _limits(model, path, track, lead)
     if limits and turns_freely(model):
         goal -= np.copysign(2.0 * np.pi, goal - first.t)
         track = track_to(solver, path, first, [goal], scale)
-        limits += limits_of(model, path, track, lead)
+        limits += _limits(model, path, track, lead)
     if track.ends:
         return _stopped(model, target, limits, lead, start)
     rows = rows_on_track(solver, path, track, np.array([goal]), scale)
     return _from_row(model, target, (path, track, goal), rows, start, certify)
+
+
+def _limits(model: Model, path: InputPath, track: Track, lead: int) -> tuple[Limit, ...]:
+    return tuple(end.limit for end in ends_of(model, path, track, lead))
 
 
 def _input_weights(model: Model) -> Array:

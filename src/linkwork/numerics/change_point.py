@@ -21,7 +21,7 @@ from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.joined import JoinedBlocks, closure_of
 from linkwork.numerics.track import InputPath, Node
 
-__all__ = ["ChangePoint", "locate_change_point"]
+__all__ = ["ChangePoint", "locate_change_point", "most_singular"]
 
 _UNIT = np.finfo(float).eps
 _STEPS = 12
@@ -64,7 +64,7 @@ def locate_change_point(
     ChangePoint or None
         ``None`` if the branches only come near each other, or there is none on that side.
     """
-    block = _most_singular(solver, last)
+    block = most_singular(solver, last.v)
     if block is None:
         return None
     system = JoinedBlocks(solver, closure_of(solver, block))
@@ -110,13 +110,15 @@ def _placed(solver: BlockSolver, where: IndexArray, values: Array) -> Array:
     return whole
 
 
-def _most_singular(solver: BlockSolver, node: Node) -> int | None:
-    """The block with the smallest singular value, relative to its largest."""
+def most_singular(solver: BlockSolver, v: Array) -> int | None:
+    """The block with the smallest singular value, relative to its largest; ``None`` if all are far
+    from singular at v (N,).
+    """
     ratios = []
     for block in solver.blocks:
         n = len(block.unknowns)
         system = block.system
-        j = system.jacobian(node.v[None, block.variables])[0, :, :n]
+        j = system.jacobian(v[None, block.variables])[0, :, :n]
         scaled = j * system.variable_scale[:n] / system.equation_scale[:, None]
         values = np.linalg.svd(scaled, compute_uv=False)
         ratios.append(float(values[-1] / values[0]) if values[0] > 0 else 0.0)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -133,6 +133,7 @@ def _divided(led: Led, a: Node, b: Node, place: int) -> list[Node]:
 def _refined(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, int]) -> TurningPoint:
     place, p = led.place(leads.parameter), leads.parameter
     here = low if abs(low.first[place]) < abs(high.first[place]) else high
+    sharp = replace(led.solver.options, equation_tolerance=_UNIT)
     located, step = False, np.inf
     for _ in range(60):
         step = -here.first[place] / here.second[place] if here.second[place] else np.inf
@@ -146,7 +147,7 @@ def _refined(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, in
             break
         guess = here.v + step * here.first + 0.5 * step * step * here.second
         guess[-1] = s
-        found = led.solver.solve(guess[None, :])
+        found = led.solver.solve(guess[None, :], sharp)
         if found.status[0] != _CONVERGED:
             break
         last = abs(here.first[place])
