@@ -87,7 +87,7 @@ def output_limits(
             input=float(here / unit),
             value=value,
             bracket=(float((here - error) / unit), float((here + error) / unit)),
-            located=error <= 1e-9 * max(1.0, abs(here)),
+            located=bool(error <= 1e-9 * max(1.0, abs(here))),
         )
         found.append((here, limit))
     return found

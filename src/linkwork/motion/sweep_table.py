@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.status import Status
 from linkwork.motion.branch_rows import Asked
 from linkwork.motion.limits import BranchEnd
@@ -81,14 +81,15 @@ class SweepTable:
             self._extra.append(row)
             self._extra_t.append(here)
 
-    def finished(self) -> SolvedRows:
-        """All rows in the table's order."""
+    def finished(self) -> tuple[SolvedRows, BoolArray]:
+        """All rows in the table's order, and which of them were not asked for."""
+        added = np.arange(len(self.rows) + len(self._extra)) >= len(self.rows)
         if not self._extra:
-            return self.rows
+            return self.rows, added
         t = np.concatenate([self.asked.t, self._extra_t])
         backwards = len(self.asked.t) > 1 and self.asked.t[-1] < self.asked.t[0]
         order = np.argsort(-t if backwards else t, kind="stable")
-        return SolvedRows.joined([self.rows, *self._extra]).take(order)
+        return SolvedRows.joined([self.rows, *self._extra]).take(order), added[order]
 
     def _inputs(self, t: float, here: float) -> Array:
         """Everyday inputs at t, shifted by the whole turns to ``here``, (1, p)."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.policy import ChangePointPolicy
@@ -77,13 +77,14 @@ def sweep(
     """
     options = options or NewtonOptions()
     policy = ChangePointPolicy.of(change_points)
+    rows = model.rows  # without an input there is nothing to sweep: an error
     check_quantities(model, limits_of)
     start = first_position(model, model.start_inputs, options)
     if not start.status.ok:
         return _without_start(model, start)
-    lead, rate = lock_step(model.rows)
-    path = InputPath(origin=model.rows[0] - rate * model.rows[0, lead], rate=rate)
-    asked = Asked(t=model.rows[:, lead], inputs=model.rows, everyday=model.everyday_rows)
+    lead, rate = lock_step(rows)
+    path = InputPath(origin=rows[0] - rate * rows[0, lead], rate=rate)
+    asked = Asked(t=rows[:, lead], inputs=rows, everyday=model.everyday_rows)
     entry = _onto_path(model, path, start, asked.t, lead, certify)
     if entry is None:
         message = "no row of the table could be reached from the guess's own input values"
@@ -227,11 +228,13 @@ class _Sweep:
 
     def motion(self, message: str) -> Motion:
         """Everything in one result."""
-        rows = SolvedRows.joined([table.finished() for table in self.tables])
+        first, *further = (table.finished() for table in self.tables)
+        added = [first[1], *(np.ones(len(rows), dtype=bool) for rows, _ in further)]
         return _assembled(
             self.model,
-            rows,
+            SolvedRows.joined([first[0], *(rows for rows, _ in further)]),
             message,
+            added=np.concatenate(added),
             limits=tuple(self.limits),
             output_limits=tuple(self.output_limits),
             circuit=self.circuit,
@@ -293,7 +296,7 @@ def _led_to(
 
 def _without_start(model: Model, start: Start) -> Motion:
     rows = SolvedRows.blank(model.everyday_rows, model.compiled.solver.variables, Status.NO_START)
-    return _assembled(model, rows, start.message)
+    return _assembled(model, rows, start.message, added=np.zeros(len(rows), dtype=bool))
 
 
 def _assembled(
@@ -301,6 +304,7 @@ def _assembled(
     rows: SolvedRows,
     message: str,
     *,
+    added: BoolArray,
     limits: tuple[Limit, ...] = (),
     output_limits: tuple[OutputLimit, ...] = (),
     circuit: CircuitEnd | None = None,
@@ -330,6 +334,7 @@ def _assembled(
         unique_within=rows.unique,
         branch=tuple(rows.branch),
         limit=tuple(rows.limit),
+        added=added,
         speed=model.speed,
         limits=limits,
         output_limits=output_limits,

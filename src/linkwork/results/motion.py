@@ -147,6 +147,8 @@ class Motion:
         On which branch of which circuit each row lies, "" if it was not found.
     limit : tuple of str
         ``dead point``, ``change point``, ``maximum of …`` for rows that lie at one, else "".
+    added : array (N,) of bool
+        Rows that the table did not ask for: limits, and with ``through`` those of further branches.
     speed : float, optional
         Rate of the first input [rad/s or length/s], if given.
     limits : tuple of Limit
@@ -181,6 +183,7 @@ class Motion:
     unique_within: Array
     branch: tuple[str, ...]
     limit: tuple[str, ...]
+    added: BoolArray
     speed: float | None = None
     limits: tuple[Limit, ...] = ()
     output_limits: tuple[OutputLimit, ...] = ()
@@ -188,7 +191,15 @@ class Motion:
     q: Array
 
     def __post_init__(self) -> None:
-        for field in ("residual", "iterations", "condition", "radius", "unique_within", "q"):
+        for field in (
+            "residual",
+            "iterations",
+            "condition",
+            "radius",
+            "unique_within",
+            "added",
+            "q",
+        ):
             object.__setattr__(self, field, read_only(getattr(self, field)))
         inputs = {name: read_only(values) for name, values in self.inputs.items()}
         object.__setattr__(self, "inputs", FrozenDict(inputs))
@@ -218,6 +229,11 @@ class Motion:
     def found(self) -> BoolArray:
         """Which rows hold a position, shape (N,)."""
         return np.array([status.ok for status in self.status], dtype=bool)
+
+    @property
+    def asked(self) -> BoolArray:
+        """The rows of the input's table, shape (N,): all but those added at limits and around."""
+        return np.logical_not(self.added)
 
     @property
     def certified(self) -> BoolArray:

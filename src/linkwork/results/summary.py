@@ -40,13 +40,20 @@ def position_summary(position: Position) -> str:
 def motion_summary(motion: Motion) -> str:
     """Range of the input, counts by status, limits, worst evidence, ranges of the unknowns."""
     name, values = next(iter(motion.inputs.items()))
+    values = values[motion.asked]
     unit = motion.input_units[name]
     head = (
         f"Motion of {motion.mechanism}, {name} {values[0]:.10g} to {values[-1]:.10g} {unit}, "
-        f"{len(motion)} positions"
+        f"{len(values)} positions"
     )
     rows = [(s.name.lower().replace("_", " "), str(n)) for s, n in motion.counts.most_common()]
-    rows += [("limit", f"{limit.input:.10g} {unit}") for limit in motion.limits]
+    rows += [(limit.kind.word, f"{limit.input:.10g} {unit}") for limit in motion.limits]
+    rows += [
+        (extreme.kind, f"{extreme.name} = {extreme.value:.10g} at {extreme.input:.10g} {unit}")
+        for extreme in motion.output_limits
+    ]
+    if motion.circuit is not None:
+        rows.append(("circuit", motion.circuit.value))
     found = motion.found
     if found.any():
         rows.append(("certified", f"{int(motion.certified.sum())} of {int(found.sum())}"))
