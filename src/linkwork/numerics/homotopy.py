@@ -1,0 +1,183 @@
+"""Following many solution paths of a homotopy at once, each with its own step.
+
+H(w, σ) = 0 is followed from σ = 1, where every solution is known, to σ = 0. The predictor is the
+cubic through the last two points and slopes, the corrector two steps of Newton's method; the first
+correction measures the predictor's error and sets the next step (Allgower & Georg, Numerical
+Continuation Methods, ch. 6). Unknowns are on projective patches, so a path to infinity stays
+bounded. A path that cannot jump to σ = 0 in one step approaches it in ever smaller ones and ends as
+singular.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
+from linkwork.numerics.bilinear import solved
+
+__all__ = ["ARRIVED", "CAREFUL", "LOST", "SINGULAR", "Homotopy", "Paths", "TrackOptions", "track"]
+
+ARRIVED, SINGULAR, LOST = 0, 1, 2
+
+_NEAR = 1e-4  # σ at which a singular path's distance from infinity is noted,
+_END = 1e-10  # and at which it ends
+_LARGEST_STEPS = 600
+_FIRST_STEP = 0.01
+
+
+class Homotopy(Protocol):
+    """A square system of analytic equations in w and σ."""
+
+    def evaluate(
+        self, w: ComplexArray, sigma: Array
+    ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """H (B, n), ∂H/∂w (B, n, n) and ∂H/∂σ (B, n) at w (B, n), σ (B,)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrackOptions:
+    """How carefully paths are followed.
+
+    Parameters
+    ----------
+    error : float
+        The predictor's error aimed at, relative to the size of w.
+    contraction : float
+        Largest ratio of the second correction to the first.
+    """
+
+    error: float = 3e-2
+    contraction: float = 0.3
+
+
+CAREFUL = TrackOptions(error=1e-4, contraction=0.05)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Paths:
+    """Ends of B paths.
+
+    ``w`` (B, n); ``near`` (B, n): where a singular path was at a larger σ; ``state`` (B,):
+    ARRIVED at a regular point of σ = 0, SINGULAR or LOST; ``steps``: rounds of the whole batch.
+    """
+
+    w: ComplexArray
+    near: ComplexArray
+    state: StatusArray
+    steps: int
+
+
+def track(homotopy: Homotopy, start: ComplexArray, options: TrackOptions | None = None) -> Paths:
+    """Follow every start (B, n), a solution at σ = 1, to σ = 0."""
+    with np.errstate(all="ignore"):
+        return _Tracker(homotopy, start, options or TrackOptions()).run()
+
+
+class _Tracker:
+    """The batch: lanes that are done leave."""
+
+    def __init__(self, homotopy: Homotopy, start: ComplexArray, options: TrackOptions) -> None:
+        count = len(start)
+        self.homotopy, self.options = homotopy, options
+        self.w = start.copy()
+        self.near = start.copy()
+        self.state = np.full(count, LOST, dtype=np.int8)
+        self.lane: IndexArray = np.arange(count)
+        self.sigma = np.ones(count)
+        self.step = np.full(count, _FIRST_STEP)
+        self.here = start
+        _, jacobian, change = homotopy.evaluate(start, self.sigma)
+        self.slope = -solved(jacobian, change[:, :, None])[:, :, 0]
+        self.before, self.slope_before = self.here, self.slope
+        self.gone = np.zeros(count)  # length of the last step, 0 before the first
+
+    def run(self) -> Paths:
+        """Step until every lane has left."""
+        rounds = 0
+        while len(self.lane) and rounds < _LARGEST_STEPS:
+            self._advance()
+            rounds += 1
+        self.w[self.lane] = self.here
+        return Paths(w=self.w, near=self.near, state=self.state, steps=rounds)
+
+    def _predicted(self, h: Array) -> ComplexArray:
+        """The cubic through the last two points, extrapolated; a line before the first step."""
+        first = self.gone == 0.0
+        last = np.where(first, 1.0, self.gone)
+        s = (h / last)[:, None]
+        g = last[:, None]
+        rise = self.here - self.before
+        # with ends at -1 (before) and 0 (here) in units of the last step, slopes per σ downwards
+        a = g * self.slope
+        b = g * self.slope_before
+        cubic = self.here + s * (
+            -a + s * (-2.0 * a - b - 3.0 * rise + s * (-a - b - 2.0 * rise))
+        )
+        line = self.here - h[:, None] * self.slope
+        predicted: ComplexArray = np.where(first[:, None], line, cubic)
+        return predicted
+
+    def _advance(self) -> None:
+        h = np.minimum(self.step, self.sigma)
+        last = self.sigma <= self.step
+        goal = np.where(last, 0.0, self.sigma - h)
+        guess = self._predicted(h)
+        f, jacobian, _ = self.homotopy.evaluate(guess, goal)
+        first = solved(jacobian, f[:, :, None])[:, :, 0]
+        w = guess - first
+        f, jacobian, change = self.homotopy.evaluate(w, goal)
+        both = solved(jacobian, np.stack([f, change], axis=2))
+        second, slope = both[:, :, 0], -both[:, :, 1]
+        w = w - second
+        size = 1.0 + _largest(w)
+        e1, e2 = _largest(first) / size, _largest(second) / size
+        aim = self.options.error
+        good = (e1 < 4.0 * aim) & ((e2 <= self.options.contraction * e1) | (e2 < 1e-12))
+        factor = 0.85 * (aim / np.maximum(e1, 1e-12)) ** 0.25
+        factor = np.where(np.isfinite(factor), np.clip(factor, 0.3, 2.5), 0.3)
+        self.step = h * np.where(good, factor, np.minimum(factor, 0.5))
+        moved = good[:, None]
+        self.before = np.where(moved, self.here, self.before)
+        self.slope_before = np.where(moved, self.slope, self.slope_before)
+        self.here = np.where(moved, w, self.here)
+        self.slope = np.where(moved, slope, self.slope)
+        self.gone = np.where(good, self.sigma - goal, self.gone)
+        passed = good & (self.sigma > _NEAR) & (goal <= _NEAR)
+        if passed.any():
+            self.near[self.lane[passed]] = w[passed]
+        self.sigma = np.where(good, goal, self.sigma)
+        self._leave()
+
+    def _leave(self) -> None:
+        arrived = self.sigma == 0.0
+        singular = ~arrived & (self.sigma < _END)
+        # a step too small for its place on the path leads nowhere
+        stuck = ~arrived & ~singular & (self.step < 1e-7 * self.sigma)
+        ended = arrived | singular | stuck
+        if not ended.any():
+            return
+        self.state[self.lane[arrived]] = ARRIVED
+        self.state[self.lane[singular]] = SINGULAR
+        self.w[self.lane[ended]] = self.here[ended]
+        self._keep(~ended)
+
+    def _keep(self, stay: BoolArray) -> None:
+        for name in (
+            "lane",
+            "sigma",
+            "step",
+            "here",
+            "slope",
+            "before",
+            "slope_before",
+            "gone",
+        ):
+            setattr(self, name, getattr(self, name)[stay])
+
+
+def _largest(w: ComplexArray) -> Array:
+    size: Array = np.abs(w).max(axis=1, initial=0.0)
+    return size
