@@ -23,6 +23,14 @@ class Certification(Enum):
     MOTION_NOT_PROVED = (
         "the position is proved, but not that the motion from the start to it stays on one branch"
     )
+    CONFIGURATION_CERTIFIED = (
+        "a true position is proved to lie within the radius, and no other near it"
+    )
+
+    @property
+    def certified(self) -> bool:
+        """Whether everything that belongs to the position is proved."""
+        return self in (Certification.CERTIFIED, Certification.CONFIGURATION_CERTIFIED)
 
     @property
     def code(self) -> int:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.equations.directions import DirectionForm, NoDirectionForm, direction_form
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, CountArray, IndexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.status import Status
 from linkwork.kernels.loop_table import LoopTable
@@ -46,15 +46,18 @@ class Assemblies:
         Unknowns, then inputs.
     proved : (K,) bool
         Whether a true position near it is proved.
-    labels : (K,) of tuples
-        For every block what its part is called, "" for a block with one configuration.
+    iterations : (K,) int
+        Of Newton's method in angles and lengths, most of any block.
+    names : (K,) str
+        ``open``, ``open-crossed`` for several dyads, ``configuration 3`` otherwise.
     completeness, message : Completeness, str
     paths : one entry per solved block
     """
 
     v: Array
     proved: BoolArray
-    labels: tuple[tuple[str, ...], ...]
+    iterations: CountArray
+    names: tuple[str, ...]
     completeness: Completeness
     message: str
     paths: tuple[PathCount, ...]
@@ -82,6 +85,7 @@ class _Assembly:
         self.each = np.zeros_like(self.v)
         self.each[:, solver.unknowns :] = rounding_of_inputs(self.v, solver.unknowns)
         self.proved = np.ones(1, dtype=bool)
+        self.iterations = np.zeros(1, dtype=np.int64)
         self.labels: list[tuple[str, ...]] = [()]
         self.completeness = Completeness.PROVED
         self.notes: list[str] = []
@@ -105,7 +109,8 @@ class _Assembly:
         return Assemblies(
             v=self.v,
             proved=self.proved,
-            labels=tuple(self.labels),
+            iterations=self.iterations,
+            names=tuple(_combined(labels, k + 1) for k, labels in enumerate(self.labels)),
             completeness=self.completeness,
             message="; ".join(notes),
             paths=tuple(self.paths),
@@ -118,7 +123,7 @@ class _Assembly:
         self.completeness = Completeness.NOT_LISTED
         self.notes = [why]
         self.v, self.each, self.proved = self.v[:0], self.each[:0], self.proved[:0]
-        self.labels = []
+        self.iterations, self.labels = self.iterations[:0], []
 
     def _add(self, block: Block) -> None:
         table = block.system
@@ -148,6 +153,7 @@ class _Assembly:
         each[:, block.unknowns] = np.where(np.isfinite(own), own, 0.0)
         self.v, self.each = v[order], each[order]
         self.proved = (self.proved[rows] & holds)[order]
+        self.iterations = np.maximum(self.iterations[rows], found.iterations[keep])[order]
         self.labels = [(*self.labels[rows[k]], labels[k]) for k in order]
 
     def _fold_note(self, slide: TurnedSlide) -> str:
@@ -163,6 +169,7 @@ class _BlockFound:
     v: Array
     rows: IndexArray
     multiple: BoolArray
+    iterations: CountArray
     completeness: Completeness
     paths: PathCount
 
@@ -197,7 +204,12 @@ def _block_configurations(
     whole = v[place]
     if not len(place):
         return _BlockFound(
-            v=whole, rows=place, multiple=doubles, completeness=grade, paths=count
+            v=whole,
+            rows=place,
+            multiple=doubles,
+            iterations=np.zeros(0, dtype=np.int64),
+            completeness=grade,
+            paths=count,
         )
     whole[:, block.unknowns] = np.array(starts)
     done = newton(block.system, whole[:, block.variables], model.compiled.solver.options)
@@ -216,6 +228,7 @@ def _block_configurations(
         v=whole[good],
         rows=place[good],
         multiple=doubles[good],
+        iterations=done.iterations[good],
         completeness=grade,
         paths=count,
     )
@@ -347,7 +360,7 @@ def _is_open(form: DirectionForm, sign: float) -> bool:
     return turned < 0
 
 
-def combined_name(labels: tuple[str, ...], number: int) -> str:
+def _combined(labels: tuple[str, ...], number: int) -> str:
     """The name of a configuration: ``open``, ``open-crossed``, ``configuration 3``."""
     parts = [label for label in labels if label]
     if not parts:

@@ -33,7 +33,7 @@ class Certificate:
     @property
     def certified(self) -> bool:
         """Whether everything is proved."""
-        return self.certification is Certification.CERTIFIED
+        return self.certification.certified
 
 
 @dataclass(frozen=True, kw_only=True)
