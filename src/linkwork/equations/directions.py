@@ -208,16 +208,14 @@ def _solved_lines(table: LoopTable, turning: IndexArray, sliding: IndexArray) ->
 
 def _directions(sums: Array) -> tuple[list[tuple[float, ...]], IndexArray]:
     """The different sums of angles in the terms, and the number of each term's, -1 for none."""
-    found: dict[tuple[float, ...], int] = {}
-    number = np.full(len(sums), -1, dtype=np.intp)
-    for t, row in enumerate(sums.tolist()):
-        if not any(row):
-            continue
-        key = tuple(row)
-        if tuple(-w for w in key) in found:
-            raise NoDirectionForm("contain an angle both forwards and backwards")
-        number[t] = found.setdefault(key, len(found))
-    return list(found), number
+    rows = [tuple(row) for row in sums.tolist()]
+    # in the order of the angles, whatever the order of the terms
+    found = sorted({row for row in rows if any(row)}, reverse=True)
+    place = {row: k for k, row in enumerate(found)}
+    if any(tuple(-w for w in row) in place for row in found):
+        raise NoDirectionForm("contain an angle both forwards and backwards")
+    number = np.array([place.get(row, -1) for row in rows], dtype=np.intp)
+    return found, number
 
 
 def _inverse(directions: list[tuple[float, ...]], angles: int) -> Array:

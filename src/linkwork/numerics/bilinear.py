@@ -146,14 +146,17 @@ def polished(system: BilinearSystem, x: ComplexArray) -> tuple[ComplexArray, Cou
     x = x.copy()
     steps = np.full(len(x), -1, dtype=np.int64)
     live = np.arange(len(x))
+    last = np.full(len(x), np.inf)
     for k in range(_POLISH):
         f, j = system.residual_and_jacobian(x[live])
         change = solved(j, f[:, :, None])[:, :, 0]
         x[live] -= change
         size = np.abs(change).max(axis=1, initial=0.0)
-        done = size <= 1e-13 * (1.0 + np.abs(x[live]).max(axis=1, initial=0.0))
+        size /= 1.0 + np.abs(x[live]).max(axis=1, initial=0.0)
+        done = (size <= 1e-13) | ((size <= 1e-8) & (size > 0.25 * last))  # rounding is all
         steps[live[done]] = k + 1
-        live = live[~done & np.isfinite(size)]
+        stay = ~done & np.isfinite(size)
+        live, last = live[stay], size[stay]
         if not len(live):
             break
     return x, steps

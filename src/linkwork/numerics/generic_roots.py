@@ -35,6 +35,7 @@ _FADING = 0.5  # a singular path whose homogenising coordinate shrinks so much r
 _LARGEST_FREE = 6  # coefficients of a column among which sums are looked for
 _ATTEMPTS = 5
 _LOOPS = 2  # closed paths without a new solution after which a set counts as complete
+_TRIES = 30  # closed paths at most
 
 
 @dataclass(frozen=True)
@@ -128,7 +129,7 @@ def isolated_roots(system: BilinearSystem) -> Roots:
     expected = len(generic.x)
     best: _Ends | None = None
     for attempt in range(_ATTEMPTS):
-        ends = _followed(generic, system, rng, CAREFUL if attempt > 1 else TrackOptions())
+        ends = _followed(generic, system, rng, CAREFUL if attempt else TrackOptions())
         if best is None or _quality(ends) >= _quality(best):
             agreed = best is not None and _agree(system, ends, best)
             best = ends
@@ -154,12 +155,12 @@ def _generic(structure: Structure) -> _Generic:
         rng = np.random.default_rng(structure.seed.spawn(1)[0])
         system = structure.random(rng)
         x = np.zeros((0, 2 * system.size), dtype=complex)
-        for attempt in range(_ATTEMPTS):
+        for _ in range(_ATTEMPTS):
             start = StartHomotopy.of(system, rng)
-            paths = track(start, start.starts(), CAREFUL if attempt else TrackOptions())
+            paths = track(start, start.starts(), CAREFUL)
             ends = _read(system, start, start.spaces, paths)
             x = _distinct(np.concatenate([x, ends.x[ends.regular]]))
-            if not ends.failed.any() and not _meeting(ends).any():
+            if not (ends.failed | ends.singular | _meeting(ends)).any():
                 break
         _KNOWN[structure] = _closed(structure, _Generic(system=system, x=x), rng)
     return _KNOWN[structure]
@@ -167,14 +168,16 @@ def _generic(structure: Structure) -> _Generic:
 
 def _closed(structure: Structure, known: _Generic, rng: np.random.Generator) -> _Generic:
     """Solutions added until closed paths of systems lead to no new ones."""
-    quiet = 0
-    while quiet < _LOOPS and len(known.x) and len(known.x) < known.system.bound:
+    quiet = tries = 0
+    while quiet < _LOOPS and tries < _TRIES and len(known.x) and len(known.x) < known.system.bound:
         away = structure.random(rng)
-        there = _followed(known, away, rng, TrackOptions())
+        there = _followed(known, away, rng, CAREFUL)
         back = _Generic(system=away, x=_distinct(there.x[there.regular]))
-        ends = _followed(back, known.system, rng, TrackOptions())
+        ends = _followed(back, known.system, rng, CAREFUL)
         x = _distinct(np.concatenate([known.x, ends.x[ends.regular]]))
-        quiet = quiet + 1 if len(x) == len(known.x) else 0
+        whole = len(x) == len(known.x) and there.regular.all() and ends.regular.all()
+        quiet = quiet + 1 if whole else 0
+        tries += 1
         known = _Generic(system=known.system, x=x)
     return known
 

@@ -23,7 +23,9 @@ __all__ = ["ARRIVED", "CAREFUL", "LOST", "SINGULAR", "Homotopy", "Paths", "Track
 ARRIVED, SINGULAR, LOST = 0, 1, 2
 
 _NEAR = 1e-4  # σ at which a singular path's distance from infinity is noted,
-_END = 1e-10  # and at which it ends
+_END = 1e-10  # and at which it ends,
+_STUCK = 1e-6  # or may end if rounding lets it go no further
+_ROUNDING = 1e-9  # second corrections this small are as good as the equations allow
 _LARGEST_STEPS = 600
 _FIRST_STEP = 0.01
 
@@ -135,7 +137,7 @@ class _Tracker:
         size = 1.0 + _largest(w)
         e1, e2 = _largest(first) / size, _largest(second) / size
         aim = self.options.error
-        good = (e1 < 4.0 * aim) & ((e2 <= self.options.contraction * e1) | (e2 < 1e-12))
+        good = (e1 < 4.0 * aim) & ((e2 <= self.options.contraction * e1) | (e2 < _ROUNDING))
         factor = 0.85 * (aim / np.maximum(e1, 1e-12)) ** 0.25
         factor = np.where(np.isfinite(factor), np.clip(factor, 0.3, 2.5), 0.3)
         self.step = h * np.where(good, factor, np.minimum(factor, 0.5))
@@ -153,9 +155,9 @@ class _Tracker:
 
     def _leave(self) -> None:
         arrived = self.sigma == 0.0
-        singular = ~arrived & (self.sigma < _END)
         # a step too small for its place on the path leads nowhere
-        stuck = ~arrived & ~singular & (self.step < 1e-7 * self.sigma)
+        stuck = ~arrived & (self.step < 1e-7 * self.sigma)
+        singular = ~arrived & ((self.sigma < _END) | (stuck & (self.sigma < _STUCK)))
         ended = arrived | singular | stuck
         if not ended.any():
             return
