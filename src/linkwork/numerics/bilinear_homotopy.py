@@ -128,7 +128,10 @@ class StartHomotopy(_Patched):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Moving:
-    """N(σ) = base - wide · diag(g(σ)) · kernel, g_i = σ / (σ d_i + 1 - σ), on a patch."""
+    """N(σ) = base - wide · diag(g(σ)) · kernel, g_i = σ / (σ d_i + 1 - σ), on a patch.
+
+    Only the 2M rows that the products take are kept, those of the second factors negated if wanted.
+    """
 
     base: ComplexArray
     wide: ComplexArray
@@ -136,24 +139,32 @@ class _Moving:
     pole: ComplexArray
 
     @classmethod
-    def between(cls, c0: ComplexArray, c1: ComplexArray, patch: ComplexArray) -> _Moving:
-        """From the null space of c0 (σ = 1) to that of c1 (σ = 0)."""
+    def between(
+        cls, c0: ComplexArray, c1: ComplexArray, patch: ComplexArray, rows: IndexArray, sign: float
+    ) -> _Moving:
+        """From the null space of c0 (σ = 1) to that of c1 (σ = 0); ``rows`` (2, M)."""
         n1, m1 = null_space(c1)
         end = c1 @ m1
         pole, p = np.linalg.eig(np.linalg.solve(end, c0 @ m1))
         kernel = np.linalg.solve(p, np.linalg.solve(end, c0 @ n1))
-        return cls(base=n1 @ patch, wide=m1 @ p, kernel=kernel @ patch, pole=pole)
+        signs = np.repeat([1.0, sign], rows.shape[1])[:, None]
+        taken = rows.ravel()
+        return cls(
+            base=signs * (n1 @ patch)[taken],
+            wide=signs * (m1 @ p)[taken],
+            kernel=kernel @ patch,
+            pole=pole,
+        )
 
     def at(self, w: ComplexArray, sigma: Array) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        """(U, 1) (B, K), its derivative by w (B, K, L) and by σ (B, K)."""
+        """The taken rows of (U, 1), (B, 2M), their derivatives by w, (B, 2M, L), and by σ."""
         x = sigma[:, None]
-        under = 1.0 / (x * self.pole + (1.0 - x))
-        g, rate = x * under, under * under
-        weights = self.wide * g[:, None, :]
-        n = self.base - weights @ self.kernel
-        along = w @ self.kernel[:, 1:].T + self.kernel[:, 0]
-        u = n[:, :, 0] + (n[:, :, 1:] @ w[:, :, None])[:, :, 0]
-        return u, n[:, :, 1:], -((rate * along) @ self.wide.T)
+        under = 1.0 / (x * (self.pole - 1.0) + 1.0)
+        n = self.base - (self.wide * (x * under)[:, None, :]) @ self.kernel
+        z = np.concatenate([np.ones((len(w), 1)), w], axis=1)
+        u = (n @ z[:, :, None])[:, :, 0]
+        change = (under * under * (z @ self.kernel.T)) @ self.wide.T
+        return u, n[:, :, 1:], -change
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -165,19 +176,35 @@ class ParameterHomotopy(_Patched):
 
     @classmethod
     def between(
-        cls, start: BilinearSystem, goal: BilinearSystem, rng: np.random.Generator
+        cls,
+        start: BilinearSystem,
+        goal: BilinearSystem,
+        rng: np.random.Generator,
+        *,
+        nearest: bool = False,
     ) -> ParameterHomotopy:
-        """A path of systems; random phases of the start's matrices make every path another one."""
+        """A path of systems.
+
+        Solutions do not change when a closure matrix is multiplied by a phase, but the path does:
+        phases are those that bring start and goal ``nearest`` together, or random ones.
+        """
         loops = goal.loops
         patches = (_patch(rng, loops + 1), _patch(rng, loops + 1))
         turns = np.exp(1j * rng.uniform(0.0, 2.0 * np.pi, 2))
+        if nearest:
+            pairs = ((start.left, goal.left), (start.right, goal.right))
+            turns = np.array([np.exp(1j * np.angle(np.vdot(a, b))) for a, b in pairs])
+        p, q, p1, q1 = goal.rows
+        left = _Moving.between(
+            turns[0] * start.left, goal.left, patches[0], np.stack([p, p1]), 1.0
+        )
+        right = _Moving.between(
+            turns[1] * start.right, goal.right, patches[1], np.stack([q, q1]), -1.0
+        )
         return cls(
             rows=goal.rows,
             patches=patches,
-            moving=(
-                _Moving.between(turns[0] * start.left, goal.left, patches[0]),
-                _Moving.between(turns[1] * start.right, goal.right, patches[1]),
-            ),
+            moving=(left, right),
             spaces=(null_space(goal.left)[0], null_space(goal.right)[0]),
         )
 
@@ -198,12 +225,10 @@ class ParameterHomotopy(_Patched):
         self, w: ComplexArray, sigma: Array
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         """H, ∂H/∂w and ∂H/∂σ."""
-        loops = w.shape[1] // 2
+        m = w.shape[1]
+        loops = m // 2
         u, nu, du = self.moving[0].at(w[:, :loops], sigma)
         v, nv, dv = self.moving[1].at(w[:, loops:], sigma)
-        p, q, p1, q1 = self.rows
-        up, vq, up1, vq1 = u[:, p], v[:, q], u[:, p1], v[:, q1]
-        left = vq[:, :, None] * nu[:, p] - vq1[:, :, None] * nu[:, p1]
-        right = up[:, :, None] * nv[:, q] - up1[:, :, None] * nv[:, q1]
-        change = du[:, p] * vq + up * dv[:, q] - du[:, p1] * vq1 - up1 * dv[:, q1]
-        return up * vq - up1 * vq1, np.concatenate([left, right], axis=2), change
+        both = np.concatenate([v[:, :, None] * nu, u[:, :, None] * nv], axis=2)
+        value, change = u * v, u * dv + v * du
+        return value[:, :m] + value[:, m:], both[:, :m] + both[:, m:], change[:, :m] + change[:, m:]

@@ -129,7 +129,8 @@ def isolated_roots(system: BilinearSystem) -> Roots:
     expected = len(generic.x)
     best: _Ends | None = None
     for attempt in range(_ATTEMPTS):
-        ends = _followed(generic, system, rng, CAREFUL if attempt else TrackOptions())
+        care = CAREFUL if attempt else TrackOptions()
+        ends = _followed(generic, system, rng, care, nearest=not attempt)
         if best is None or _quality(ends) >= _quality(best):
             agreed = best is not None and _agree(system, ends, best)
             best = ends
@@ -183,10 +184,15 @@ def _closed(structure: Structure, known: _Generic, rng: np.random.Generator) -> 
 
 
 def _followed(
-    generic: _Generic, goal: BilinearSystem, rng: np.random.Generator, options: TrackOptions
+    generic: _Generic,
+    goal: BilinearSystem,
+    rng: np.random.Generator,
+    options: TrackOptions,
+    *,
+    nearest: bool = False,
 ) -> _Ends:
     """Paths from all solutions of one system; those that were lost or met once more, with care."""
-    homotopy = ParameterHomotopy.between(generic.system, goal, rng)
+    homotopy = ParameterHomotopy.between(generic.system, goal, rng, nearest=nearest)
     start = homotopy.starts(generic.x)
     paths = track(homotopy, start, options)
     ends = _read(goal, homotopy, homotopy.spaces, paths)
@@ -237,7 +243,7 @@ def _read(
         with np.errstate(all="ignore"):
             better, steps = polished(system, x[finite])
         moved = np.abs(better - x[finite]).max(axis=1) < 1e-3 * (1 + np.abs(better).max(axis=1))
-        regular[finite] = (steps > 0) & (steps <= 4) & moved
+        regular[finite] = (steps > 0) & (steps <= 6) & moved
         x[np.flatnonzero(finite)[regular[finite]]] = better[regular[finite]]
     return _Ends(
         x=x,

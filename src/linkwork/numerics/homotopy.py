@@ -26,8 +26,10 @@ _NEAR = 1e-4  # σ at which a singular path's distance from infinity is noted,
 _END = 1e-10  # and at which it ends,
 _STUCK = 1e-6  # or may end if rounding lets it go no further
 _ROUNDING = 1e-9  # second corrections this small are as good as the equations allow
+_ARRIVAL = 1e-4  # largest second correction at the end of a path
 _LARGEST_STEPS = 600
-_FIRST_STEP = 0.01
+_FIRST_STEP = 0.02
+_CAUTION, _SMALLEST_CHANGE, _LARGEST_CHANGE = 0.85, 0.3, 2.5  # of the step
 
 
 class Homotopy(Protocol):
@@ -51,7 +53,7 @@ class TrackOptions:
         Largest ratio of the second correction to the first.
     """
 
-    error: float = 3e-2
+    error: float = 5e-2
     contraction: float = 0.3
 
 
@@ -90,10 +92,10 @@ class _Tracker:
         self.lane: IndexArray = np.arange(count)
         self.sigma = np.ones(count)
         self.step = np.full(count, _FIRST_STEP)
-        self.here = start
         _, jacobian, change = homotopy.evaluate(start, self.sigma)
-        self.slope = -solved(jacobian, change[:, :, None])[:, :, 0]
-        self.before, self.slope_before = self.here, self.slope
+        slope = -solved(jacobian, change[:, :, None])[:, :, 0]
+        # points and slopes: here, there, before, there
+        self.path = np.stack([start, slope, start, slope])
         self.gone = np.zeros(count)  # length of the last step, 0 before the first
 
     def run(self) -> Paths:
@@ -102,55 +104,54 @@ class _Tracker:
         while len(self.lane) and rounds < _LARGEST_STEPS:
             self._advance()
             rounds += 1
-        self.w[self.lane] = self.here
+        self.w[self.lane] = self.path[0]
         return Paths(w=self.w, near=self.near, state=self.state, steps=rounds)
 
     def _predicted(self, h: Array) -> ComplexArray:
         """The cubic through the last two points, extrapolated; a line before the first step."""
+        here, slope, before, slope_before = self.path
+        g = np.where(self.gone == 0.0, 1.0, self.gone)[:, None]
+        s = h[:, None] / g
+        # a polynomial in s with ends at -1 (before) and 0 (here), slopes per σ downwards
+        a, rise = g * slope, here - before
+        c = g * slope_before + a + 2.0 * rise
+        cubic: ComplexArray = here - s * (a + s * (c + a + rise + s * c))
         first = self.gone == 0.0
-        last = np.where(first, 1.0, self.gone)
-        s = (h / last)[:, None]
-        g = last[:, None]
-        rise = self.here - self.before
-        # with ends at -1 (before) and 0 (here) in units of the last step, slopes per σ downwards
-        a = g * self.slope
-        b = g * self.slope_before
-        cubic = self.here + s * (
-            -a + s * (-2.0 * a - b - 3.0 * rise + s * (-a - b - 2.0 * rise))
-        )
-        line = self.here - h[:, None] * self.slope
-        predicted: ComplexArray = np.where(first[:, None], line, cubic)
-        return predicted
+        if first.any():
+            cubic[first] = (here - s * a)[first]
+        return cubic
 
     def _advance(self) -> None:
-        h = np.minimum(self.step, self.sigma)
-        last = self.sigma <= self.step
-        goal = np.where(last, 0.0, self.sigma - h)
+        evaluate, h = self.homotopy.evaluate, np.minimum(self.step, self.sigma)
+        goal = np.where(self.sigma <= self.step, 0.0, self.sigma - h)
         guess = self._predicted(h)
-        f, jacobian, _ = self.homotopy.evaluate(guess, goal)
+        f, jacobian, _ = evaluate(guess, goal)
         first = solved(jacobian, f[:, :, None])[:, :, 0]
         w = guess - first
-        f, jacobian, change = self.homotopy.evaluate(w, goal)
+        f, jacobian, change = evaluate(w, goal)
         both = solved(jacobian, np.stack([f, change], axis=2))
-        second, slope = both[:, :, 0], -both[:, :, 1]
-        w = w - second
-        size = 1.0 + _largest(w)
-        e1, e2 = _largest(first) / size, _largest(second) / size
+        second = both[:, :, 0]
+        w -= second
+        size = 1.0 + np.abs(w).max(axis=1)
+        e1, e2 = np.abs(first).max(axis=1) / size, np.abs(second).max(axis=1) / size
         aim = self.options.error
-        good = (e1 < 4.0 * aim) & ((e2 <= self.options.contraction * e1) | (e2 < _ROUNDING))
-        factor = 0.85 * (aim / np.maximum(e1, 1e-12)) ** 0.25
-        factor = np.where(np.isfinite(factor), np.clip(factor, 0.3, 2.5), 0.3)
-        self.step = h * np.where(good, factor, np.minimum(factor, 0.5))
-        moved = good[:, None]
-        self.before = np.where(moved, self.here, self.before)
-        self.slope_before = np.where(moved, self.slope, self.slope_before)
-        self.here = np.where(moved, w, self.here)
-        self.slope = np.where(moved, slope, self.slope)
-        self.gone = np.where(good, self.sigma - goal, self.gone)
-        passed = good & (self.sigma > _NEAR) & (goal <= _NEAR)
+        near = np.minimum(self.options.contraction * e1, np.where(goal == 0.0, _ARRIVAL, aim))
+        good = (e1 < 4.0 * aim) & (e2 <= np.maximum(near, _ROUNDING))
+        factor = _CAUTION * (aim / np.maximum(e1, 1e-12)) ** 0.25
+        factor = np.minimum(np.maximum(factor, _SMALLEST_CHANGE), _LARGEST_CHANGE)
+        arrived = np.stack([w, -both[:, :, 1], self.path[0], self.path[1]])
+        if good.all():
+            self.step, self.gone, self.path = h * factor, self.sigma - goal, arrived
+        else:
+            factor[np.isnan(factor)] = _SMALLEST_CHANGE
+            self.step = h * np.where(good, factor, np.minimum(factor, 0.5))
+            self.gone = np.where(good, self.sigma - goal, self.gone)
+            self.path = np.where(good[:, None], arrived, self.path)
+            goal = np.where(good, goal, self.sigma)
+        passed = (self.sigma > _NEAR) & (goal <= _NEAR)
         if passed.any():
-            self.near[self.lane[passed]] = w[passed]
-        self.sigma = np.where(good, goal, self.sigma)
+            self.near[self.lane[passed]] = self.path[0][passed]
+        self.sigma = goal
         self._leave()
 
     def _leave(self) -> None:
@@ -163,23 +164,10 @@ class _Tracker:
             return
         self.state[self.lane[arrived]] = ARRIVED
         self.state[self.lane[singular]] = SINGULAR
-        self.w[self.lane[ended]] = self.here[ended]
+        self.w[self.lane[ended]] = self.path[0][ended]
         self._keep(~ended)
 
     def _keep(self, stay: BoolArray) -> None:
-        for name in (
-            "lane",
-            "sigma",
-            "step",
-            "here",
-            "slope",
-            "before",
-            "slope_before",
-            "gone",
-        ):
-            setattr(self, name, getattr(self, name)[stay])
-
-
-def _largest(w: ComplexArray) -> Array:
-    size: Array = np.abs(w).max(axis=1, initial=0.0)
-    return size
+        self.path = self.path[:, stay]
+        self.lane, self.sigma = self.lane[stay], self.sigma[stay]
+        self.step, self.gone = self.step[stay], self.gone[stay]
