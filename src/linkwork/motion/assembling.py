@@ -21,7 +21,7 @@ from linkwork.numerics.bilinear import Roots, proved_roots
 from linkwork.numerics.block_solver import Block, linearised
 from linkwork.numerics.generic_roots import isolated_roots
 from linkwork.numerics.newton import newton
-from linkwork.numerics.proof import prove_block, rounding_of_inputs
+from linkwork.numerics.proof import Proof, prove_block, rounding_of_inputs
 from linkwork.numerics.quadratic_roots import quadratic_roots
 from linkwork.results.configurations import PathCount
 
@@ -44,8 +44,8 @@ class Assemblies:
     ----------
     v : (K, N)
         Unknowns, then inputs.
-    proved : (K,) bool
-        Whether a true position near it is proved.
+    proof : Proof
+        Of every position, for the rounding of its inputs.
     iterations : (K,) int
         Of Newton's method in angles and lengths, most of any block.
     names : (K,) str
@@ -55,7 +55,7 @@ class Assemblies:
     """
 
     v: Array
-    proved: BoolArray
+    proof: Proof
     iterations: CountArray
     names: tuple[str, ...]
     completeness: Completeness
@@ -82,9 +82,12 @@ class _Assembly:
         self.model, self.solver = model, solver
         self.v = model.equations.start[None, :].copy()
         self.v[:, solver.unknowns :] = inputs
-        self.each = np.zeros_like(self.v)
-        self.each[:, solver.unknowns :] = rounding_of_inputs(self.v, solver.unknowns)
-        self.proved = np.ones(1, dtype=bool)
+        each = np.zeros_like(self.v)
+        each[:, solver.unknowns :] = rounding_of_inputs(self.v, solver.unknowns)
+        nothing = np.zeros((1, 0))
+        self.proof = Proof(
+            holds=np.ones(1, dtype=bool), exists=nothing, unique=nothing, each=each
+        )
         self.iterations = np.zeros(1, dtype=np.int64)
         self.labels: list[tuple[str, ...]] = [()]
         self.completeness = Completeness.PROVED
@@ -108,7 +111,7 @@ class _Assembly:
         notes = [self.completeness.value, *self.notes]
         return Assemblies(
             v=self.v,
-            proved=self.proved,
+            proof=self.proof,
             iterations=self.iterations,
             names=tuple(_combined(labels, k + 1) for k, labels in enumerate(self.labels)),
             completeness=self.completeness,
@@ -122,7 +125,7 @@ class _Assembly:
     def _give_up(self, why: str) -> None:
         self.completeness = Completeness.NOT_LISTED
         self.notes = [why]
-        self.v, self.each, self.proved = self.v[:0], self.each[:0], self.proved[:0]
+        self.v, self.proof = self.v[:0], _rows_of(self.proof, np.zeros(0, dtype=np.intp))
         self.iterations, self.labels = self.iterations[:0], []
 
     def _add(self, block: Block) -> None:
@@ -130,7 +133,7 @@ class _Assembly:
         if not isinstance(table, LoopTable):
             raise NoDirectionForm("are not loops")
         form = direction_form(table)
-        found = _block_configurations(self.model, block, form, self.v, self.each)
+        found = _block_configurations(self.model, block, form, self.v, self.proof.each)
         self.completeness = self.completeness.and_then(found.completeness)
         self.paths.append(replace(found.paths, unknowns=tuple(self._names(block).split(", "))))
         v, rows = found.v, found.rows
@@ -143,16 +146,18 @@ class _Assembly:
         v, rows, double = v[keep], rows[keep], found.multiple[keep]
         folded = any(slide.angle in block.unknowns for slide in self.slides)
         part = linearised(block, v)
-        if len(v):
-            radii = prove_block(block, part, v, self.each[rows])
-            holds, own = radii.holds, radii.each
-        else:
-            holds, own = np.zeros(0, dtype=bool), np.zeros((0, len(block.unknowns)))
         order, labels = _ordered(block, form, v, rows, part.sign, double, folded)
-        each = self.each[rows]
-        each[:, block.unknowns] = np.where(np.isfinite(own), own, 0.0)
-        self.v, self.each = v[order], each[order]
-        self.proved = (self.proved[rows] & holds)[order]
+        before = _rows_of(self.proof, rows)
+        radii = prove_block(block, part, v, before.each)
+        each = before.each
+        each[:, block.unknowns] = np.where(np.isfinite(radii.each), radii.each, 0.0)
+        proof = Proof(
+            holds=before.holds & radii.holds,
+            exists=np.concatenate([before.exists, radii.exists[:, None]], axis=1),
+            unique=np.concatenate([before.unique, radii.unique[:, None]], axis=1),
+            each=each,
+        )
+        self.v, self.proof = v[order], _rows_of(proof, np.array(order, dtype=np.intp))
         self.iterations = np.maximum(self.iterations[rows], found.iterations[keep])[order]
         self.labels = [(*self.labels[rows[k]], labels[k]) for k in order]
 
@@ -291,6 +296,16 @@ def _mirror_gap(x: ComplexArray, m: int) -> Array:
     gap = np.abs(x[:, :m] - x[:, m:].conj()).max(axis=1, initial=0.0)
     relative: Array = gap / (1.0 + np.abs(x).max(axis=1, initial=0.0))
     return relative
+
+
+def _rows_of(proof: Proof, rows: IndexArray) -> Proof:
+    """Some rows of a proof, copied."""
+    return Proof(
+        holds=proof.holds[rows],
+        exists=proof.exists[rows],
+        unique=proof.unique[rows],
+        each=proof.each[rows],
+    )
 
 
 def _folded(

@@ -23,7 +23,6 @@ from linkwork.motion.positions import (
 )
 from linkwork.motion.reading import named_series
 from linkwork.numerics.generic_roots import SEED
-from linkwork.numerics.proof import prove, rounding_of_inputs
 from linkwork.results.configurations import Configurations
 from linkwork.results.position import Certificate, Position
 
@@ -67,9 +66,7 @@ def _positions(model: Model, target: Array, found: Assemblies) -> tuple[Position
     count, solver = len(found.v), model.compiled.solver
     if not count:
         return ()
-    linear = solver.linearise(found.v)
-    rates = solver.rates(found.v, input_rate(model), linear)
-    proof = prove(solver, found.v, rounding_of_inputs(found.v, solver.unknowns), linear)
+    rates, proof = solver.rates(found.v, input_rate(model)), found.proof
     residual = solver.residual(found.v)
     inputs = np.repeat(target[None, :], count, axis=0)
     named = named_series(

@@ -127,52 +127,19 @@ class StartHomotopy(_Patched):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Moving:
-    """N(σ) = base - wide · diag(g(σ)) · kernel, g_i = σ / (σ d_i + 1 - σ), on a patch.
+class ParameterHomotopy(_Patched):
+    """The system itself, its closure matrices moving from generic ones to those wanted.
 
-    Only the 2M rows that the products take are kept, those of the second factors negated if wanted.
+    N(σ) = base - wide · diag(g(σ)) · kernel with g_i = σ / (σ pole_i + 1 - σ), for both sides
+    (first axis) and for the 2M rows that the products take: first factors, then second ones, those
+    of the right side negated.
     """
 
+    spaces: tuple[ComplexArray, ComplexArray]
     base: ComplexArray
     wide: ComplexArray
     kernel: ComplexArray
     pole: ComplexArray
-
-    @classmethod
-    def between(
-        cls, c0: ComplexArray, c1: ComplexArray, patch: ComplexArray, rows: IndexArray, sign: float
-    ) -> _Moving:
-        """From the null space of c0 (σ = 1) to that of c1 (σ = 0); ``rows`` (2, M)."""
-        n1, m1 = null_space(c1)
-        end = c1 @ m1
-        pole, p = np.linalg.eig(np.linalg.solve(end, c0 @ m1))
-        kernel = np.linalg.solve(p, np.linalg.solve(end, c0 @ n1))
-        signs = np.repeat([1.0, sign], rows.shape[1])[:, None]
-        taken = rows.ravel()
-        return cls(
-            base=signs * (n1 @ patch)[taken],
-            wide=signs * (m1 @ p)[taken],
-            kernel=kernel @ patch,
-            pole=pole,
-        )
-
-    def at(self, w: ComplexArray, sigma: Array) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        """The taken rows of (U, 1), (B, 2M), their derivatives by w, (B, 2M, L), and by σ."""
-        x = sigma[:, None]
-        under = 1.0 / (x * (self.pole - 1.0) + 1.0)
-        n = self.base - (self.wide * (x * under)[:, None, :]) @ self.kernel
-        z = np.concatenate([np.ones((len(w), 1)), w], axis=1)
-        u = (n @ z[:, :, None])[:, :, 0]
-        change = (under * under * (z @ self.kernel.T)) @ self.wide.T
-        return u, n[:, :, 1:], -change
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ParameterHomotopy(_Patched):
-    """The system itself, its closure matrices moving from generic ones to those wanted."""
-
-    moving: tuple[_Moving, _Moving]
-    spaces: tuple[ComplexArray, ComplexArray]
 
     @classmethod
     def between(
@@ -191,21 +158,31 @@ class ParameterHomotopy(_Patched):
         loops = goal.loops
         patches = (_patch(rng, loops + 1), _patch(rng, loops + 1))
         turns = np.exp(1j * rng.uniform(0.0, 2.0 * np.pi, 2))
+        pairs = ((start.left, goal.left), (start.right, goal.right))
         if nearest:
-            pairs = ((start.left, goal.left), (start.right, goal.right))
             turns = np.array([np.exp(1j * np.angle(np.vdot(a, b))) for a, b in pairs])
         p, q, p1, q1 = goal.rows
-        left = _Moving.between(
-            turns[0] * start.left, goal.left, patches[0], np.stack([p, p1]), 1.0
-        )
-        right = _Moving.between(
-            turns[1] * start.right, goal.right, patches[1], np.stack([q, q1]), -1.0
-        )
+        signs = np.ones((2 * goal.size, 1))
+        sides = []
+        for k, taken in enumerate((np.append(p, p1), np.append(q, q1))):
+            c0, c1 = turns[k] * pairs[k][0], pairs[k][1]
+            null, rows = null_space(c1)
+            end = c1 @ rows
+            pole, vectors = np.linalg.eig(np.linalg.solve(end, c0 @ rows))
+            kernel = np.linalg.solve(vectors, np.linalg.solve(end, c0 @ null))
+            base = signs * (null @ patches[k])[taken]
+            wide = signs * (rows @ vectors)[taken]
+            sides.append((null, base, wide, kernel @ patches[k], pole))
+            signs[goal.size :] = -1.0
+        null, base, wide, kernel, pole = zip(*sides, strict=True)
         return cls(
             rows=goal.rows,
             patches=patches,
-            moving=(left, right),
-            spaces=(null_space(goal.left)[0], null_space(goal.right)[0]),
+            spaces=(null[0], null[1]),
+            base=np.stack(base),
+            wide=np.stack(wide),
+            kernel=np.stack(kernel),
+            pole=np.stack(pole),
         )
 
     def starts(self, x: ComplexArray) -> ComplexArray:
@@ -225,10 +202,21 @@ class ParameterHomotopy(_Patched):
         self, w: ComplexArray, sigma: Array
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         """H, ∂H/∂w and ∂H/∂σ."""
-        m = w.shape[1]
-        loops = m // 2
-        u, nu, du = self.moving[0].at(w[:, :loops], sigma)
-        v, nv, dv = self.moving[1].at(w[:, loops:], sigma)
-        both = np.concatenate([v[:, :, None] * nu, u[:, :, None] * nv], axis=2)
-        value, change = u * v, u * dv + v * du
-        return value[:, :m] + value[:, m:], both[:, :m] + both[:, m:], change[:, :m] + change[:, m:]
+        count, m = w.shape
+        x = sigma[:, None, None]
+        under = 1.0 / (x * (self.pole - 1.0) + 1.0)
+        z = np.ones((count, 2, m // 2 + 1, 1), dtype=complex)
+        z[:, :, 1:, 0] = w.reshape(count, 2, m // 2)
+        n = self.base - (self.wide * (x * under)[:, :, None, :]) @ self.kernel
+        both = n @ z  # (B, 2, 2M, 1): the factors of every product
+        rate = -(self.wide @ ((under * under)[:, :, :, None] * (self.kernel @ z)))
+        others = both[:, ::-1]
+        slopes = others * n[:, :, :, 1:]
+        jacobian = (slopes[:, :, :m] + slopes[:, :, m:]).transpose(0, 2, 1, 3)
+        value = (both[:, 0] * both[:, 1])[:, :, 0]
+        change = (rate * others).sum(axis=1)[:, :, 0]
+        return (
+            value[:, :m] + value[:, m:],
+            jacobian.reshape(count, m, m),
+            change[:, :m] + change[:, m:],
+        )
