@@ -21,7 +21,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.numerics.bilinear import BilinearSystem, Roots, polished
 from linkwork.numerics.bilinear_homotopy import ParameterHomotopy, StartHomotopy
-from linkwork.numerics.homotopy import ARRIVED, CAREFUL, LOST, SINGULAR, Paths, TrackOptions, track
+from linkwork.numerics.homotopy import ARRIVED, BOLD, CAREFUL, LOST, SINGULAR, Paths, TrackOptions, track
 
 __all__ = ["SEED", "Structure", "isolated_roots", "structure_of"]
 
@@ -34,6 +34,7 @@ _FINITE = 1e-8  # smallest homogenising coordinate, of vectors of length 1, of a
 _FADING = 0.5  # a singular path whose homogenising coordinate shrinks so much runs to infinity
 _LARGEST_FREE = 6  # coefficients of a column among which sums are looked for
 _ATTEMPTS = 5
+_FEW = 8  # paths that seldom meet, so that following them twice costs less than care
 _LOOPS = 2  # closed paths without a new solution after which a set counts as complete
 _TRIES = 30  # closed paths at most
 
@@ -129,7 +130,7 @@ def isolated_roots(system: BilinearSystem) -> Roots:
     expected = len(generic.x)
     best: _Ends | None = None
     for attempt in range(_ATTEMPTS):
-        care = CAREFUL if attempt else TrackOptions()
+        care = CAREFUL if attempt else BOLD if expected <= _FEW else TrackOptions()
         ends = _followed(generic, system, rng, care, nearest=not attempt)
         if best is None or _quality(ends) >= _quality(best):
             agreed = best is not None and _agree(system, ends, best)

@@ -18,7 +18,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
 from linkwork.numerics.bilinear import solved
 
-__all__ = ["ARRIVED", "CAREFUL", "LOST", "SINGULAR", "Homotopy", "Paths", "TrackOptions", "track"]
+__all__ = ["ARRIVED", "BOLD", "CAREFUL", "LOST", "SINGULAR", "Homotopy", "Paths", "TrackOptions", "track"]
 
 ARRIVED, SINGULAR, LOST = 0, 1, 2
 
@@ -57,6 +57,7 @@ class TrackOptions:
     contraction: float = 0.3
 
 
+BOLD = TrackOptions(error=1e-1)
 CAREFUL = TrackOptions(error=1e-4, contraction=0.05)
 
 
