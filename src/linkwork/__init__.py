@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     )
     from linkwork.foundation.angles import AngleUnit
     from linkwork.foundation.certification import Certification
+    from linkwork.foundation.completeness import Completeness
     from linkwork.foundation.errors import (
         ExpressionError,
         InputError,
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
     from linkwork.numerics.newton import NewtonOptions
     from linkwork.results.check import CheckReport
+    from linkwork.results.configurations import Configurations, PathCount
     from linkwork.results.motion import Limit, LimitKind, Motion, Series
     from linkwork.results.position import Certificate, Position
     from linkwork.results.table import Table
@@ -55,6 +57,7 @@ else:
             ),
             "foundation.angles": ("AngleUnit",),
             "foundation.certification": ("Certification",),
+            "foundation.completeness": ("Completeness",),
             "foundation.errors": (
                 "ExpressionError",
                 "InputError",
@@ -70,6 +73,7 @@ else:
             "mechanism.parts": ("Cylinder", "Input", "Slider", "Slot"),
             "numerics.newton": ("NewtonOptions",),
             "results.check": ("CheckReport",),
+            "results.configurations": ("Configurations", "PathCount"),
             "results.motion": ("Limit", "LimitKind", "Motion", "Series"),
             "results.position": ("Certificate", "Position"),
             "results.table": ("Table",),
@@ -81,6 +85,8 @@ __all__ = [
     "Certificate",
     "Certification",
     "CheckReport",
+    "Completeness",
+    "Configurations",
     "Cylinder",
     "ExpressionError",
     "Input",
@@ -95,6 +101,7 @@ __all__ = [
     "Motion",
     "NewtonOptions",
     "NotConvergedError",
+    "PathCount",
     "Position",
     "Problem",
     "Series",

@@ -16,6 +16,7 @@ from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.parts import Number
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.check import CheckReport
+from linkwork.results.configurations import Configurations
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
@@ -107,13 +108,23 @@ class Mechanism:
         self,
         at: float | Mapping[str, float] | None = None,
         *,
+        configuration: str | None = None,
         from_guess: bool = False,
         options: NewtonOptions | None = None,
         certify: bool = True,
         with_steps: bool = False,
         throw: bool = False,
     ) -> Position:
-        """The position at one input value; see :func:`linkwork.motion.solve`."""
+        """The position at one input value; see :func:`linkwork.motion.solve`.
+
+        Parameters
+        ----------
+        configuration : str, optional
+            The one of this name in ``configurations(at)``, whatever the guess; the arguments about
+            Newton-Raphson from the guess then mean nothing.
+        """
+        if configuration is not None:
+            return motion.solve_configuration(self.model, at, configuration, throw=throw)
         return motion.solve(
             self.model,
             at,
@@ -130,6 +141,7 @@ class Mechanism:
         start: Number | None = None,
         stop: Number | None = None,
         step: Number | None = None,
+        configuration: str | None = None,
         through: bool = False,
         change_points: str = "stop",
         limits_of: Sequence[str] = (),
@@ -143,6 +155,8 @@ class Mechanism:
         ----------
         start, stop, step : number, optional
             Replace the range of the (only) input, in everyday units.
+        configuration : str, optional
+            Start from the configuration of this name at the guess's own input value.
         through : bool
             Go on through dead points, the input turning back, around the whole circuit.
         change_points : str
@@ -155,6 +169,8 @@ class Mechanism:
         asked = self.model
         if not (start is None and stop is None and step is None):
             asked = motion.model_of(self.description.with_range(start, stop, step))
+        if configuration is not None:
+            asked = motion.started_in(asked, configuration)
         return motion.sweep(
             asked,
             through=through,
@@ -164,6 +180,10 @@ class Mechanism:
             options=options,
             progress=progress,
         )
+
+    def configurations(self, at: float | Mapping[str, float] | None = None) -> Configurations:
+        """Every way to put it together at one input; see :func:`linkwork.motion.configurations`."""
+        return motion.configurations(self.model, at)
 
     def scene(self, at: float | Mapping[str, float] | None = None) -> drawing.Scene:
         """A picture of one position with the traces of the traced points over the cycle."""

@@ -10,7 +10,14 @@ import click
 from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.motion_page import failure_line, motion_lines
-from linkwork.cli.options import NUMBER, debug_option, file_argument, json_option, set_option
+from linkwork.cli.options import (
+    NUMBER,
+    configuration_option,
+    debug_option,
+    file_argument,
+    json_option,
+    set_option,
+)
 from linkwork.cli.output_file import check_outputs, write_text
 from linkwork.cli.position_page import residual_measure
 from linkwork.cli.terminal import print_json, print_lines, progress, wrapped
@@ -31,6 +38,7 @@ __all__ = ["sweep"]
 @click.option("--from", "start", type=NUMBER, help="First input value, in the file's unit.")
 @click.option("--to", "stop", type=NUMBER, help="Last input value.")
 @click.option("--step", type=NUMBER, help="Distance between input values.")
+@configuration_option
 @click.option("--through", is_flag=True, help="Go on through dead points around the circuit.")
 @click.option(
     "--change-points",
@@ -58,6 +66,7 @@ def sweep(
     start: Number | None,
     stop: Number | None,
     step: Number | None,
+    configuration: str | None,
     through: bool,
     change_points: str,
     limits_of: tuple[str, ...],
@@ -89,13 +98,14 @@ def sweep(
             start=start,
             stop=stop,
             step=step,
+            configuration=configuration,
             through=through,
             change_points=change_points,
             limits_of=limits_of,
             certify=not no_certificates,
             progress=tell,
         )
-    page = None if draw is None else _start_scene(mechanism, motion)
+    page = None if draw is None else _start_scene(mechanism, motion, configuration)
     written = _written(motion, page, csv, draw)
     if as_json:
         print_json(_data(motion))
@@ -108,9 +118,9 @@ def sweep(
         context.exit(1)
 
 
-def _start_scene(mechanism: Mechanism, motion: Motion) -> Scene | None:
+def _start_scene(mechanism: Mechanism, motion: Motion, configuration: str | None) -> Scene | None:
     """The picture of the start; None if there is no start to draw."""
-    position = mechanism.solve()
+    position = mechanism.solve(configuration=configuration)
     return picture.scene(position, motion) if position.status.ok else None
 
 

@@ -27,6 +27,14 @@ class Certification(Enum):
         "the position is proved; at a change point before it nothing but the chosen way of going "
         "on decides the branch"
     )
+    CONFIGURATION_CERTIFIED = (
+        "a true position is proved to lie within the radius, and no other near it"
+    )
+
+    @property
+    def certified(self) -> bool:
+        """Whether everything that belongs to the position is proved."""
+        return self in (Certification.CERTIFIED, Certification.CONFIGURATION_CERTIFIED)
 
     @property
     def code(self) -> int:

@@ -8,6 +8,7 @@ from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
     from linkwork.motion.checking import check
+    from linkwork.motion.configurations import configurations, solve_configuration, started_in
     from linkwork.motion.model import Model, model_of
     from linkwork.motion.solving import solve
     from linkwork.motion.sweeping import sweep
@@ -16,6 +17,7 @@ else:
         __name__,
         {
             "checking": ("check",),
+            "configurations": ("configurations", "solve_configuration", "started_in"),
             "model": ("Model", "model_of"),
             "solving": ("solve",),
             "sweeping": ("sweep",),
@@ -25,7 +27,10 @@ else:
 __all__ = [
     "Model",
     "check",
+    "configurations",
     "model_of",
     "solve",
+    "solve_configuration",
+    "started_in",
     "sweep",
 ]

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-
 import numpy as np
 
 from linkwork.foundation.arrays import Array
@@ -12,25 +10,24 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
 from linkwork.motion.limits import ends_of
-from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
+from linkwork.motion.positions import (
+    Evidence,
+    found_message,
+    input_rate,
+    position_of,
+    target_values,
+)
 from linkwork.motion.proving import prove_rows
-from linkwork.motion.reading import Named, named_series
+from linkwork.motion.reading import named_series
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.tracking import leading_scale, track_to, turns_freely
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.track import InputPath, Rows, Track, node_at, rows_on_track
-from linkwork.results.motion import Limit, Series
-from linkwork.results.position import Certificate, NewtonTrail, Position
+from linkwork.results.motion import Limit
+from linkwork.results.position import Certificate, Position
 
 __all__ = ["solve"]
-
-
-_HOPELESS = 1e12  # condition beyond which derivatives mean nothing
-_SINGULAR = (
-    "position found, at a dead point or change point: there its derivatives do not exist, "
-    "and a motion cannot start"
-)
 
 
 def solve(
@@ -69,7 +66,7 @@ def solve(
         Only with ``throw``.
     """
     options = options or NewtonOptions()
-    target = _target(model, at)
+    target = target_values(model, at)
     inputs = target * model.input_scale
     start = first_position(model, inputs if from_guess else model.start_inputs, options, with_steps)
     if not start.status.ok:
@@ -83,48 +80,20 @@ def solve(
     return position
 
 
-def _target(model: Model, at: float | Mapping[str, float] | None) -> Array:
-    if at is None:
-        return model.everyday_start
-    if not isinstance(at, Mapping):
-        inputs = model.equations.inputs
-        at = {inputs[0].name: float(at)} if len(inputs) == 1 else {"": float(at)}
-    return model.input_values(dict(at))
-
-
-def _rate(model: Model) -> Array:
-    """How all inputs move by the leading one, (p,)."""
-    rows = model.rows if model.description.inputs else np.zeros((1, 0))
-    return lock_step(rows)[1]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Evidence:
-    """How a position was found, or why not."""
-
-    status: Status
-    message: str
-    residual: float
-    iterations: int
-    condition: float
-    certificate: Certificate
-    trails: tuple[NewtonTrail, ...]
-
-
 def _arrived(model: Model, target: Array, start: Start, certify: bool) -> Position:
     """The start itself is the position asked for."""
     solver = model.compiled.solver
     own = start.v[solver.unknowns :]
-    lead = int(np.argmax(_rate(model) == 1.0)) if len(own) else 0
+    lead = int(np.argmax(input_rate(model) == 1.0)) if len(own) else 0
     t = float(own[lead]) if len(own) else 0.0
-    path = InputPath(origin=own - _rate(model) * t, rate=_rate(model))
+    path = InputPath(origin=own - input_rate(model) * t, rate=input_rate(model))
     node = node_at(solver, path, t, start.v)
     rows = Rows(
         v=start.v[None, :],
         status=np.array([Status.CONVERGED.code], dtype=np.int8),
         iterations=np.array([start.iterations]),
         residual=np.array([start.residual]),
-        rates=solver.rates(start.v[None, :], _rate(model)),
+        rates=solver.rates(start.v[None, :], input_rate(model)),
     )
     track = Track(nodes=(node,), start=0)
     return _from_row(model, target, (path, track, t), rows, start, certify)
@@ -177,7 +146,7 @@ def _stopped(
 def _failed(model: Model, target: Array, status: Status, message: str, start: Start) -> Position:
     nothing = np.full((1, model.compiled.solver.variables), np.nan)
     named = named_series(model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool))
-    evidence = _Evidence(
+    evidence = Evidence(
         status=status,
         message=message,
         residual=start.residual,
@@ -186,7 +155,7 @@ def _failed(model: Model, target: Array, status: Status, message: str, start: St
         certificate=Certificate(certification=Certification.NO_POSITION),
         trails=start.trails,
     )
-    return _position(model, named, evidence, nothing[0, : model.compiled.solver.unknowns])
+    return position_of(model, named, 0, evidence, nothing[0, : model.compiled.solver.unknowns])
 
 
 def _from_row(
@@ -211,60 +180,16 @@ def _from_row(
             unique_within=float(proofs.unique[0]) if proved else None,
         )
     status = Status.of_code(int(rows.status[0]))
-    rates = solver.rates(rows.v, _rate(model))
+    rates = solver.rates(rows.v, input_rate(model))
     found = np.array([status.ok])
     named = named_series(model, rows.v, rates.first, rates.second, target[None, :], found)
-    evidence = _Evidence(
+    evidence = Evidence(
         status=status,
-        message=_SINGULAR if status.ok and rates.condition[0] > _HOPELESS else status.value,
+        message=found_message(status, float(rates.condition[0])),
         residual=float(rows.residual[0]),
         iterations=int(rows.iterations[0]),
         condition=float(rates.condition[0]),
         certificate=certificate,
         trails=start.trails,
     )
-    return _position(model, named, evidence, rows.v[0, : solver.unknowns])
-
-
-def _position(model: Model, named: Named, evidence: _Evidence, q: Array) -> Position:
-    everything: dict[str, Series] = {
-        **named.unknowns,
-        **named.links,
-        **named.sliders,
-        **named.outputs,
-        **{s.quantity.name: s for pair in named.points.values() for s in pair},
-    }
-    first = {name: float(s.first[0]) for name, s in everything.items()}
-    second = {name: float(s.second[0]) for name, s in everything.items()}
-    speed = model.speed
-    return Position(
-        mechanism=model.description.name,
-        units=model.units,
-        skeleton=model.skeleton,
-        status=evidence.status,
-        message=evidence.message,
-        input={name: float(value[0]) for name, value in named.inputs.items()},
-        input_units=model.input_units,
-        derivative_unit=model.derivative_unit,
-        unknowns=_values(named.unknowns),
-        links=_values(named.links),
-        sliders=_values(named.sliders),
-        points={
-            name: (float(x.value[0]), float(y.value[0])) for name, (x, y) in named.points.items()
-        },
-        outputs=_values(named.outputs),
-        first=first,
-        second=second,
-        velocity={} if speed is None else {n: d * speed for n, d in first.items()},
-        acceleration={} if speed is None else {n: d * speed**2 for n, d in second.items()},
-        residual=evidence.residual,
-        iterations=evidence.iterations,
-        condition=evidence.condition,
-        certificate=evidence.certificate,
-        q=q,
-        steps=evidence.trails,
-    )
-
-
-def _values(table: Mapping[str, Series]) -> dict[str, float]:
-    return {name: float(series.value[0]) for name, series in table.items()}
+    return position_of(model, named, 0, evidence, rows.v[0, : solver.unknowns])

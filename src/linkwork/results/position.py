@@ -33,7 +33,7 @@ class Certificate:
     @property
     def certified(self) -> bool:
         """Whether everything is proved."""
-        return self.certification is Certification.CERTIFIED
+        return self.certification.certified
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,6 +94,8 @@ class Position:
         Largest closure error divided by the longest link.
     condition : float
         Largest condition number (largest norm, weighted) of a block's Jacobian.
+    configuration : str
+        What this way to put the mechanism together is called, if it comes from a list of them.
     q : array, shape (n,)
         The unknowns with angles in radians.
     """
@@ -120,6 +122,7 @@ class Position:
     condition: float
     certificate: Certificate = Certificate()
     branch: str = ""
+    configuration: str = ""
     q: Array
     steps: tuple[NewtonTrail, ...] = ()
 
@@ -168,6 +171,7 @@ class Position:
                 "reason": self.certificate.certification.value,
             },
             "branch": self.branch,
+            "configuration": self.configuration,
             **({"steps": [_trail(trail) for trail in self.steps]} if self.steps else {}),
         }
 

@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from linkwork.results.configurations import Configurations
     from linkwork.results.motion import Motion
     from linkwork.results.position import Position
 
-__all__ = ["motion_summary", "position_summary"]
+__all__ = ["configurations_summary", "motion_summary", "position_summary"]
 
 
 def _aligned(rows: list[tuple[str, str]]) -> list[str]:
@@ -34,6 +35,21 @@ def position_summary(position: Position) -> str:
         ("iterations", str(position.iterations)),
         ("certified", "yes" if position.certificate.certified else "no"),
     ]
+    return "\n".join([head, *_aligned(rows)])
+
+
+def configurations_summary(found: Configurations) -> str:
+    """One row per configuration, then completeness and what became of the paths."""
+    at = _driven(found.input, found.input_units)
+    head = f"Configurations of {found.mechanism}" + (f" at {at}" if at else "")
+    rows = []
+    for position in found:
+        values = ", ".join(f"{name} = {value:.8g}" for name, value in position.unknowns.items())
+        certified = "certified" if position.certificate.certified else "not certified"
+        rows.append((position.configuration, f"{values}  {certified}"))
+    rows.append(("completeness", found.message))
+    paths = [f"{count.real} real of {count.finite} solutions" for count in found.paths]
+    rows.append(("paths", "; ".join(paths)))
     return "\n".join([head, *_aligned(rows)])
 
 
