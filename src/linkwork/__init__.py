@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     )
     from linkwork.foundation.angles import AngleUnit
     from linkwork.foundation.certification import Certification
+    from linkwork.foundation.circuit_end import CircuitEnd
     from linkwork.foundation.completeness import Completeness
     from linkwork.foundation.errors import (
         ExpressionError,
@@ -36,8 +37,9 @@ if TYPE_CHECKING:
     from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
     from linkwork.numerics.newton import NewtonOptions
     from linkwork.results.check import CheckReport
+    from linkwork.results.circuits import Branch, Circuit, Circuits
     from linkwork.results.configurations import Configurations, PathCount
-    from linkwork.results.motion import Limit, LimitKind, Motion, Series
+    from linkwork.results.motion import Limit, LimitKind, Motion, OutputLimit, Series
     from linkwork.results.position import Certificate, Position
     from linkwork.results.table import Table
 else:
@@ -57,6 +59,7 @@ else:
             ),
             "foundation.angles": ("AngleUnit",),
             "foundation.certification": ("Certification",),
+            "foundation.circuit_end": ("CircuitEnd",),
             "foundation.completeness": ("Completeness",),
             "foundation.errors": (
                 "ExpressionError",
@@ -73,8 +76,9 @@ else:
             "mechanism.parts": ("Cylinder", "Input", "Slider", "Slot"),
             "numerics.newton": ("NewtonOptions",),
             "results.check": ("CheckReport",),
+            "results.circuits": ("Branch", "Circuit", "Circuits"),
             "results.configurations": ("Configurations", "PathCount"),
-            "results.motion": ("Limit", "LimitKind", "Motion", "Series"),
+            "results.motion": ("Limit", "LimitKind", "Motion", "OutputLimit", "Series"),
             "results.position": ("Certificate", "Position"),
             "results.table": ("Table",),
         },
@@ -82,9 +86,13 @@ else:
 
 __all__ = [
     "AngleUnit",
+    "Branch",
     "Certificate",
     "Certification",
     "CheckReport",
+    "Circuit",
+    "CircuitEnd",
+    "Circuits",
     "Completeness",
     "Configurations",
     "Cylinder",
@@ -101,6 +109,7 @@ __all__ = [
     "Motion",
     "NewtonOptions",
     "NotConvergedError",
+    "OutputLimit",
     "PathCount",
     "Position",
     "Problem",

@@ -16,6 +16,7 @@ from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.parts import Number
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.check import CheckReport
+from linkwork.results.circuits import Circuits
 from linkwork.results.configurations import Configurations
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
@@ -120,8 +121,8 @@ class Mechanism:
         Parameters
         ----------
         configuration : str, optional
-            The one of this name in ``configurations(at)``, whatever the guess; the arguments about
-            Newton-Raphson from the guess then mean nothing.
+            The one of this name in ``configurations(at)``, or on this branch of ``circuits()``,
+            whatever the guess; the arguments about Newton-Raphson then mean nothing.
         """
         if configuration is not None:
             return motion.solve_configuration(self.model, at, configuration, throw=throw)
@@ -156,7 +157,8 @@ class Mechanism:
         start, stop, step : number, optional
             Replace the range of the (only) input, in everyday units.
         configuration : str, optional
-            Start from the configuration of this name at the guess's own input value.
+            Start from the configuration of this name at the guess's own input value, or on this
+            branch of ``circuits()``.
         through : bool
             Go on through dead points, the input turning back, around the whole circuit.
         change_points : str
@@ -184,6 +186,12 @@ class Mechanism:
     def configurations(self, at: float | Mapping[str, float] | None = None) -> Configurations:
         """Every way to put it together at one input; see :func:`linkwork.motion.configurations`."""
         return motion.configurations(self.model, at)
+
+    def circuits(
+        self, *, certify: bool = True, progress: Callable[[float], None] | None = None
+    ) -> Circuits:
+        """All circuits with their branches; see :func:`linkwork.motion.circuits`."""
+        return motion.circuits(self.model, certify=certify, progress=progress)
 
     def scene(self, at: float | Mapping[str, float] | None = None) -> drawing.Scene:
         """A picture of one position with the traces of the traced points over the cycle."""

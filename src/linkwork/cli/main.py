@@ -21,6 +21,7 @@ _COMMANDS = (
     "solve",
     "sweep",
     "configurations",
+    "circuits",
     "draw",
     "examples",
     "schema",

@@ -89,8 +89,8 @@ at_option: Decorator = click.option(
 configuration_option: Decorator = click.option(
     "--configuration",
     metavar="NAME",
-    help="Start from this configuration instead of the guess's; "
-    "`linkwork configurations` lists them.",
+    help="Start from this configuration or branch instead of the guess's; "
+    "`linkwork configurations` and `linkwork circuits` list them.",
 )
 
 

@@ -8,6 +8,7 @@ from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
     from linkwork.motion.checking import check
+    from linkwork.motion.circuits import branch_start, circuits
     from linkwork.motion.configurations import configurations, solve_configuration, started_in
     from linkwork.motion.model import Model, model_of
     from linkwork.motion.solving import solve
@@ -17,6 +18,7 @@ else:
         __name__,
         {
             "checking": ("check",),
+            "circuits": ("branch_start", "circuits"),
             "configurations": ("configurations", "solve_configuration", "started_in"),
             "model": ("Model", "model_of"),
             "solving": ("solve",),
@@ -26,7 +28,9 @@ else:
 
 __all__ = [
     "Model",
+    "branch_start",
     "check",
+    "circuits",
     "configurations",
     "model_of",
     "solve",

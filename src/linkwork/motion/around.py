@@ -71,7 +71,7 @@ def further_branches(
     for number, (walk, branch) in enumerate(pieces, start=2):
         rows = _rows(model, path, lead, leads, (walk, branch), asked, report, certify)
         if rows is not None:
-            found.append(replace(rows, name=f"circuit 1 branch {number}"))
+            found.append(replace(rows, name=_branch_name(model, number)))
     turns = [turn for walk in walks for turn in walk.turns]
     return Around(
         branches=tuple(found),
@@ -80,6 +80,13 @@ def further_branches(
         ),
         end=walks[-1].curve.end,
     )
+
+
+def _branch_name(model: Model, number: int) -> str:
+    """Branches are counted from that of the guess if it is the first one of its circuit."""
+    if model.branch == f"{model.circuit} branch 1":
+        return f"{model.circuit} branch {number}"
+    return f"{model.circuit}, branch {number} from there"
 
 
 def _rows(

@@ -13,6 +13,7 @@ from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import InputError, NotConvergedError, UnknownNameError, choices
 from linkwork.foundation.status import Status
 from linkwork.motion.assembling import Assemblies, positions_at
+from linkwork.motion.circuits import branch_start, is_branch_name
 from linkwork.motion.model import Model
 from linkwork.motion.positions import (
     Evidence,
@@ -22,6 +23,7 @@ from linkwork.motion.positions import (
     target_values,
 )
 from linkwork.motion.reading import named_series
+from linkwork.motion.solving import solve
 from linkwork.numerics.generic_roots import SEED
 from linkwork.results.configurations import Configurations
 from linkwork.results.position import Certificate, Position
@@ -98,7 +100,7 @@ def _positions(model: Model, target: Array, found: Assemblies) -> tuple[Position
 def solve_configuration(
     model: Model, at: float | Mapping[str, float] | None, name: str, *, throw: bool = False
 ) -> Position:
-    """The position at one input value in a named configuration.
+    """The position at one input value in a named configuration, or on a named branch.
 
     Raises
     ------
@@ -107,6 +109,8 @@ def solve_configuration(
     NotConvergedError
         Only with ``throw``: if there is no configuration at all at this input.
     """
+    if is_branch_name(name):
+        return solve(branch_start(model, name), at, throw=throw)
     found = configurations(model, at)
     if found.completeness is Completeness.NOT_LISTED:
         raise InputError(f"{model.description.name}: {found.message}")
@@ -131,11 +135,15 @@ def solve_configuration(
 def started_in(model: Model, name: str) -> Model:
     """The model with a named configuration, at the guess's own input value, as its guess.
 
+    A name such as ``circuit 1 branch 2`` takes a position on that branch instead.
+
     Raises
     ------
     UnknownNameError, InputError
         If there is no configuration of this name, or they cannot be listed.
     """
+    if is_branch_name(name):
+        return branch_start(model, name)
     found = positions_at(model, model.start_inputs)
     if found.completeness is Completeness.NOT_LISTED:
         raise InputError(f"{model.description.name}: {found.message}")
@@ -145,4 +153,4 @@ def started_in(model: Model, name: str) -> Model:
             f"input {choices('configurations', found.names, name)}"
         )
     start = found.v[found.names.index(name)]
-    return replace(model, equations=replace(model.equations, start=start))
+    return replace(model, equations=replace(model.equations, start=start), branch=name)

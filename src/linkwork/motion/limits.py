@@ -13,16 +13,28 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.motion.lined_up import links_in_line
 from linkwork.motion.model import Model
-from linkwork.numerics.change_point import ChangePoint, locate_change_point, most_singular
-from linkwork.numerics.curve import Led, Leg
+from linkwork.numerics.change_point import (
+    ChangePoint,
+    Crossing,
+    locate_change_point,
+    most_singular,
+)
+from linkwork.numerics.curve import Leads, Led, Leg
 from linkwork.numerics.proof import prove
 from linkwork.numerics.proven_curve import leg_is_proved, same_solution
 from linkwork.numerics.track import End, InputPath, Node, Track
 from linkwork.numerics.turning_point import TurningPoint, turn_beyond
 from linkwork.results.motion import Limit, LimitKind
 
-__all__ = ["BranchEnd", "dead_point_limit", "end_at_dead_point", "ends_of"]
+__all__ = [
+    "BranchEnd",
+    "change_point_limit",
+    "dead_point_limit",
+    "end_at_dead_point",
+    "ends_of",
+]
 
+_MOVES = 1e-7  # weighted: a direction along which the input moves at all
 _SOUND = 1e4  # condition up to which a node is as good as any
 _TOUCHING = 1e-12  # residual at a located crossing, where Newton-Raphson must not take a step
 
@@ -152,8 +164,38 @@ def end_at_dead_point(
 def dead_point_limit(model: Model, turn: TurningPoint, lead: int) -> Limit:
     """What is told of a dead point, everyday units."""
     return _located(
-        model, turn, most_singular(model.compiled.solver, turn.v), LimitKind.DEAD_POINT, lead
+        model,
+        t=turn.t,
+        v=turn.v,
+        bracket=turn.bracket,
+        located=turn.located,
+        block=most_singular(model.compiled.solver, turn.v),
+        kind=LimitKind.DEAD_POINT,
+        lead=lead,
     )
+
+
+def change_point_limit(model: Model, leads: Leads, crossing: Crossing, lead: int) -> Limit:
+    """What is told of a change point between two curves, everyday units."""
+    p, solver = leads.parameter, model.compiled.solver
+    block = most_singular(solver, crossing.v)
+    limit = _located(
+        model,
+        t=float(crossing.v[p]),
+        v=crossing.v,
+        bracket=crossing.bracket,
+        located=crossing.located,
+        block=block,
+        kind=LimitKind.CHANGE_POINT,
+        lead=lead,
+    )
+    rates = []
+    for direction in crossing.directions:
+        moving = abs(float(direction[p] / leads.scale[p])) > _MOVES
+        rates.append(direction / direction[p] if moving else np.full(len(direction), np.nan))
+    taking_part = np.any(crossing.directions != 0.0, axis=0)
+    onward, other = (_rates(model, np.where(taking_part, rate, np.nan)) for rate in rates)
+    return replace(limit, onward=onward, other=other)
 
 
 def _crossing_end(
@@ -161,7 +203,16 @@ def _crossing_end(
 ) -> BranchEnd:
     solver = model.compiled.solver
     limit = replace(
-        _located(model, crossing, crossing.block, LimitKind.CHANGE_POINT, lead),
+        _located(
+            model,
+            t=crossing.t,
+            v=crossing.v,
+            bracket=crossing.bracket,
+            located=crossing.located,
+            block=crossing.block,
+            kind=LimitKind.CHANGE_POINT,
+            lead=lead,
+        ),
         onward=_rates(model, crossing.onward),
         other=_rates(model, crossing.other),
     )
@@ -184,24 +235,28 @@ def _crossing_end(
 
 def _located(
     model: Model,
-    point: TurningPoint | ChangePoint,
+    *,
+    t: float,
+    v: Array,
+    bracket: tuple[float, float],
+    located: bool,
     block: int | None,
     kind: LimitKind,
     lead: int,
 ) -> Limit:
     scale = model.input_scale[lead]
-    low, high = (edge / scale for edge in point.bracket)
-    short = round(point.t / scale, 9)
+    low, high = (edge / scale for edge in bracket)
+    short = round(t / scale, 9)
     status = Status.OUT_OF_REACH if kind is LimitKind.DEAD_POINT else Status.CHANGE_POINT
     equations = () if block is None else model.compiled.solver.blocks[block].equations
     return Limit(
         kind=kind,
-        input=float(short if low <= short <= high else point.t / scale) + 0.0,
+        input=float(short if low <= short <= high else t / scale) + 0.0,
         bracket=(float(low), float(high)),
-        located=bool(point.located),
+        located=bool(located),
         status=status,
         loops=tuple(model.equations.labels[e] for e in equations),
-        in_line=() if block is None else links_in_line(model, block, point.v),
+        in_line=() if block is None else links_in_line(model, block, v),
     )
 
 

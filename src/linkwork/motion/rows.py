@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -84,7 +84,3 @@ class SolvedRows:
             return np.concatenate([getattr(part, name) for part in parts])
 
         return cls(**{f.name: stacked(f.name) for f in fields(cls)})
-
-    def sorted_by(self, key: Callable[[SolvedRows], Array]) -> SolvedRows:
-        """The rows in the order of a key, equal ones as they are."""
-        return self.take(np.argsort(key(self), kind="stable"))

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.policy import ChangePointPolicy
@@ -19,8 +19,8 @@ from linkwork.motion.extremes import check_quantities, output_limits
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
+from linkwork.motion.motion_of_rows import motion_of_rows
 from linkwork.motion.proving import way_is_proved
-from linkwork.motion.reading import named_series
 from linkwork.motion.rows import SolvedRows
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.sweep_table import SweepTable
@@ -35,7 +35,6 @@ _ENTRIES = (
     24  # rows, from the nearest on, at which a table of several inputs is tried to be entered
 )
 _MOST_CROSSINGS = 64
-_START_BRANCH = "circuit 1 branch 1"
 
 
 def sweep(
@@ -127,14 +126,14 @@ class _Sweep:
         free = turns_freely(self.model)
         table = SweepTable(self.model, self.path, asked, first.rows, _span(asked.t), free)
         self.tables.append(table)
-        self._name(first, _START_BRANCH)
-        self.branches.append((table, first, _START_BRANCH))
+        self._name(first, self.model.branch)
+        self.branches.append((table, first, self.model.branch))
         below: list[Limit] = []
         above: list[Limit] = []
         for end in first.ends:
             passed = self._cross(table, end, policy)
             (below if end.side < 0 else above).extend(passed)
-            table.put_end(end, _START_BRANCH)
+            table.put_end(end, self.model.branch)
         self.limits = [*below[::-1], *above]
 
     def _branch(self, anchor: Node, asked: Asked) -> BranchRows:
@@ -166,14 +165,14 @@ class _Sweep:
             found = self._branch(node, table.asked.take(beyond))
             code = found.rows.certification
             code[code == Certification.CERTIFIED.code] = Certification.BRANCH_CHOSEN.code
-            self._name(found, "circuit 1")
+            self._name(found, self.model.circuit)
             table.rows.put(beyond, found.rows)
-            self.branches.append((table, found, "circuit 1"))
+            self.branches.append((table, found, self.model.circuit))
             ahead = [other for other in found.ends if other.side == end.side]
             if not ahead:
                 return told
             end = _after_choice(ahead[0])
-            table.put_end(end, "circuit 1")
+            table.put_end(end, self.model.circuit)
         return [*told, end.limit]
 
     def go_around(self, anchor: Node, asked: Asked) -> None:
@@ -230,7 +229,7 @@ class _Sweep:
         """Everything in one result."""
         first, *further = (table.finished() for table in self.tables)
         added = [first[1], *(np.ones(len(rows), dtype=bool) for rows, _ in further)]
-        return _assembled(
+        return motion_of_rows(
             self.model,
             SolvedRows.joined([first[0], *(rows for rows, _ in further)]),
             message,
@@ -296,48 +295,4 @@ def _led_to(
 
 def _without_start(model: Model, start: Start) -> Motion:
     rows = SolvedRows.blank(model.everyday_rows, model.compiled.solver.variables, Status.NO_START)
-    return _assembled(model, rows, start.message, added=np.zeros(len(rows), dtype=bool))
-
-
-def _assembled(
-    model: Model,
-    rows: SolvedRows,
-    message: str,
-    *,
-    added: BoolArray,
-    limits: tuple[Limit, ...] = (),
-    output_limits: tuple[OutputLimit, ...] = (),
-    circuit: CircuitEnd | None = None,
-) -> Motion:
-    found = rows.status == Status.CONVERGED.code
-    named = named_series(model, rows.v, rows.first, rows.second, rows.inputs, found)
-    return Motion(
-        mechanism=model.description.name,
-        units=model.units,
-        skeleton=model.skeleton,
-        inputs=named.inputs,
-        input_units=model.input_units,
-        derivative_unit=model.derivative_unit,
-        unknowns=named.unknowns,
-        links=named.links,
-        riding=model.riding,
-        sliders=named.sliders,
-        points=named.points,
-        outputs=named.outputs,
-        status=tuple(Status.of_code(int(code)) for code in rows.status),
-        message=message,
-        residual=rows.residual,
-        iterations=rows.iterations,
-        condition=rows.condition,
-        certification=tuple(Certification.of_code(int(c)) for c in rows.certification),
-        radius=rows.radius,
-        unique_within=rows.unique,
-        branch=tuple(rows.branch),
-        limit=tuple(rows.limit),
-        added=added,
-        speed=model.speed,
-        limits=limits,
-        output_limits=output_limits,
-        circuit=circuit,
-        q=rows.v[:, : model.compiled.solver.unknowns],
-    )
+    return motion_of_rows(model, rows, start.message, added=np.zeros(len(rows), dtype=bool))

@@ -18,6 +18,7 @@ from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.change_point import ChangePoint, locate_change_point
 from linkwork.numerics.track import BOLD, InputPath, Node, TrackOptions, follow, node_at
 
 __all__ = [
@@ -126,12 +127,14 @@ class Curve:
     """Legs in the order traced and why the curve ends.
 
     ``passes``: the positions (N,) at which the parameter came by its starting value, whole turns
-    aside, each with the number of the leg that it ends.
+    aside, each with the number of the leg that it ends. ``crossing``: the change point that it ends
+    at, as the last leg's leader sees it.
     """
 
     legs: tuple[Leg, ...]
     end: CircuitEnd
     passes: tuple[tuple[int, Array], ...]
+    crossing: ChangePoint | None = None
 
     @property
     def last(self) -> tuple[Led, Node]:
@@ -140,33 +143,42 @@ class Curve:
         return leg.led, leg.nodes[-1]
 
 
-def trace(leads: Leads, start: Array, side: float, options: CurveOptions | None = None) -> Curve:
+def trace(
+    leads: Leads, start: Array, heading: float | Array, options: CurveOptions | None = None
+) -> Curve:
     """Follow the curve through a position until it closes or ends.
 
     Parameters
     ----------
     start : (N,)
-        A position at which the parameter can lead.
-    side : float
-        +1 to begin with the parameter growing, -1 falling.
+        A position on the curve, not where curves cross.
+    heading : float or (N,)
+        How the variables move at first, in direction; +1 for a growing parameter, -1 for a falling
+        one.
     """
-    return _Tracer(leads, start, side, options or CurveOptions()).run()
+    if isinstance(heading, float):
+        side, heading = heading, np.zeros(len(start))
+        heading[leads.parameter] = side
+    return _Tracer(leads, start, heading, options or CurveOptions()).run()
 
 
 class _Tracer:
     """The state of one trace: the position reached and the direction of travel."""
 
-    def __init__(self, leads: Leads, start: Array, side: float, options: CurveOptions) -> None:
+    def __init__(self, leads: Leads, start: Array, heading: Array, options: CurveOptions) -> None:
         self.leads, self.start, self.options = leads, start, options
-        self.here = start
-        self.heading = np.zeros(len(start))  # direction of travel, only its signs count
-        self.heading[leads.parameter] = side
+        self.here, self.heading = start, heading
+        self.crossing: ChangePoint | None = None
         self.legs: list[Leg] = []
         self.passes: list[tuple[int, Array]] = []
         own = self._own()
         if own is None:
             raise ValueError("the parameter of a curve must determine the position")
         self.own = own
+        if np.count_nonzero(heading) == 1 and heading[leads.parameter]:
+            rates = own.whole(own.node(start).first)
+            if np.isfinite(rates).all():
+                self.heading = heading[leads.parameter] * rates
 
     def _own(self) -> Led | None:
         return self.leads.by(self.leads.parameter)
@@ -186,6 +198,9 @@ class _Tracer:
                 self.legs.append(leg)
                 self._arrive(leg)
             if end is not None:
+                self.crossing = _crossing_ahead(leg)
+                if self.crossing is not None:
+                    return self._ended(CircuitEnd.CHANGE_POINT)
                 stuck = 0 if moved else stuck + 1
                 avoid = led.lead
                 if stuck > 1:
@@ -198,7 +213,9 @@ class _Tracer:
         return self._ended(CircuitEnd.NEVER_CLOSES)
 
     def _ended(self, end: CircuitEnd) -> Curve:
-        return Curve(legs=tuple(self.legs), end=end, passes=tuple(self.passes))
+        return Curve(
+            legs=tuple(self.legs), end=end, passes=tuple(self.passes), crossing=self.crossing
+        )
 
     def _arrive(self, leg: Leg) -> None:
         last = leg.nodes[-1]
@@ -209,8 +226,6 @@ class _Tracer:
     def _leader(self, avoid: int | None) -> tuple[Led, Node] | None:
         """The parameter where it is fast enough, else the fastest variable that determines all."""
         scale, parameter = self.leads.scale, self.leads.parameter
-        if not self.legs and avoid is None:
-            return self.own, self.own.node(self.here)
         speed = np.abs(self.heading) / scale
         first = parameter if speed[parameter] * self.options.slow >= speed.max() else None
         return fastest_leader(self.leads, self.here, speed, avoid, first)
@@ -325,6 +340,16 @@ class _Tracer:
         if abs(v - self.start)[self.leads.parameter] > self.options.most_turns * 2.0 * np.pi:
             return CircuitEnd.NEVER_CLOSES
         return None
+
+
+def _crossing_ahead(leg: Leg) -> ChangePoint | None:
+    """The change point at which a leg could not go on."""
+    first, last = leg.nodes[0], leg.nodes[-1]
+    for side in (1.0, -1.0) if first is last else (math.copysign(1.0, last.t - first.t),):
+        found = locate_change_point(leg.led.solver, leg.led.path, last, side)
+        if found is not None:
+            return found
+    return None
 
 
 def fastest_leader(

@@ -18,7 +18,7 @@ from itertools import product
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.foundation.arrays import BoolArray, ComplexArray
 from linkwork.numerics.bilinear import BilinearSystem, Roots, polished
 from linkwork.numerics.bilinear_homotopy import ParameterHomotopy, StartHomotopy
 from linkwork.numerics.homotopy import (

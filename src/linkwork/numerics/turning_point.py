@@ -30,6 +30,7 @@ __all__ = ["TurningPoint", "turn_beyond", "turning_points"]
 
 _CONVERGED = Status.CONVERGED.code
 _UNIT = np.finfo(float).eps
+_RESTING = 1e-7  # weighted rate below which, from node to node, the parameter does not move at all
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,7 +62,10 @@ def turning_points(leads: Leads, curve: Curve) -> Iterator[TurningPoint]:
         if leg.led.lead == leads.parameter:
             continue
         place = leg.led.place(leads.parameter)
-        for k, (a, b) in enumerate(zip(leg.nodes, leg.nodes[1:], strict=False)):
+        resting = _RESTING * leads.scale[leads.parameter] / leads.scale[leg.led.lead]
+        for k, (a, b) in enumerate(itertools.pairwise(leg.nodes)):
+            if max(abs(a.first[place]), abs(b.first[place])) < resting:
+                continue
             chain = _divided(leg.led, a, b, place)
             for low, high in itertools.pairwise(chain):
                 if low.first[place] * high.first[place] < 0.0:

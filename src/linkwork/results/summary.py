@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from linkwork.results.circuits import Circuits
     from linkwork.results.configurations import Configurations
     from linkwork.results.motion import Motion
     from linkwork.results.position import Position
@@ -50,6 +51,18 @@ def configurations_summary(found: Configurations) -> str:
     rows.append(("completeness", found.message))
     paths = [f"{count.real} real of {count.finite} solutions" for count in found.paths]
     rows.append(("paths", "; ".join(paths)))
+    return "\n".join([head, *_aligned(rows)])
+
+
+def circuits_summary(circuits: Circuits) -> str:
+    """One line per branch."""
+    unit = circuits.input_unit
+    head = f"{len(circuits)} circuit{'' if len(circuits) == 1 else 's'} of {circuits.mechanism}"
+    rows = []
+    for circuit in circuits:
+        for branch in circuit.branches:
+            low, high = branch.input_range
+            rows.append((branch.name, f"{circuits.input} {low:.10g} to {high:.10g} {unit}"))
     return "\n".join([head, *_aligned(rows)])
 
 
