@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     )
     from linkwork.foundation.angles import AngleUnit
     from linkwork.foundation.certification import Certification
+    from linkwork.foundation.circuit_end import CircuitEnd
+    from linkwork.foundation.completeness import Completeness
     from linkwork.foundation.errors import (
         ExpressionError,
         InputError,
@@ -36,8 +38,10 @@ if TYPE_CHECKING:
     from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
     from linkwork.numerics.newton import NewtonOptions
     from linkwork.results.check import CheckReport
+    from linkwork.results.circuits import Branch, Circuit, Circuits
+    from linkwork.results.configurations import Configurations, PathCount
     from linkwork.results.failure import Failure, Remedy
-    from linkwork.results.motion import Limit, LimitKind, Motion, Series
+    from linkwork.results.motion import Limit, LimitKind, Motion, OutputLimit, Series
     from linkwork.results.position import Certificate, Position
     from linkwork.results.table import Table
 else:
@@ -57,6 +61,8 @@ else:
             ),
             "foundation.angles": ("AngleUnit",),
             "foundation.certification": ("Certification",),
+            "foundation.circuit_end": ("CircuitEnd",),
+            "foundation.completeness": ("Completeness",),
             "foundation.errors": (
                 "ExpressionError",
                 "InputError",
@@ -73,8 +79,10 @@ else:
             "mechanism.parts": ("Cylinder", "Input", "Slider", "Slot"),
             "numerics.newton": ("NewtonOptions",),
             "results.check": ("CheckReport",),
+            "results.circuits": ("Branch", "Circuit", "Circuits"),
+            "results.configurations": ("Configurations", "PathCount"),
             "results.failure": ("Failure", "Remedy"),
-            "results.motion": ("Limit", "LimitKind", "Motion", "Series"),
+            "results.motion": ("Limit", "LimitKind", "Motion", "OutputLimit", "Series"),
             "results.position": ("Certificate", "Position"),
             "results.table": ("Table",),
         },
@@ -82,9 +90,15 @@ else:
 
 __all__ = [
     "AngleUnit",
+    "Branch",
     "Certificate",
     "Certification",
     "CheckReport",
+    "Circuit",
+    "CircuitEnd",
+    "Circuits",
+    "Completeness",
+    "Configurations",
     "Cylinder",
     "ExpressionError",
     "Failure",
@@ -101,6 +115,8 @@ __all__ = [
     "NewtonOptions",
     "NewtonTrouble",
     "NotConvergedError",
+    "OutputLimit",
+    "PathCount",
     "Position",
     "Problem",
     "Remedy",

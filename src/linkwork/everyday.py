@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Self
@@ -16,6 +16,8 @@ from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.parts import Number
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.check import CheckReport
+from linkwork.results.circuits import Circuits
+from linkwork.results.configurations import Configurations
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
@@ -107,13 +109,23 @@ class Mechanism:
         self,
         at: float | Mapping[str, float] | None = None,
         *,
+        configuration: str | None = None,
         from_guess: bool = False,
         options: NewtonOptions | None = None,
         certify: bool = True,
         with_steps: bool = False,
         throw: bool = False,
     ) -> Position:
-        """The position at one input value; see :func:`linkwork.motion.solve`."""
+        """The position at one input value; see :func:`linkwork.motion.solve`.
+
+        Parameters
+        ----------
+        configuration : str, optional
+            The one of this name in ``configurations(at)``, or on this branch of ``circuits()``,
+            whatever the guess; the arguments about Newton-Raphson then mean nothing.
+        """
+        if configuration is not None:
+            return motion.solve_configuration(self.model, at, configuration, throw=throw)
         return motion.solve(
             self.model,
             at,
@@ -130,6 +142,10 @@ class Mechanism:
         start: Number | None = None,
         stop: Number | None = None,
         step: Number | None = None,
+        configuration: str | None = None,
+        through: bool = False,
+        change_points: str = "stop",
+        limits_of: Sequence[str] = (),
         certify: bool = True,
         options: NewtonOptions | None = None,
         progress: Callable[[float], None] | None = None,
@@ -140,13 +156,42 @@ class Mechanism:
         ----------
         start, stop, step : number, optional
             Replace the range of the (only) input, in everyday units.
+        configuration : str, optional
+            Start from the configuration of this name at the guess's own input value, or on this
+            branch of ``circuits()``.
+        through : bool
+            Go on through dead points, the input turning back, around the whole circuit.
+        change_points : str
+            ``stop`` at a change point, go ``straight`` on, or ``turn`` into the other branch.
+        limits_of : sequence of str
+            Quantities whose largest and smallest values are located.
         certify : bool
             Prove every position and the motion between them; without, a sweep is faster.
         """
         asked = self.model
         if not (start is None and stop is None and step is None):
             asked = motion.model_of(self.description.with_range(start, stop, step))
-        return motion.sweep(asked, certify=certify, options=options, progress=progress)
+        if configuration is not None:
+            asked = motion.started_in(asked, configuration)
+        return motion.sweep(
+            asked,
+            through=through,
+            change_points=change_points,
+            limits_of=limits_of,
+            certify=certify,
+            options=options,
+            progress=progress,
+        )
+
+    def configurations(self, at: float | Mapping[str, float] | None = None) -> Configurations:
+        """Every way to put it together at one input; see :func:`linkwork.motion.configurations`."""
+        return motion.configurations(self.model, at)
+
+    def circuits(
+        self, *, certify: bool = True, progress: Callable[[float], None] | None = None
+    ) -> Circuits:
+        """All circuits with their branches; see :func:`linkwork.motion.circuits`."""
+        return motion.circuits(self.model, certify=certify, progress=progress)
 
     def scene(self, at: float | Mapping[str, float] | None = None) -> drawing.Scene:
         """A picture of one position with the traces of the traced points over the cycle."""

@@ -78,6 +78,8 @@ class Sample:
             radius=np.full(count, np.nan),
             unique_within=np.full(count, np.nan),
             branch=("",) * count,
+            limit=("",) * count,
+            added=np.zeros(count, dtype=bool),
             speed=self.speed,
             q=np.zeros((count, 1)),
         )

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 import linkwork as lw
 from linkwork.cli.main import linkwork
 from linkwork.motion import failing
-from linkwork.motion.assemblies import Assemblies
+from linkwork.motion.elsewhere import Elsewhere
 from tests.failures.test_positions_that_do_not_exist import four_bar
 
 EXACT = 1e-11  # relative: what closed form and fold differ by is rounding
@@ -269,7 +269,7 @@ def test_of_two_equally_near_values_the_one_ahead_is_named_and_whole_turns_are_k
 
 def test_the_positions_elsewhere_are_asked_of_one_function(monkeypatch: pytest.MonkeyPatch) -> None:
     v = np.radians([[10.0, 20.0, 0.0]])
-    found = Assemblies(v=v, complete=True)
+    found = Elsewhere(v=v, complete=True)
     monkeypatch.setattr(failing, "ELSEWHERE", lambda model, inputs: found)
     position = four_bar(2, 5, 2, 4).solve(at=0)
     assert position.message.endswith("; 1 configuration exists there: coupler = 10°, rocker = 20°")

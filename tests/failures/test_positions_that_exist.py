@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.motion.assemblies import assemblies_at
 from linkwork.motion.dyads import dyad_of
+from linkwork.motion.elsewhere import positions_elsewhere
 from tests.oracles.four_bar import FourBar
 
 KINDS = {
@@ -47,7 +47,7 @@ def test_a_dyad_has_the_positions_that_newton_finds_from_everywhere(
     dyad = dyad_of(block, model.equations.start)
     assert dyad is not None
     assert dyad.kind == kind
-    found = assemblies_at(model, model.start_inputs)
+    found = positions_elsewhere(model, model.start_inputs)
     assert found is not None
     assert found.complete
     assert len(found.v) == (0 if dyad.gap else 1 if kind == "PP" else 2)
@@ -67,7 +67,7 @@ def test_a_dyad_has_the_positions_that_newton_finds_from_everywhere(
 def test_both_four_bar_positions_are_those_of_the_closed_form() -> None:
     bar = FourBar(100, 40, 120, 80)
     model = lw.example("four-bar").model
-    found = assemblies_at(model, np.array([math.radians(30)]))
+    found = positions_elsewhere(model, np.array([math.radians(30)]))
     assert found is not None
     assert found.complete
     phases = np.exp(1j * found.v[:, :2])
@@ -88,7 +88,7 @@ def test_both_four_bar_positions_are_those_of_the_closed_form() -> None:
 )
 def test_the_known_numbers_of_positions_are_found(name: str, count: int, complete: bool) -> None:
     model = lw.example(name).model
-    found = assemblies_at(model, model.start_inputs)
+    found = positions_elsewhere(model, model.start_inputs)
     assert found is not None
     assert (len(found.v), found.complete) == (count, complete)
     residual = model.compiled.table.residual(found.v) / model.equations.length_scale
@@ -105,7 +105,7 @@ def test_a_pin_that_meets_its_pivot_has_a_position_for_every_angle_and_none_is_c
         slots=[lw.Slot(name="s", point="A", on="rocker", line=["Q", "P"])],
         inputs=lw.Input(link="crank"),
     )
-    found = assemblies_at(mechanism.model, np.zeros(1))
+    found = positions_elsewhere(mechanism.model, np.zeros(1))
     assert found is not None
     assert not found.complete
     assert found.v.shape == (0, 3)
@@ -120,4 +120,4 @@ def test_a_long_chain_is_not_listed() -> None:
     mechanism = lw.loops(
         name="chain", loops=loops, guess=guess, inputs=lw.Input(variable="a0", start=0, stop=9)
     )
-    assert assemblies_at(mechanism.model, mechanism.model.start_inputs) is None
+    assert positions_elsewhere(mechanism.model, mechanism.model.start_inputs) is None

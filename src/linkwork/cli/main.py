@@ -15,7 +15,17 @@ from linkwork.foundation.errors import LinkworkError
 __all__ = ["linkwork", "main"]
 
 #: Each is a function of the same name in a module of the same name.
-_COMMANDS = ("check", "equations", "solve", "sweep", "draw", "examples", "schema")
+_COMMANDS = (
+    "check",
+    "equations",
+    "solve",
+    "sweep",
+    "configurations",
+    "circuits",
+    "draw",
+    "examples",
+    "schema",
+)
 
 _WRONG_INPUT = 2
 _OUR_FAULT = 3

@@ -13,16 +13,16 @@ from linkwork.cli.text_table import Column, short, table_lines
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
-from linkwork.results.motion import LimitKind, Motion, Series
+from linkwork.results.motion import Limit, LimitKind, Motion, Series
 
-__all__ = ["failure_line", "motion_lines"]
+__all__ = ["failure_line", "limit_text", "motion_lines"]
 
 _MOST_RUNS = 4  # stretches of failed rows that are named
 
 
 def motion_lines(motion: Motion, measure: str) -> list[str]:
     """The summary of a motion; ``measure`` stands behind residuals."""
-    head = f"{_range_text(motion)}: {len(motion)} positions"
+    head = f"{_range_text(motion)}: {_how_many(motion)}"
     lines = [*title_lines(motion.mechanism), *sentence(str, head)]
     pairs = [*_counts(motion), *_limits(motion)]
     if motion.found.any():
@@ -34,14 +34,26 @@ def motion_lines(motion: Motion, measure: str) -> list[str]:
 
 def failure_line(motion: Motion) -> list[str]:
     """How many rows were not found, in one sentence."""
-    missing = len(motion) - int(motion.found.sum())
-    return sentence(bad, f"{missing} of {len(motion)} positions were not found")
+    missing = int((motion.asked & ~motion.found).sum())
+    return sentence(bad, f"{missing} of {int(motion.asked.sum())} positions were not found")
+
+
+def _how_many(motion: Motion) -> str:
+    """``361 positions, 2 more at limits and 269 on further branches``."""
+    asked = int(motion.asked.sum())
+    home = {branch for branch, a in zip(motion.branch, motion.asked, strict=True) if a}
+    away = sum(b not in home for b, a in zip(motion.branch, motion.added, strict=True) if a)
+    near = int(motion.added.sum()) - away
+    more = [f"{near} more at limits"] if near else []
+    more += [f"{away}{'' if near else ' more'} on further branches"] if away else []
+    return f"{asked} positions" + (f", {' and '.join(more)}" if more else "")
 
 
 def _range_text(motion: Motion) -> str:
     """``θ12 from 0 to 360 deg by 1``; several inputs one after the other."""
     parts = []
-    for name, values in motion.inputs.items():
+    for name, all_values in motion.inputs.items():
+        values = all_values[motion.asked]
         unit = motion.input_units[name]
         text = f"{name} from {short(values[0])} to {short(values[-1])} {unit}".rstrip()
         by = f" by {short((values[-1] - values[0]) / (len(values) - 1))}" if len(values) > 1 else ""
@@ -78,11 +90,20 @@ def _runs(motion: Motion, status: Status) -> str:
     return f"{', '.join(shown)} {motion.input_units[name]}".rstrip() + more
 
 
-_KINDS = {
-    LimitKind.DEAD_POINT: "dead point",
-    LimitKind.CHANGE_POINT: "change point",
-    LimitKind.UNKNOWN: "limit",
-}
+def limit_text(limit: Limit, name: str, unit: str) -> str:
+    """Where a limit lies, which loops lock there, and how the motion went on."""
+    text = f"{name} = {limit.input:.12g} {unit}".rstrip()
+    if limit.loops:
+        quoted = ", ".join(f'"{loop}"' for loop in limit.loops)
+        one = len(limit.loops) == 1
+        does = "can close in two ways" if limit.kind is LimitKind.CHANGE_POINT else "lock"
+        text += f", where {'loop' if one else 'loops'} {quoted} {does}"
+        text += "s" if one and does == "lock" else ""
+    if limit.in_line:
+        text += f" ({' and '.join(limit.in_line)} in line)"
+    if limit.passed:
+        text += "; went straight on" if limit.passed == "straight" else "; turned off"
+    return text
 
 
 def _limits(motion: Motion) -> Iterator[tuple[str, str]]:
@@ -90,16 +111,17 @@ def _limits(motion: Motion) -> Iterator[tuple[str, str]]:
     name, _ = _lead(motion)
     unit = motion.input_units[name]
     for limit in motion.limits:
-        text = f"{name} = {limit.input:.12g} {unit}".rstrip()
-        if limit.loops:
-            quoted = ", ".join(f'"{loop}"' for loop in limit.loops)
-            one = len(limit.loops) == 1
-            does = "can close in two ways" if limit.kind is LimitKind.CHANGE_POINT else "lock"
-            text += f", where {'loop' if one else 'loops'} {quoted} {does}"
-            text += "s" if one and does == "lock" else ""
-        if limit.in_line:
-            text += f" ({' and '.join(limit.in_line)} in line)"
-        yield _KINDS[limit.kind], text
+        yield limit.kind.word, limit_text(limit, name, unit)
+    for extreme in motion.output_limits:
+        value = f"{extreme.value:.10g} {_unit_of(motion, extreme.name)}".rstrip()
+        text = f"{extreme.name} = {value} at {name} = {extreme.input:.12g} {unit}".rstrip()
+        yield extreme.kind, text
+    if motion.circuit is not None:
+        yield "circuit", motion.circuit.value
+
+
+def _unit_of(motion: Motion, name: str) -> str:
+    return motion.units.of(motion.series(name).quantity.kind)
 
 
 def _evidence(motion: Motion, measure: str) -> Iterator[tuple[str, str]]:

@@ -14,6 +14,7 @@ __all__ = [
     "DEBUG",
     "NUMBER",
     "at_option",
+    "configuration_option",
     "debug_option",
     "file_argument",
     "input_values",
@@ -82,6 +83,14 @@ at_option: Decorator = click.option(
     multiple=True,
     help="Input value in the file's unit; NAME=VALUE for each of several inputs. "
     "Left out: where the file's guess or sketch stands.",
+)
+
+
+configuration_option: Decorator = click.option(
+    "--configuration",
+    metavar="NAME",
+    help="Start from this configuration or branch instead of the guess's; "
+    "`linkwork configurations` and `linkwork circuits` list them.",
 )
 
 

@@ -13,7 +13,7 @@ from linkwork.motion.lock_step import lock_step
 from linkwork.results.position import Certificate, NewtonTrail, Position
 from linkwork.results.quantity import Kind, Units
 
-__all__ = ["Row", "position_lines", "residual_measure", "value_cells"]
+__all__ = ["Row", "inputs_text", "position_lines", "residual_measure", "value_cells"]
 
 _NOISE = 1e-13  # of the largest derivative: rounding, shown as 0
 _NUMBER_DIGITS = 10  # of a plain number, of which nothing is known
@@ -30,7 +30,7 @@ class Row:
 
 def position_lines(mechanism: Mechanism, position: Position, *, from_guess: bool) -> list[str]:
     """The lines of a position: values, derivatives, points, evidence, and the steps if kept."""
-    where = _inputs_text(position, position.input)
+    where = inputs_text(position.input, position.input_units)
     lines = title_lines(position.mechanism)
     if not position.status.ok:
         lines += sentence(bad, "No position found", where)
@@ -154,9 +154,8 @@ def residual_measure(mechanism: Mechanism) -> str:
     return " of the longest link" if mechanism.loop_equations.loops else ""
 
 
-def _inputs_text(position: Position, values: Mapping[str, float]) -> str:
+def inputs_text(values: Mapping[str, float], units: Mapping[str, str]) -> str:
     """``at θ12 = 60 deg``, or nothing without an input."""
-    units = position.input_units
     parts = [f"{name} = {short(value)} {units[name]}".rstrip() for name, value in values.items()]
     return f"at {', '.join(parts)}" if parts else ""
 
@@ -168,12 +167,14 @@ def _steps(mechanism: Mechanism, position: Position, from_guess: bool) -> Iterat
     model = mechanism.model
     own = dict(zip(position.input, (model.start_inputs / model.input_scale).tolist(), strict=True))
     here = dict(position.input) if from_guess else own
-    where = _inputs_text(position, here)
+    where = inputs_text(here, position.input_units)
     yield ""
     yield from sentence(str, f"Newton-Raphson from the guess {where}".rstrip())
     if position.status.ok and here != dict(position.input):
         yield from sentence(
-            str, f"(then followed to the position {_inputs_text(position, position.input)})", ""
+            str,
+            f"(then followed to the position {inputs_text(position.input, position.input_units)})",
+            "",
         )
     for trail in position.steps:
         yield from ("", *_trail(mechanism, trail))

@@ -10,6 +10,7 @@ import click
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.options import (
     at_option,
+    configuration_option,
     debug_option,
     file_argument,
     input_values,
@@ -18,6 +19,7 @@ from linkwork.cli.options import (
 )
 from linkwork.cli.position_page import position_lines
 from linkwork.cli.terminal import print_json, print_lines
+from linkwork.foundation.errors import InputError
 from linkwork.numerics.newton import NewtonOptions
 
 __all__ = ["solve"]
@@ -42,6 +44,7 @@ _POSITIVE = _Tolerance(min=0.0, min_open=True, max=math.inf, max_open=True)
 @click.command
 @file_argument
 @at_option
+@configuration_option
 @click.option(
     "--from-guess",
     is_flag=True,
@@ -79,6 +82,7 @@ def solve(
     context: click.Context,
     file: str,
     at: tuple[str, ...],
+    configuration: str | None,
     from_guess: bool,
     show_steps: bool,
     equation_tolerance: float,
@@ -93,8 +97,14 @@ def solve(
     \b
       linkwork solve rapier.toml --at 90
       linkwork solve rapier.toml --from-guess --show-steps
+      linkwork solve fourbar.toml --at 60 --configuration crossed
       linkwork solve gripper.toml --at left=90 --at right=45
     """
+    if configuration is not None and (from_guess or show_steps):
+        raise InputError(
+            "--configuration takes a position from the list of configurations, without steps "
+            "from the guess: leave out --from-guess and --show-steps"
+        )
     mechanism = read_mechanism(file, changes)
     options = NewtonOptions(
         equation_tolerance=equation_tolerance,
@@ -104,7 +114,11 @@ def solve(
     )
     values = input_values(mechanism, at)
     position = mechanism.solve(
-        values, from_guess=from_guess, options=options, with_steps=show_steps
+        values,
+        configuration=configuration,
+        from_guess=from_guess,
+        options=options,
+        with_steps=show_steps,
     )
     if as_json:
         print_json(position.to_dict())

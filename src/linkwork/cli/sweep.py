@@ -10,7 +10,14 @@ import click
 from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.motion_page import failure_line, motion_lines
-from linkwork.cli.options import NUMBER, debug_option, file_argument, json_option, set_option
+from linkwork.cli.options import (
+    NUMBER,
+    configuration_option,
+    debug_option,
+    file_argument,
+    json_option,
+    set_option,
+)
 from linkwork.cli.output_file import check_outputs, write_text
 from linkwork.cli.position_page import residual_measure
 from linkwork.cli.terminal import print_json, print_lines, progress, wrapped
@@ -18,6 +25,7 @@ from linkwork.drawing.scene import Scene
 from linkwork.everyday import Mechanism
 from linkwork.export.csv_file import csv_lines
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.mechanism.parts import Number
 from linkwork.results.motion import Motion
 from linkwork.results.table import table_of
@@ -30,6 +38,21 @@ __all__ = ["sweep"]
 @click.option("--from", "start", type=NUMBER, help="First input value, in the file's unit.")
 @click.option("--to", "stop", type=NUMBER, help="Last input value.")
 @click.option("--step", type=NUMBER, help="Distance between input values.")
+@configuration_option
+@click.option("--through", is_flag=True, help="Go on through dead points around the circuit.")
+@click.option(
+    "--change-points",
+    type=click.Choice([policy.value for policy in ChangePointPolicy]),
+    default=ChangePointPolicy.STOP.value,
+    show_default=True,
+    help="At a change point: stop, straight on, or turn into the other branch.",
+)
+@click.option(
+    "--limits-of",
+    metavar="NAME",
+    multiple=True,
+    help="Locate where NAME is largest and smallest; repeatable.",
+)
 @click.option("--no-certificates", is_flag=True, help="Prove nothing: faster.")
 @click.option("--csv", metavar="PATH", help="Write the whole table; - is standard output.")
 @click.option("--draw", metavar="PATH", help="Draw the start position: .png, .svg or .pdf.")
@@ -43,6 +66,10 @@ def sweep(
     start: Number | None,
     stop: Number | None,
     step: Number | None,
+    configuration: str | None,
+    through: bool,
+    change_points: str,
+    limits_of: tuple[str, ...],
     no_certificates: bool,
     csv: str | None,
     draw: str | None,
@@ -58,6 +85,7 @@ def sweep(
       linkwork sweep rapier.toml
       linkwork sweep rapier.toml --csv rapier.csv --draw rapier.png
       linkwork sweep rapier.toml --from 90 --to 180 --step 0.5 --csv - | head
+      linkwork sweep rapier.toml --through --limits-of s16
     """
     if as_json and csv == "-":
         raise InputError("--json and --csv - both want standard output: name a file for the table")
@@ -67,9 +95,17 @@ def sweep(
     mechanism = read_mechanism(file, changes)
     with progress("sweeping") as tell:
         motion = mechanism.sweep(
-            start=start, stop=stop, step=step, certify=not no_certificates, progress=tell
+            start=start,
+            stop=stop,
+            step=step,
+            configuration=configuration,
+            through=through,
+            change_points=change_points,
+            limits_of=limits_of,
+            certify=not no_certificates,
+            progress=tell,
         )
-    page = None if draw is None else _start_scene(mechanism, motion)
+    page = None if draw is None else _start_scene(mechanism, motion, configuration)
     written = _written(motion, page, csv, draw)
     if as_json:
         print_json(_data(motion))
@@ -82,9 +118,9 @@ def sweep(
         context.exit(1)
 
 
-def _start_scene(mechanism: Mechanism, motion: Motion) -> Scene | None:
+def _start_scene(mechanism: Mechanism, motion: Motion, configuration: str | None) -> Scene | None:
     """The picture of the start; None if there is no start to draw."""
-    position = mechanism.solve()
+    position = mechanism.solve(configuration=configuration)
     return picture.scene(position, motion) if position.status.ok else None
 
 
@@ -128,8 +164,23 @@ def _data(motion: Motion) -> dict[str, Any]:
                 "status": limit.status.name,
                 "loops": list(limit.loops),
                 "in_line": list(limit.in_line),
+                "onward": dict(limit.onward),
+                "other": dict(limit.other),
+                "passed": limit.passed,
             }
             for limit in motion.limits
         ],
+        "output_limits": [
+            {
+                "name": extreme.name,
+                "kind": extreme.kind,
+                "input": extreme.input,
+                "value": extreme.value,
+                "bracket": list(extreme.bracket),
+                "located": extreme.located,
+            }
+            for extreme in motion.output_limits
+        ],
+        "circuit": None if motion.circuit is None else motion.circuit.name,
         "counts": {status.name: count for status, count in motion.counts.items()},
     }

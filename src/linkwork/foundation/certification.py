@@ -23,6 +23,18 @@ class Certification(Enum):
     MOTION_NOT_PROVED = (
         "the position is proved, but not that the motion from the start to it stays on one branch"
     )
+    BRANCH_CHOSEN = (
+        "the position is proved; at a change point before it nothing but the chosen way of going "
+        "on decides the branch"
+    )
+    CONFIGURATION_CERTIFIED = (
+        "a true position is proved to lie within the radius, and no other near it"
+    )
+
+    @property
+    def certified(self) -> bool:
+        """Whether everything that belongs to the position is proved."""
+        return self in (Certification.CERTIFIED, Certification.CONFIGURATION_CERTIFIED)
 
     @property
     def code(self) -> int:

@@ -11,11 +11,16 @@ class CircuitEnd(Enum):
     """How the positions reachable without taking the mechanism apart come to an end."""
 
     CLOSED = "closed: the motion comes back to where it began"
-    CHANGE_POINT = "ends at change points, where other positions branch off"
-    RUNS_TO_INFINITY = "a length grows without bound"
-    NEVER_CLOSES = "the motion does not come back within the turns that were followed"
-    INPUT_CONSTANT = "the mechanism moves while its input stands still"
-    SINGULAR = "followed only to a singular position that was not recognised"
+    INPUT_CONSTANT = "input at rest: the mechanism moves while its input stands still"
+    CHANGE_POINT = "change point: it is followed up to change points, where curves cross"
+    RUNS_TO_INFINITY = "runs to infinity: a length grows without bound"
+    NEVER_CLOSES = "never closes: the motion does not come back within the turns that were followed"
+    SINGULAR = "stopped: it was followed only to a singular position that was not recognised"
+
+    @property
+    def story(self) -> str:
+        """The sentence without the keyword."""
+        return self.value.partition(": ")[2]
 
     @property
     def closed(self) -> bool:

@@ -8,6 +8,8 @@ from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
     from linkwork.motion.checking import check
+    from linkwork.motion.circuits import branch_start, circuits
+    from linkwork.motion.configurations import configurations, solve_configuration, started_in
     from linkwork.motion.model import Model, model_of
     from linkwork.motion.solving import solve
     from linkwork.motion.sweeping import sweep
@@ -16,6 +18,8 @@ else:
         __name__,
         {
             "checking": ("check",),
+            "circuits": ("branch_start", "circuits"),
+            "configurations": ("configurations", "solve_configuration", "started_in"),
             "model": ("Model", "model_of"),
             "solving": ("solve",),
             "sweeping": ("sweep",),
@@ -24,8 +28,13 @@ else:
 
 __all__ = [
     "Model",
+    "branch_start",
     "check",
+    "circuits",
+    "configurations",
     "model_of",
     "solve",
+    "solve_configuration",
+    "started_in",
     "sweep",
 ]

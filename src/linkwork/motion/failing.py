@@ -9,8 +9,8 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.newton_trouble import NewtonTrouble
 from linkwork.foundation.status import Status
-from linkwork.motion.assemblies import AssembliesAt, assemblies_at, block_positions
 from linkwork.motion.dyads import dyad_of
+from linkwork.motion.elsewhere import ElsewhereAt, block_positions, positions_elsewhere
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.newton_reasons import Miss, miss_of, root_beside_guess, trouble_of
@@ -27,7 +27,7 @@ from linkwork.results.quantity import Kind
 __all__ = ["another_root", "beyond_reach", "no_position"]
 
 #: How the positions that exist at given inputs are found, for every explanation.
-ELSEWHERE: AssembliesAt = assemblies_at
+ELSEWHERE: ElsewhereAt = positions_elsewhere
 
 
 def no_position(
@@ -247,7 +247,8 @@ def _failure(model: Model, inputs: Array, reach: Reach | None = None, **parts: o
     turns = np.array([u.kind == "angle" for u in model.equations.unknowns], dtype=bool)
     x = everywhere[:, :n]
     x = np.where(turns, np.angle(np.exp(1j * np.where(turns, x, 0.0))), x) / scales
-    x = np.array(sorted(x.tolist(), key=lambda row: [round(value, 6) for value in row]))
+    if found is None or not found.names:
+        x = np.array(sorted(x.tolist(), key=lambda row: [round(value, 6) for value in row]))
     names = [u.name for u in model.equations.unknowns]
 
     def by_name(values: Array) -> dict[str, float]:
@@ -265,6 +266,7 @@ def _failure(model: Model, inputs: Array, reach: Reach | None = None, **parts: o
     return Failure(
         asked=by_name(_everyday_inputs(model, inputs)),
         configurations=tuple(dict(zip(names, map(float, row), strict=True)) for row in x),
+        configuration_names=() if found is None else found.names,
         complete=None if found is None else found.complete,
         units=model.units,
         kinds={u.name: Kind(u.kind) for u in model.equations.variables},

@@ -165,7 +165,8 @@ def _ground(linkage: Linkage) -> Iterator[ChangeableLength]:
 
     Points that only carry lines are left alone: moving one would turn its line.
     """
-    lines = {p for part in (*linkage.slots, *linkage.sliders) for p in part.line}
+    lines = {p for slot in linkage.slots for p in slot.line}
+    lines |= {p for slider in linkage.sliders for p in slider.line}
     pivots = [p for p in linkage.links[GROUND] if p not in lines]
     numbers = all(not isinstance(n, str) for p in pivots for n in linkage.points[p])
     if not pivots or not numbers:

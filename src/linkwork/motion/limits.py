@@ -1,75 +1,262 @@
-"""Where a branch ends: dead points with the loop that locks and the links that line up."""
+"""Where a branch ends: dead points and change points, with the loop that locks and its links."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.equations.leading import LeadTable
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
+from linkwork.motion.lined_up import links_in_line
 from linkwork.motion.model import Model
-from linkwork.numerics.change_point import ChangePoint, locate_change_point
-from linkwork.numerics.dead_point import DeadPoint, locate_dead_point
-from linkwork.numerics.track import End, InputPath, Track
+from linkwork.numerics.change_point import (
+    ChangePoint,
+    Crossing,
+    locate_change_point,
+    most_singular,
+)
+from linkwork.numerics.curve import Leads, Led, Leg
+from linkwork.numerics.proof import prove
+from linkwork.numerics.proven_curve import leg_is_proved, same_solution
+from linkwork.numerics.track import End, InputPath, Node, Track
+from linkwork.numerics.turning_point import TurningPoint, turn_beyond
 from linkwork.results.motion import Limit, LimitKind
 
-__all__ = ["limits_of"]
+__all__ = [
+    "BranchEnd",
+    "change_point_limit",
+    "dead_point_limit",
+    "end_at_dead_point",
+    "ends_of",
+]
 
-_IN_LINE = 1e-6  # rad: links are in line at a dead point to the square root of rounding or better
+_MOVES = 1e-7  # weighted: a direction along which the input moves at all
+_SOUND = 1e4  # condition up to which a node is as good as any
+_TOUCHING = 1e-12  # residual at a located crossing, where Newton-Raphson must not take a step
 
 
-def limits_of(model: Model, path: InputPath, track: Track, lead: int) -> tuple[Limit, ...]:
-    """The ends that a track met before its goals, in everyday units, lower one first."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BranchEnd:
+    """One end of a branch: what is told of it, and its place if it was found.
+
+    ``side``: +1 at the upper end, -1 at the lower. ``t``: of the path. ``v`` (N,): the position.
+    ``first`` (N,): derivatives there, NaN where they do not exist. ``crossing``: if branches cross
+    there. ``proved``: the position, and that the branch leads to it; ``radius``, ``unique``.
+    """
+
+    side: float
+    limit: Limit
+    t: float
+    v: Array | None = None
+    first: Array | None = None
+    crossing: ChangePoint | None = None
+    certification: Certification = Certification.NOT_ASKED
+    radius: float = np.nan
+    unique: float = np.nan
+
+
+def ends_of(
+    model: Model, path: InputPath, track: Track, lead: int, certify: bool = False
+) -> tuple[BranchEnd, ...]:
+    """The ends that a track met before its goals, lower one first."""
     found = []
     for end, side in ((track.below, -1.0), (track.above, 1.0)):
         if end is not None:
-            found.append(_limit(model, path, track, end, side, lead))
+            nodes = track.nodes if side > 0 else track.nodes[::-1]
+            found.append(_end(model, path, nodes, end, side, lead, certify))
     return tuple(found)
 
 
-def _limit(model: Model, path: InputPath, track: Track, end: End, side: float, lead: int) -> Limit:
-    scale = model.input_scale[lead]
-    last = track.nodes[-1] if side > 0 else track.nodes[0]
+def _end(
+    model: Model,
+    path: InputPath,
+    nodes: Sequence[Node],
+    end: End,
+    side: float,
+    lead: int,
+    certify: bool,
+) -> BranchEnd:
     solver = model.compiled.solver
-    crossing = dead = None
+    scale = model.input_scale[lead]
     if end.status is not Status.START_SINGULAR:
-        crossing = locate_change_point(solver, path, last, side)
-        dead = locate_dead_point(solver, path, last, side) if crossing is None else None
-    if crossing is not None:
-        found = _located(model, crossing, LimitKind.CHANGE_POINT, Status.CHANGE_POINT, scale)
-        return replace(
-            found,
-            onward=_rates(model, crossing.onward),
-            other=_rates(model, crossing.other),
-        )
-    if dead is not None and (dead.located or end.status is Status.OUT_OF_REACH):
-        return _located(model, dead, LimitKind.DEAD_POINT, Status.OUT_OF_REACH, scale)
+        crossing = locate_change_point(solver, path, nodes[-1], side)
+        if crossing is not None:
+            return _crossing_end(model, path, crossing, side, lead, certify)
+        leads = LeadTable(model.compiled.table, path, lead)
+        # a node that is proved with the others; rounding is worst at the very last ones
+        sound = (node for node in reversed(nodes) if node.condition < _SOUND)
+        last = next(sound, nodes[-1])
+        turning = turn_beyond(leads, last.v, last.first, side)
+        if turning is not None:
+            return _dead_end(model, leads, last, turning, side, lead, certify)
     edges = sorted((end.reached, end.failed))
-    return Limit(
-        kind=LimitKind.UNKNOWN,
-        input=float(end.reached / scale),
-        bracket=(float(edges[0] / scale), float(edges[1] / scale)),
-        located=False,
-        status=end.status,
+    return BranchEnd(
+        side=side,
+        t=float(end.reached),
+        limit=Limit(
+            kind=LimitKind.UNKNOWN,
+            input=float(end.reached / scale),
+            bracket=(float(edges[0] / scale), float(edges[1] / scale)),
+            located=False,
+            status=end.status,
+        ),
+    )
+
+
+def _dead_end(
+    model: Model,
+    leads: LeadTable,
+    last: Node,
+    turning: tuple[Leg, TurningPoint],
+    side: float,
+    lead: int,
+    certify: bool,
+) -> BranchEnd:
+    leg, turn = turning
+    own = leads.by(leads.parameter)
+    joined = certify and own is not None and same_solution(own, leg.led, last.v)
+    joined = joined and leg_is_proved(leg)
+    return replace(end_at_dead_point(model, turn, leg.led, lead, certify, joined), side=side)
+
+
+def end_at_dead_point(
+    model: Model,
+    turn: TurningPoint,
+    led: Led | None,
+    lead: int,
+    certify: bool,
+    joined: bool = False,
+) -> BranchEnd:
+    """The end of a branch at a dead point, seen by the leader ``led``.
+
+    ``joined``: whether the branch is proved to lead to it.
+    """
+    found = BranchEnd(
+        side=0.0,
+        limit=dead_point_limit(model, turn, lead),
+        t=turn.t,
+        v=turn.v,
+        first=np.full(len(turn.v), np.nan),
+    )
+    if not certify or led is None:
+        return found
+    if not all(block.system.bends_boundedly for block in led.solver.blocks):
+        return replace(found, certification=Certification.NO_BOUND)
+    proof = prove(led.solver, turn.node.v[None, :], np.zeros((1, 1)))
+    if not proof.holds[0]:
+        return replace(found, certification=Certification.POSITION_NOT_PROVED)
+    place = led.place(model.compiled.solver.unknowns + lead)
+    off = float(proof.each[0, place]) / float(model.input_scale[lead])
+    low, high = found.limit.bracket
+    return replace(
+        found,
+        limit=replace(found.limit, bracket=(low - off, high + off)),
+        certification=Certification.CERTIFIED if joined else Certification.MOTION_NOT_PROVED,
+        radius=float(proof.radius[0]),
+        unique=float(proof.alone_within[0]),
+    )
+
+
+def dead_point_limit(model: Model, turn: TurningPoint, lead: int) -> Limit:
+    """What is told of a dead point, everyday units."""
+    return _located(
+        model,
+        t=turn.t,
+        v=turn.v,
+        bracket=turn.bracket,
+        located=turn.located,
+        block=most_singular(model.compiled.solver, turn.v),
+        kind=LimitKind.DEAD_POINT,
+        lead=lead,
+    )
+
+
+def change_point_limit(model: Model, leads: Leads, crossing: Crossing, lead: int) -> Limit:
+    """What is told of a change point between two curves, everyday units."""
+    p, solver = leads.parameter, model.compiled.solver
+    block = most_singular(solver, crossing.v)
+    limit = _located(
+        model,
+        t=float(crossing.v[p]),
+        v=crossing.v,
+        bracket=crossing.bracket,
+        located=crossing.located,
+        block=block,
+        kind=LimitKind.CHANGE_POINT,
+        lead=lead,
+    )
+    rates = []
+    for direction in crossing.directions:
+        moving = abs(float(direction[p] / leads.scale[p])) > _MOVES
+        rates.append(direction / direction[p] if moving else np.full(len(direction), np.nan))
+    taking_part = np.any(crossing.directions != 0.0, axis=0)
+    onward, other = (_rates(model, np.where(taking_part, rate, np.nan)) for rate in rates)
+    return replace(limit, onward=onward, other=other)
+
+
+def _crossing_end(
+    model: Model, path: InputPath, crossing: ChangePoint, side: float, lead: int, certify: bool
+) -> BranchEnd:
+    solver = model.compiled.solver
+    limit = replace(
+        _located(
+            model,
+            t=crossing.t,
+            v=crossing.v,
+            bracket=crossing.bracket,
+            located=crossing.located,
+            block=crossing.block,
+            kind=LimitKind.CHANGE_POINT,
+            lead=lead,
+        ),
+        onward=_rates(model, crossing.onward),
+        other=_rates(model, crossing.other),
+    )
+    start = crossing.v.copy()
+    done = solver.solve(
+        start[None, :], replace(solver.options, equation_tolerance=_TOUCHING, max_steps=8)
+    )
+    first = crossing.onward.copy()
+    first[solver.unknowns :] = path.rate
+    return BranchEnd(
+        side=side,
+        limit=limit,
+        t=crossing.t,
+        v=done.v[0] if done.status[0] == Status.CONVERGED.code else None,
+        first=first,
+        crossing=crossing,
+        certification=Certification.POSITION_NOT_PROVED if certify else Certification.NOT_ASKED,
     )
 
 
 def _located(
-    model: Model, point: DeadPoint | ChangePoint, kind: LimitKind, status: Status, scale: float
+    model: Model,
+    *,
+    t: float,
+    v: Array,
+    bracket: tuple[float, float],
+    located: bool,
+    block: int | None,
+    kind: LimitKind,
+    lead: int,
 ) -> Limit:
-    block = model.compiled.solver.blocks[point.block]
-    low, high = (edge / scale for edge in point.bracket)
-    short = round(point.t / scale, 9)
+    scale = model.input_scale[lead]
+    low, high = (edge / scale for edge in bracket)
+    short = round(t / scale, 9)
+    status = Status.OUT_OF_REACH if kind is LimitKind.DEAD_POINT else Status.CHANGE_POINT
+    equations = () if block is None else model.compiled.solver.blocks[block].equations
     return Limit(
         kind=kind,
-        input=float(short if low <= short <= high else point.t / scale) + 0.0,
-        bracket=(float(point.bracket[0] / scale), float(point.bracket[1] / scale)),
-        located=bool(point.located),
+        input=float(short if low <= short <= high else t / scale) + 0.0,
+        bracket=(float(low), float(high)),
+        located=bool(located),
         status=status,
-        loops=tuple(model.equations.labels[e] for e in block.equations),
-        in_line=_in_line(model, point, block.unknowns),
+        loops=tuple(model.equations.labels[e] for e in equations),
+        in_line=() if block is None else links_in_line(model, block, v),
     )
 
 
@@ -80,16 +267,3 @@ def _rates(model: Model, rates: Array) -> dict[str, float]:
         for variable, rate in zip(model.equations.unknowns, rates, strict=False)
         if np.isfinite(rate)
     }
-
-
-def _in_line(model: Model, point: DeadPoint | ChangePoint, unknowns: IndexArray) -> tuple[str, ...]:
-    """The links of the locked block whose directions agree up to half turns."""
-    equations = model.equations
-    angles = [int(k) for k in unknowns if equations.unknowns[int(k)].kind == "angle"]
-    names: list[str] = []
-    for i, a in enumerate(angles):
-        for b in angles[i + 1 :]:
-            gap = math.remainder(float(point.v[a] - point.v[b]), math.pi)
-            if abs(gap) < _IN_LINE:
-                names += [equations.unknowns[k].name for k in (a, b)]
-    return tuple(np.unique(names).tolist()) if names else ()

@@ -27,12 +27,21 @@ __all__ = ["Model", "model_of"]
 
 @dataclass(frozen=True)
 class Model:
-    """Everything that solving needs, derived once from a description."""
+    """Everything that solving needs, derived once from a description.
+
+    ``branch``: the name of the branch that the guess lies on.
+    """
 
     description: Description
     equations: LoopEquations
     compiled: Compiled
     skeleton: Skeleton
+    branch: str = "circuit 1 branch 1"
+
+    @property
+    def circuit(self) -> str:
+        """The name of the circuit that the guess lies on."""
+        return self.branch.partition(" branch ")[0]
 
     @property
     def units(self) -> Units:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.newton_trouble import NewtonTrouble
 from linkwork.foundation.status import Status
-from linkwork.motion.assemblies import block_positions, distance
+from linkwork.motion.elsewhere import block_positions, distance
 from linkwork.numerics.block_solver import Block
 from linkwork.numerics.least_squares import nearest_miss
 from linkwork.numerics.newton import NewtonOptions, newton
@@ -71,7 +72,7 @@ def trouble_of(
         return NewtonTrouble.LOCAL_EXTREMUM if extremum else NewtonTrouble.SINGULAR_DERIVATIVE
     if not miss.closed:
         return NewtonTrouble.LOCAL_EXTREMUM if miss.known else None
-    grew = sum(b > a for a, b in zip(sizes, sizes[1:], strict=False))
+    grew = sum(b > a for a, b in pairwise(sizes))
     if 2 * grew > len(sizes) - 1 and _bends_both_ways(block, miss.v, v[block.variables]):
         return NewtonTrouble.INFLECTION
     return None

@@ -9,13 +9,11 @@ import numpy as np
 
 from linkwork.equations.leading import LeadTable
 from linkwork.foundation.arrays import Array
+from linkwork.motion.branches import Traced, traced
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
-from linkwork.foundation.circuit_end import CircuitEnd
-from linkwork.numerics.curve import Curve, CurveOptions, Leg, TurningPoint, trace, turning_points
 from linkwork.numerics.least_squares import nearest_miss
-from linkwork.numerics.proven_curve import prove_curve
-from linkwork.numerics.track import BOLD, InputPath, TrackOptions, follow
+from linkwork.numerics.track import InputPath
 
 __all__ = ["MOST_UNKNOWNS", "Reach", "assembled_near", "reach_towards"]
 
@@ -24,10 +22,15 @@ _CLOSED = 1e-9  # relative gap of a position that was found with the input free
 _HELD = 0.1  # weight of the input beside the unknowns: it moves as little as need be
 _TRIES = 8  # input values around the circle from which an assembled position is looked for
 _TURN = 2.0 * np.pi
-_FAST = 6.0  # where a variable moves so many times faster than the input, a dead point is near
-_ASIDE = 0.2  # weighted: how far from it a circuit is begun
-_MOST_LEGS = 200
-_CARES = (replace(BOLD, most_steps=2000), TrackOptions(most_steps=4000))  # until one is proved
+
+
+@dataclass(frozen=True)
+class _Edge:
+    """A value of the path on a circuit, what is there, and its bracket if it was located."""
+
+    t: float
+    kind: str = "as far as the circuit was followed"
+    bracket: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,29 +80,28 @@ def reach_towards(model: Model, path: InputPath, lead: int, v: Array, asked: flo
     if model.compiled.solver.unknowns > MOST_UNKNOWNS:
         return None
     leads = LeadTable(model.compiled.table, path, lead)
-    p = leads.parameter
     period = _TURN if turns_freely(model) else None
-    away = asked - float(v[p])
+    away = asked - float(v[leads.parameter])
     if period is not None:
         away = math.remainder(away, period)
-    curves, proved = _proven_circuit(leads, v, math.copysign(1.0, away))
-    if not curves:
+    walks = _circuit(leads, v, math.copysign(1.0, away))
+    if not walks:
         return None
-    points = [point for curve in curves for point in turning_points(leads, curve)]
-    edges: list[tuple[float, TurningPoint | None]] = [
-        (float(t), None) for curve in curves for leg in curve.legs for t in leg.v[:, p]
-    ]
-    edges += [(point.t, point) for point in points]
-    low, high = min(edges, key=lambda e: e[0]), max(edges, key=lambda e: e[0])
-    first = None if not points else _everyday(model, path, lead, points[0].t, points[0], 0)
-    nearest = _nearest(low[0], high[0], asked, period)
+    edges = [edge for walk in walks for edge in _edges(leads, walk)]
+    low, high = min(edges, key=lambda e: e.t), max(edges, key=lambda e: e.t)
+    turns = [turn for walk in walks for turn in walk.turns]
+    first = None
+    if turns:
+        edge = _Edge(turns[0].t, "dead point", turns[0].bracket)
+        first = _everyday(model, path, lead, edge, 0)
+    nearest = _nearest(low.t, high.t, asked, period)
     if nearest is None:
         inputs, kind = path.at(asked) / model.input_scale, ""
     else:
-        end, turns = nearest
-        t, point = low if end == "low" else high
-        inputs = _everyday(model, path, lead, t, point, turns)
-        kind = "dead point" if point is not None else "as far as the circuit was followed"
+        end, whole = nearest
+        edge = low if end == "low" else high
+        inputs, kind = _everyday(model, path, lead, edge, whole), edge.kind
+    proved = all(walk.certified for walk in walks)
     return Reach(inputs=inputs, kind=kind, proved=proved, first_dead_point=first)
 
 
@@ -124,61 +126,36 @@ def _nearest(low: float, high: float, asked: float, period: float | None) -> tup
     return end, k
 
 
-def _everyday(
-    model: Model, path: InputPath, lead: int, t: float, point: TurningPoint | None, turns: int
-) -> Array:
+def _everyday(model: Model, path: InputPath, lead: int, edge: _Edge, turns: int) -> Array:
     """All inputs at a value of the path, the leading one as the short number in its bracket."""
     scale = float(model.input_scale[lead])
-    inputs: Array = path.at(t) / model.input_scale
-    value = t / scale
-    if point is not None:
+    inputs: Array = path.at(edge.t) / model.input_scale
+    value = edge.t / scale
+    if edge.bracket is not None:
         short = round(value, 9)
-        value = short if point.bracket[0] / scale <= short <= point.bracket[1] / scale else value
+        value = short if edge.bracket[0] / scale <= short <= edge.bracket[1] / scale else value
     inputs[lead] = value + (turns * model.units.angle.turn if turns else 0.0) + 0.0
     return inputs
 
 
-def _proven_circuit(leads: LeadTable, v: Array, side: float) -> tuple[list[Curve], bool]:
-    """The circuit through a position (N,), and whether it is proved: boldly, then with care."""
-    curves: list[Curve] = []
-    for care in _CARES:
-        curves = _circuit(leads, v, side, CurveOptions(most_legs=_MOST_LEGS, track=care))
-        if curves and all(prove_curve(leads, curve).whole for curve in curves):
-            return curves, True
-    return curves, False
-
-
-def _circuit(leads: LeadTable, v: Array, side: float, options: CurveOptions) -> list[Curve]:
-    """The whole circuit: one curve if it closes, else one each way, behind what led to it."""
+def _circuit(leads: LeadTable, v: Array, side: float) -> list[Traced]:
+    """The whole circuit through a position (N,): one curve if it closes, else one each way."""
     try:
-        aside = _off_dead_point(leads, v, options)
-        start = v if aside is None else aside.legs[-1].v[-1]
-        first = trace(leads, start, side, options)
-        found = [first]
-        if not first.end.closed:
-            found.append(trace(leads, start, -side, options))
+        walks = [traced(leads, v, side, True)]
+        if not walks[0].curve.end.closed:
+            walks.append(traced(leads, v, -side, True))
     except (ValueError, np.linalg.LinAlgError):
         return []
-    return [curve for curve in (aside, *found) if curve is not None and curve.legs]
+    return [walk for walk in walks if walk.curve.legs]
 
 
-def _off_dead_point(leads: LeadTable, v: Array, options: CurveOptions) -> Curve | None:
-    """A way from a position (N,) at which the parameter is slow to one where it can lead."""
-    table = leads.table
-    slope = table.jacobian(v[None, :])[0] * table.variable_scale / table.equation_scale[:, None]
-    direction = np.linalg.svd(slope)[2][-1]
-    speed = np.abs(direction)
-    if speed.max() <= _FAST * speed[leads.parameter]:
-        return None
-    lead = int(np.argmax(speed))
-    led = leads.by(lead)
-    if led is None:
-        raise ValueError("the fastest variable must determine the position")
-    node, weight = led.node(v), float(table.variable_scale[lead])
-    for sign in (1.0, -1.0):
-        goal = node.t + sign * _ASIDE * weight
-        nodes, _ = follow(led.solver, led.path, node, goal, weight, options.track)
-        if nodes:
-            leg = Leg(led=led, nodes=(node, *nodes))
-            return Curve(legs=(leg,), end=CircuitEnd.SINGULAR, passes=())
-    return None
+def _edges(leads: LeadTable, walk: Traced) -> list[_Edge]:
+    """The values of the parameter on a curve, with what is at those where it may turn or end."""
+    p = leads.parameter
+    found = [_Edge(float(t)) for leg in walk.curve.legs for t in leg.v[:, p]]
+    found += [_Edge(turn.t, "dead point", turn.bracket) for turn in walk.turns]
+    crossing = walk.curve.crossing
+    if crossing is not None:
+        led, _ = walk.curve.last
+        found.append(_Edge(float(led.whole(crossing.v)[p]), "change point"))
+    return found

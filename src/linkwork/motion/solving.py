@@ -12,28 +12,27 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
 from linkwork.motion.failing import another_root, beyond_reach
-from linkwork.motion.limits import limits_of
-from linkwork.motion.lock_step import lock_step
+from linkwork.motion.limits import ends_of
 from linkwork.motion.model import Model
+from linkwork.motion.positions import (
+    Evidence,
+    found_message,
+    input_rate,
+    position_of,
+    target_values,
+)
 from linkwork.motion.proving import prove_rows
-from linkwork.motion.reading import Named, named_series
+from linkwork.motion.reading import named_series
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.tracking import leading_scale, track_to, turns_freely
 from linkwork.motion.whole_turns import laps_to
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.track import InputPath, Rows, Track, node_at, rows_on_track
 from linkwork.results.failure import Failure
-from linkwork.results.motion import Limit, Series
-from linkwork.results.position import Certificate, NewtonTrail, Position
+from linkwork.results.motion import Limit
+from linkwork.results.position import Certificate, Position
 
 __all__ = ["solve"]
-
-
-_HOPELESS = 1e12  # condition beyond which derivatives mean nothing
-_SINGULAR = (
-    "position found, at a dead point or change point: there its derivatives do not exist, "
-    "and a motion cannot start"
-)
 
 
 def solve(
@@ -72,7 +71,7 @@ def solve(
         Only with ``throw``.
     """
     options = options or NewtonOptions()
-    target = _target(model, at)
+    target = target_values(model, at)
     inputs = target * model.input_scale
     start = first_position(model, inputs if from_guess else model.start_inputs, options, with_steps)
     if not start.status.ok:
@@ -84,35 +83,6 @@ def solve(
     if throw and not position.status.ok:
         raise NotConvergedError(position.message)
     return position
-
-
-def _target(model: Model, at: float | Mapping[str, float] | None) -> Array:
-    if at is None:
-        return model.everyday_start
-    if not isinstance(at, Mapping):
-        inputs = model.equations.inputs
-        at = {inputs[0].name: float(at)} if len(inputs) == 1 else {"": float(at)}
-    return model.input_values(dict(at))
-
-
-def _rate(model: Model) -> Array:
-    """How all inputs move by the leading one, (p,)."""
-    rows = model.rows if model.description.inputs else np.zeros((1, 0))
-    return lock_step(rows)[1]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Evidence:
-    """How a position was found, or why not."""
-
-    status: Status
-    message: str
-    residual: float
-    iterations: int
-    condition: float
-    certificate: Certificate
-    trails: tuple[NewtonTrail, ...]
-    failure: Failure | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -135,16 +105,16 @@ def _arrived(model: Model, target: Array, start: Start, certify: bool) -> Positi
     """The start itself is the position asked for."""
     solver = model.compiled.solver
     own = start.v[solver.unknowns :]
-    lead = int(np.argmax(_rate(model) == 1.0)) if len(own) else 0
+    lead = int(np.argmax(input_rate(model) == 1.0)) if len(own) else 0
     t = float(own[lead]) if len(own) else 0.0
-    path = InputPath(origin=own - _rate(model) * t, rate=_rate(model))
+    path = InputPath(origin=own - input_rate(model) * t, rate=input_rate(model))
     node = node_at(solver, path, t, start.v)
     rows = Rows(
         v=start.v[None, :],
         status=np.array([Status.CONVERGED.code], dtype=np.int8),
         iterations=np.array([start.iterations]),
         residual=np.array([start.residual]),
-        rates=solver.rates(start.v[None, :], _rate(model)),
+        rates=solver.rates(start.v[None, :], input_rate(model)),
     )
     track = Track(nodes=(node,), start=0)
     place = _Place(path=path, track=track, t=t, asked=target)
@@ -171,7 +141,7 @@ def _followed(model: Model, target: Array, start: Start, certify: bool) -> Posit
         track = track_to(solver, path, first, [t], scale)
         if not track.ends:
             break
-        met = limits_of(model, path, track, lead)
+        met = _limits(model, path, track, lead)
         limits += tuple(limit for limit in met if limit.input not in [old.input for old in limits])
     else:
         reasons = {limit.status for limit in limits}
@@ -198,6 +168,10 @@ def _turns_away(model: Model, way: float) -> list[int]:
     return list(dict.fromkeys([0, whole, whole + int(np.copysign(1.0, way))]))
 
 
+def _limits(model: Model, path: InputPath, track: Track, lead: int) -> tuple[Limit, ...]:
+    return tuple(end.limit for end in ends_of(model, path, track, lead))
+
+
 def _input_weights(model: Model) -> Array:
     return model.compiled.solver.variable_scale[model.compiled.solver.unknowns :]
 
@@ -207,7 +181,7 @@ def _failed(
 ) -> Position:
     nothing = np.full((1, model.compiled.solver.variables), np.nan)
     named = named_series(model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool))
-    evidence = _Evidence(
+    evidence = Evidence(
         status=status,
         message=status.value if failure is None else failure.message,
         residual=start.residual,
@@ -217,7 +191,7 @@ def _failed(
         trails=start.trails,
         failure=failure,
     )
-    return _position(model, named, evidence, nothing[0, : model.compiled.solver.unknowns])
+    return position_of(model, named, 0, evidence, nothing[0, : model.compiled.solver.unknowns])
 
 
 def _from_row(
@@ -245,14 +219,13 @@ def _from_row(
             unique_within=float(proofs.unique[0]) if proved else None,
         )
     status = Status.of_code(int(rows.status[0]))
-    rates = solver.rates(rows.v, _rate(model))
+    rates = solver.rates(rows.v, input_rate(model))
     found = np.array([status.ok])
     v = rows.v if place.gain is None else rows.v + place.gain
     named = named_series(model, v, rates.first, rates.second, target[None, :], found)
-    message = status.value if failure is None else failure.message
-    evidence = _Evidence(
+    evidence = Evidence(
         status=status,
-        message=_SINGULAR if status.ok and rates.condition[0] > _HOPELESS else message,
+        message=found_message(status, float(rates.condition[0]), failure),
         residual=float(rows.residual[0]),
         iterations=int(rows.iterations[0]),
         condition=float(rates.condition[0]),
@@ -260,49 +233,4 @@ def _from_row(
         trails=start.trails,
         failure=failure,
     )
-    return _position(model, named, evidence, v[0, : solver.unknowns])
-
-
-def _position(model: Model, named: Named, evidence: _Evidence, q: Array) -> Position:
-    everything: dict[str, Series] = {
-        **named.unknowns,
-        **named.links,
-        **named.sliders,
-        **named.outputs,
-        **{s.quantity.name: s for pair in named.points.values() for s in pair},
-    }
-    first = {name: float(s.first[0]) for name, s in everything.items()}
-    second = {name: float(s.second[0]) for name, s in everything.items()}
-    speed = model.speed
-    return Position(
-        mechanism=model.description.name,
-        units=model.units,
-        skeleton=model.skeleton,
-        status=evidence.status,
-        message=evidence.message,
-        input={name: float(value[0]) for name, value in named.inputs.items()},
-        input_units=model.input_units,
-        derivative_unit=model.derivative_unit,
-        unknowns=_values(named.unknowns),
-        links=_values(named.links),
-        sliders=_values(named.sliders),
-        points={
-            name: (float(x.value[0]), float(y.value[0])) for name, (x, y) in named.points.items()
-        },
-        outputs=_values(named.outputs),
-        first=first,
-        second=second,
-        velocity={} if speed is None else {n: d * speed for n, d in first.items()},
-        acceleration={} if speed is None else {n: d * speed**2 for n, d in second.items()},
-        residual=evidence.residual,
-        iterations=evidence.iterations,
-        condition=evidence.condition,
-        certificate=evidence.certificate,
-        q=q,
-        steps=evidence.trails,
-        failure=evidence.failure,
-    )
-
-
-def _values(table: Mapping[str, Series]) -> dict[str, float]:
-    return {name: float(series.value[0]) for name, series in table.items()}
+    return position_of(model, named, 0, evidence, v[0, : solver.unknowns])

@@ -1,141 +1,259 @@
-"""The whole cycle: a table of positions along one branch."""
+"""The whole cycle: a table of positions along one branch, or around the whole circuit."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray, CountArray, StatusArray
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.status import Status
-from linkwork.motion.limits import limits_of
+from linkwork.motion.around import further_branches
+from linkwork.motion.branch_rows import Asked, BranchRows, Report, rows_of_branch
+from linkwork.motion.crossing import beyond_change_point
+from linkwork.motion.extremes import check_quantities, output_limits
+from linkwork.motion.limits import BranchEnd
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
-from linkwork.motion.proving import RowProofs, prove_rows, unproved, way_is_proved
-from linkwork.motion.reading import Named, named_series
+from linkwork.motion.motion_of_rows import motion_of_rows
+from linkwork.motion.proving import way_is_proved
+from linkwork.motion.rows import SolvedRows
 from linkwork.motion.start import Start, first_position
-from linkwork.motion.tracking import leading_scale, track_to, turns_freely
+from linkwork.motion.sweep_table import SweepTable
+from linkwork.motion.tracking import leading_scale, turns_freely
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.track import (
-    BOLD,
-    InputPath,
-    Node,
-    Rows,
-    Track,
-    TrackOptions,
-    follow,
-    joined_rows,
-    node_at,
-    rows_on_track,
-)
-from linkwork.results.motion import Limit, Motion
+from linkwork.numerics.track import InputPath, Node, follow, node_at
+from linkwork.results.motion import Limit, LimitKind, Motion, OutputLimit
 
 __all__ = ["sweep"]
 
 _ENTRIES = (
     24  # rows, from the nearest on, at which a table of several inputs is tried to be entered
 )
-_CHUNK = 4096  # rows solved together: large enough to amortise NumPy calls, small enough for cache
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Solved:
-    """Rows of the table in internal units; ``v`` of rows that were not found is NaN."""
-
-    v: Array
-    first: Array
-    second: Array
-    status: StatusArray
-    iterations: CountArray
-    residual: Array
-    condition: Array
-    proofs: RowProofs
+_MOST_CROSSINGS = 64
 
 
 def sweep(
     model: Model,
     *,
     certify: bool = True,
+    through: bool = False,
+    change_points: str | ChangePointPolicy = ChangePointPolicy.STOP,
+    limits_of: Sequence[str] = (),
     options: NewtonOptions | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Motion:
-    """The positions at every row of the input's table, all on the branch of the guess.
+    """The positions at every row of the input's table, on the branch of the guess.
 
     The branch is followed from the guess's own input value both ways with steps as small as
     safety asks, whatever the table's step. A row outside its reach is tried a whole turn away,
-    and kept with its status if it is not there either.
+    and kept with its status if it is not there either. Every dead point and change point that is
+    met adds a row of its own with the exact value.
 
     Parameters
     ----------
     certify : bool
         Prove every position, and that the motion to it stays on the start's branch.
+    through : bool
+        Go on through dead points, the input turning back, around the whole circuit: the rows of
+        every further branch follow, in the direction of travel.
+    change_points : str
+        ``stop`` at a change point, go ``straight`` on (keep the tangent) or ``turn`` (take the
+        branch that crosses).
+    limits_of : sequence of str
+        Quantities whose largest and smallest values are located, a row for each.
     progress : callable, optional
         Called with the finished fraction, 0 to 1.
+
+    Raises
+    ------
+    InputError, UnknownNameError
+        For a policy or a quantity that does not exist.
     """
     options = options or NewtonOptions()
+    policy = ChangePointPolicy.of(change_points)
+    rows = model.rows  # without an input there is nothing to sweep: an error
+    check_quantities(model, limits_of)
     start = first_position(model, model.start_inputs, options)
-    rows = model.rows
     if not start.status.ok:
-        return _without_start(model, rows, start)
+        return _without_start(model, start)
     lead, rate = lock_step(rows)
     path = InputPath(origin=rows[0] - rate * rows[0, lead], rate=rate)
-    scale = leading_scale(model, lead)
-    t = rows[:, lead]
-    entry = _onto_path(model, path, start, t, lead, certify)
+    asked = Asked(t=rows[:, lead], inputs=rows, everyday=model.everyday_rows)
+    entry = _onto_path(model, path, start, asked.t, lead, certify)
     if entry is None:
         message = "no row of the table could be reached from the guess's own input values"
-        return _without_start(model, rows, replace(start, message=message))
-    anchor, entered = entry
-    report = _Report(progress, anchor.t, float(t.min()), float(t.max()))
-    provable = all(block.system.bends_boundedly for block in model.compiled.solver.blocks)
-    tries = (BOLD, None) if certify and provable else (None,)
-    for care in tries:
-        track = _covering(model, path, anchor, t, scale, report, care)
-        placed = _placed(track, t, turns_freely(model))
-        solved = _solve_rows(model, path, track, placed, scale, report, certify)
-        if care is None or not _doubtful(solved, placed):
-            break
-    if not entered:
-        proved = solved.proofs.code == Certification.CERTIFIED.code
-        solved.proofs.code[proved] = Certification.MOTION_NOT_PROVED.code
-    limits = limits_of(model, path, track, lead)
-    _mark_missing(solved, track, t, np.isnan(placed), limits)
-    return _motion(model, solved, limits, start)
+        return _without_start(model, replace(start, message=message))
+    work = _Sweep(model, path, lead, certify, Report(progress, entry[0].t, *_span(asked.t)))
+    work.run(*entry, asked, policy)
+    if through:
+        work.go_around(entry[0], asked)
+    for name in limits_of:
+        work.locate_extremes(name)
+    return work.motion(start.message)
 
 
-def _doubtful(solved: _Solved, placed: Array) -> bool:
-    """Whether a bold track left rows that are on it unproved."""
-    there = ~np.isnan(placed)
-    unproved_rows = solved.proofs.code[there] != Certification.CERTIFIED.code
-    return bool(unproved_rows.any()) or not solved.proofs.up_to_ends
+def _span(t: Array) -> tuple[float, float]:
+    return float(t.min()), float(t.max())
 
 
-class _Report:
-    """Progress as a fraction: tracking, rows and proofs take about a third each."""
+class _Sweep:
+    """The parts of a sweep as they are found: branches with their rows, limits, extremes."""
 
     def __init__(
-        self, progress: Callable[[float], None] | None, start: float, low: float, high: float
+        self, model: Model, path: InputPath, lead: int, certify: bool, report: Report
     ) -> None:
-        self.progress = progress
-        self.start = start
-        self.span = max(high, start) - min(low, start) or 1.0
+        self.model, self.path, self.lead = model, path, lead
+        self.certify, self.report = certify, report
+        self.scale = leading_scale(model, lead)
+        self.tables: list[SweepTable] = []
+        self.branches: list[tuple[SweepTable, BranchRows, str]] = []
+        self.limits: list[Limit] = []
+        self.output_limits: list[OutputLimit] = []
+        self.circuit: CircuitEnd | None = None
 
-    def tracked(self, t: float) -> None:
-        """A step of the track has arrived at t."""
-        if self.progress is not None:
-            self.progress(min(1.0, abs(t - self.start) / self.span) / 3.0)
+    def run(self, anchor: Node, entered: bool, asked: Asked, policy: ChangePointPolicy) -> None:
+        """The table of the start's branch, and of those beyond change points if asked."""
+        first = self._branch(anchor, asked)
+        proved = Certification.CERTIFIED.code
+        if not entered:
+            code = first.rows.certification
+            code[code == proved] = Certification.MOTION_NOT_PROVED.code
+        free = turns_freely(self.model)
+        table = SweepTable(self.model, self.path, asked, first.rows, _span(asked.t), free)
+        self.tables.append(table)
+        self._name(first, self.model.branch)
+        self.branches.append((table, first, self.model.branch))
+        below: list[Limit] = []
+        above: list[Limit] = []
+        for end in first.ends:
+            passed = self._cross(table, end, policy)
+            (below if end.side < 0 else above).extend(passed)
+            table.put_end(end, self.model.branch)
+        self.limits = [*below[::-1], *above]
 
-    def solved(self, fraction: float) -> None:
-        """A fraction of the rows is done."""
-        if self.progress is not None:
-            self.progress((1.0 + fraction) / 3.0)
+    def _branch(self, anchor: Node, asked: Asked) -> BranchRows:
+        return rows_of_branch(
+            self.model, self.path, self.lead, anchor, asked, self.report, self.certify
+        )
 
-    def proved(self, fraction: float) -> None:
-        """A fraction of the rows is proved."""
-        if self.progress is not None:
-            self.progress((2.0 + fraction) / 3.0)
+    @staticmethod
+    def _name(found: BranchRows, branch: str) -> None:
+        good = found.here & (found.rows.status == Status.CONVERGED.code)
+        found.rows.branch[good] = branch
+
+    def _cross(self, table: SweepTable, end: BranchEnd, policy: ChangePointPolicy) -> list[Limit]:
+        """Rows beyond the change points on one side, as far as the policy leads; their limits."""
+        told = []
+        for _ in range(_MOST_CROSSINGS):
+            beyond = np.flatnonzero(
+                (table.rows.status != Status.CONVERGED.code)
+                & (end.side * (table.asked.t - end.t) > 0.0)
+            )
+            if policy is ChangePointPolicy.STOP or end.crossing is None or not len(beyond):
+                break
+            node = beyond_change_point(
+                self.model, self.path, end.crossing, end.side, self.scale, policy
+            )
+            if node is None:
+                break
+            told.append(replace(end.limit, passed=policy.value))
+            found = self._branch(node, table.asked.take(beyond))
+            code = found.rows.certification
+            code[code == Certification.CERTIFIED.code] = Certification.BRANCH_CHOSEN.code
+            self._name(found, self.model.circuit)
+            table.rows.put(beyond, found.rows)
+            self.branches.append((table, found, self.model.circuit))
+            ahead = [other for other in found.ends if other.side == end.side]
+            if not ahead:
+                return told
+            end = _after_choice(ahead[0])
+            table.put_end(end, self.model.circuit)
+        return [*told, end.limit]
+
+    def go_around(self, anchor: Node, asked: Asked) -> None:
+        """The further branches of the circuit, in the direction of travel."""
+        around = further_branches(
+            self.model, self.path, self.lead, anchor.v, asked, self.report, self.certify
+        )
+        self.circuit = around.end
+        for branch in around.branches:
+            rows = branch.found.rows
+            table = SweepTable(self.model, self.path, branch.asked, rows, branch.window, False)
+            self.tables.append(table)
+            self._name(branch.found, branch.name)
+            self.branches.append((table, branch.found, branch.name))
+            for end in branch.ends:
+                table.put_end(end, branch.name)
+        known = {(limit.kind, round(limit.input, 9)) for limit in self.limits}
+        self.limits += [
+            limit
+            for limit in around.dead_points
+            if not any(_is_same(self.model, limit, other) for other in self.limits)
+            and (limit.kind, round(limit.input, 9)) not in known
+        ]
+
+    def locate_extremes(self, name: str) -> None:
+        """Rows at which a quantity is largest or smallest, on every branch."""
+        for table, found, branch in self.branches:
+            placed = found.placed[found.here]
+            if not len(placed):
+                continue
+            window = _span(placed)
+            places = output_limits(
+                self.model, self.path, found.track, window, self.lead, self.scale, name
+            )
+            for t, limit in places:
+                here = table.place_of(t)
+                if here is None:
+                    continue
+                self.output_limits.append(limit)
+                inputs = self.path.at(np.array([t]))
+                row = self._branch_row(found, t, inputs, here)
+                row.branch[0], row.limit[0] = branch, f"{limit.kind} of {name}"
+                table.put(row, here)
+
+    def _branch_row(self, found: BranchRows, t: float, inputs: Array, here: float) -> SolvedRows:
+        anchor = found.track.nodes[found.track.start]
+        everyday = inputs / self.model.input_scale
+        turns = round((here - t) / (2.0 * np.pi))
+        everyday = everyday + turns * self.path.rate * (2.0 * np.pi / self.model.input_scale)
+        asked = Asked(t=np.array([t]), inputs=inputs, everyday=everyday)
+        return self._branch(anchor, asked).rows
+
+    def motion(self, message: str) -> Motion:
+        """Everything in one result."""
+        first, *further = (table.finished() for table in self.tables)
+        added = [first[1], *(np.ones(len(rows), dtype=bool) for rows, _ in further)]
+        return motion_of_rows(
+            self.model,
+            SolvedRows.joined([first[0], *(rows for rows, _ in further)]),
+            message,
+            added=np.concatenate(added),
+            limits=tuple(self.limits),
+            output_limits=tuple(self.output_limits),
+            circuit=self.circuit,
+        )
+
+
+def _after_choice(end: BranchEnd) -> BranchEnd:
+    """The end of a branch that was chosen at a change point."""
+    if end.certification is not Certification.CERTIFIED:
+        return end
+    return replace(end, certification=Certification.BRANCH_CHOSEN)
+
+
+def _is_same(model: Model, one: Limit, other: Limit) -> bool:
+    """Whether two limits are one position, whole turns of the input aside."""
+    gap = one.input - other.input
+    if turns_freely(model):
+        turn = 2.0 * np.pi / float(model.input_scale[0])
+        gap -= turn * round(gap / turn)
+    return one.kind is other.kind is LimitKind.DEAD_POINT and abs(gap) < 1e-9
 
 
 def _onto_path(
@@ -175,161 +293,8 @@ def _led_to(
     return node_at(solver, path, t, nodes[-1].v), entered
 
 
-def _covering(
-    model: Model,
-    path: InputPath,
-    anchor: Node,
-    t: Array,
-    scale: float,
-    report: _Report,
-    care: TrackOptions | None,
-) -> Track:
-    """A track over the table's range, wound on the other way where a limit cuts it short."""
-    solver = model.compiled.solver
-    track = track_to(solver, path, anchor, [t.min(), t.max()], scale, report.tracked, care)
-    if not turns_freely(model):
-        return track
-    above, below = track.above, track.below
-    turn = 2.0 * np.pi
-    if above is not None and below is None:
-        beyond = t[t > track.last_t]
-        goals = [beyond.min() - turn, t.min(), t.max()]
-        return track_to(solver, path, anchor, goals, scale, options=care)
-    if below is not None and above is None:
-        beyond = t[t < track.first_t]
-        goals = [beyond.max() + turn, t.min(), t.max()]
-        return track_to(solver, path, anchor, goals, scale, options=care)
-    return track
-
-
-def _placed(track: Track, t: Array, free: bool) -> Array:
-    """Where on the track each row lies, whole turns apart if need be; NaN if nowhere."""
-    placed = np.where((t >= track.first_t) & (t <= track.last_t), t, np.nan)
-    if not free:
-        return placed
-    turn = 2.0 * np.pi
-    for shift in (-turn, turn, -2 * turn, 2 * turn):
-        moved = t + shift
-        inside = np.isnan(placed) & (moved >= track.first_t) & (moved <= track.last_t)
-        placed[inside] = moved[inside]
-    return placed
-
-
-def _solve_rows(
-    model: Model,
-    path: InputPath,
-    track: Track,
-    placed: Array,
-    scale: float,
-    report: _Report,
-    certify: bool,
-) -> _Solved:
-    solver = model.compiled.solver
-    count, n = len(placed), solver.variables
-    v, first, second = (np.full((count, n), np.nan) for _ in range(3))
-    status = np.zeros(count, dtype=np.int8)
-    iterations = np.zeros(count, dtype=np.int64)
-    residual, condition = np.full(count, np.nan), np.full(count, np.nan)
-    proofs = unproved(count, Certification.NOT_ASKED if not certify else Certification.NO_POSITION)
-    there = np.flatnonzero(~np.isnan(placed))
-    there = there[np.argsort(placed[there], kind="stable")]
-    pieces: list[Rows] = []
-    for begin in range(0, len(there), _CHUNK):
-        chunk = there[begin : begin + _CHUNK]
-        rows = rows_on_track(solver, path, track, placed[chunk], scale)
-        pieces.append(rows)
-        v[chunk], first[chunk], second[chunk] = rows.v, rows.rates.first, rows.rates.second
-        status[chunk], iterations[chunk] = rows.status, rows.iterations
-        residual[chunk], condition[chunk] = rows.residual, rows.rates.condition
-        report.solved((begin + len(chunk)) / len(there))
-    if certify and pieces:
-        found = prove_rows(
-            solver,
-            path,
-            track,
-            placed[there],
-            joined_rows(pieces),
-            model.rows[there],
-            report.proved,
-        )
-        proofs.code[there], proofs.radius[there] = found.code, found.radius
-        proofs.unique[there] = found.unique
-    return _Solved(
-        v=v,
-        first=first,
-        second=second,
-        status=status,
-        iterations=iterations,
-        residual=residual,
-        condition=condition,
-        proofs=proofs,
-    )
-
-
-def _mark_missing(
-    solved: _Solved, track: Track, t: Array, missing: BoolArray, limits: tuple[Limit, ...]
-) -> None:
-    """Rows that are nowhere on the track say what was met on the straight way to them."""
-    if not limits:
-        return
-    lower = limits[0] if track.below is not None else limits[-1]
-    upper = limits[-1] if track.above is not None else limits[0]
-    solved.status[missing & (t < track.first_t)] = lower.status.code
-    solved.status[missing & (t > track.last_t)] = upper.status.code
-
-
-def _motion(model: Model, solved: _Solved, limits: tuple[Limit, ...], start: Start) -> Motion:
-    found = solved.status == Status.CONVERGED.code
-    named = named_series(model, solved.v, solved.first, solved.second, model.everyday_rows, found)
-    return _assembled(model, named, solved, limits, start.message)
-
-
-def _without_start(model: Model, rows: Array, start: Start) -> Motion:
-    count, n = len(rows), model.compiled.solver.variables
-    nothing = np.full((count, n), np.nan)
-    solved = _Solved(
-        v=nothing,
-        first=nothing,
-        second=nothing,
-        status=np.full(count, Status.NO_START.code, dtype=np.int8),
-        iterations=np.zeros(count, dtype=np.int64),
-        residual=np.full(count, np.nan),
-        condition=np.full(count, np.nan),
-        proofs=unproved(count, Certification.NO_POSITION),
-    )
-    named = named_series(
-        model, nothing, nothing, nothing, model.everyday_rows, np.zeros(count, dtype=bool)
-    )
-    return replace(_assembled(model, named, solved, (), start.message), failure=start.failure)
-
-
-def _assembled(
-    model: Model, named: Named, solved: _Solved, limits: tuple[Limit, ...], message: str
-) -> Motion:
-    count = len(solved.status)
-    return Motion(
-        mechanism=model.description.name,
-        units=model.units,
-        skeleton=model.skeleton,
-        inputs=named.inputs,
-        input_units=model.input_units,
-        derivative_unit=model.derivative_unit,
-        unknowns=named.unknowns,
-        links=named.links,
-        riding=model.riding,
-        sliders=named.sliders,
-        points=named.points,
-        outputs=named.outputs,
-        status=tuple(Status.of_code(int(code)) for code in solved.status),
-        message=message,
-        residual=solved.residual,
-        iterations=solved.iterations,
-        condition=solved.condition,
-        certification=tuple(Certification.of_code(int(c)) for c in solved.proofs.code),
-        radius=solved.proofs.radius,
-        unique_within=solved.proofs.unique,
-        branch=("",) * count,
-        speed=model.speed,
-        limits=limits,
-        q=solved.v[:, : model.compiled.solver.unknowns],
-    )
+def _without_start(model: Model, start: Start) -> Motion:
+    rows = SolvedRows.blank(model.everyday_rows, model.compiled.solver.variables, Status.NO_START)
+    nothing_added = np.zeros(len(rows), dtype=bool)
+    motion = motion_of_rows(model, rows, start.message, added=nothing_added)
+    return replace(motion, failure=start.failure)

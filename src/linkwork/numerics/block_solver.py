@@ -12,7 +12,7 @@ from linkwork.foundation.status import Status
 from linkwork.numerics.newton import NewtonOptions, Watch, newton
 from linkwork.numerics.system import System
 
-__all__ = ["Block", "BlockSolution", "BlockSolver", "Linearised", "Rates"]
+__all__ = ["Block", "BlockSolution", "BlockSolver", "Linearised", "Rates", "linearised"]
 
 _CONVERGED = Status.CONVERGED.code
 
@@ -133,12 +133,7 @@ class BlockSolver:
 
     def linearise(self, v: Array) -> list[Linearised]:
         """Jacobian, its inverse and the sign of its determinant for every block at v (B, N)."""
-        found = []
-        for block in self.blocks:
-            jacobian = block.system.jacobian(v[:, block.variables])
-            inverse, sign = _inverse(jacobian[:, :, : len(block.unknowns)])
-            found.append(Linearised(jacobian=jacobian, inverse=inverse, sign=sign))
-        return found
+        return [linearised(block, v) for block in self.blocks]
 
     def rates(
         self, v: Array, input_rate: Array, linear: Sequence[Linearised] | None = None
@@ -188,6 +183,13 @@ class BlockSolver:
             f = block.system.residual(v[:, block.variables]) / block.system.equation_scale
             worst = np.maximum(worst, np.abs(f).max(axis=1, initial=0.0))
         return worst
+
+
+def linearised(block: Block, v: Array) -> Linearised:
+    """One block at v (B, N)."""
+    jacobian = block.system.jacobian(v[:, block.variables])
+    inverse, sign = _inverse(jacobian[:, :, : len(block.unknowns)])
+    return Linearised(jacobian=jacobian, inverse=inverse, sign=sign)
 
 
 def _apply(matrix: Array, vector: Array) -> Array:

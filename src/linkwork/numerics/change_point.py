@@ -21,7 +21,7 @@ from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.joined import JoinedBlocks, closure_of
 from linkwork.numerics.track import InputPath, Node
 
-__all__ = ["ChangePoint", "locate_change_point"]
+__all__ = ["ChangePoint", "Crossing", "locate_change_point", "most_singular"]
 
 _UNIT = np.finfo(float).eps
 _STEPS = 12
@@ -34,6 +34,7 @@ class ChangePoint:
 
     ``t`` with ``bracket``; ``v`` (N,) the position; ``onward`` and ``other`` (N,): derivative by t
     of the branch that was followed and of the one that crosses it (NaN if that one keeps t);
+    ``directions`` (2, N): both as weighted unit vectors, zero where a block takes no part;
     ``block`` the number of the block that becomes singular; ``located`` whether it was found to
     rounding.
     """
@@ -43,7 +44,18 @@ class ChangePoint:
     v: Array
     onward: Array
     other: Array
+    directions: Array
     block: int
+    located: bool
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Crossing:
+    """A change point: position (N,), directions of both curves (2, N), parameter with bracket."""
+
+    v: Array
+    directions: Array
+    bracket: tuple[float, float]
     located: bool
 
 
@@ -64,7 +76,7 @@ def locate_change_point(
     ChangePoint or None
         ``None`` if the branches only come near each other, or there is none on that side.
     """
-    block = _most_singular(solver, last)
+    block = most_singular(solver, last.v)
     if block is None:
         return None
     system = JoinedBlocks(solver, closure_of(solver, block))
@@ -82,7 +94,10 @@ def locate_change_point(
     if tangents is None:
         return None
     own = last.first[order[:n]] / system.variable_scale[:n]
-    onward, other = sorted(tangents, key=lambda rate: _distance(rate, own))
+    rates = [_rate(z) for z in tangents]
+    if _distance(rates[1], own) < _distance(rates[0], own):
+        rates, tangents = rates[::-1], tangents[::-1]
+    onward, other = rates
     whole = last.v + (t - last.t) * last.first
     whole[order[:n]] = x
     whole[solver.unknowns :] = path.at(t)
@@ -94,6 +109,7 @@ def locate_change_point(
         v=whole,
         onward=_placed(solver, order[:n], onward * weights),
         other=_placed(solver, order[:n], other * weights),
+        directions=np.stack([_direction(solver, path, order[:n], z, weights) for z in tangents]),
         block=block,
         located=error <= 1e-9 * max(1.0, abs(t)),
     )
@@ -104,19 +120,39 @@ def _distance(rate: Array, own: Array) -> float:
     return gap if np.isfinite(gap) else np.inf
 
 
+def _rate(z: Array) -> Array:
+    """The derivative by t along a direction (n + 1,) whose last entry is t's; NaN if t rests."""
+    if abs(z[-1]) <= 1e-9 * np.abs(z).max():
+        return np.full(len(z) - 1, np.nan)
+    rate: Array = z[:-1] / z[-1]
+    return rate
+
+
+def _direction(
+    solver: BlockSolver, path: InputPath, where: IndexArray, z: Array, weights: Array
+) -> Array:
+    whole = np.zeros(solver.variables)
+    whole[where] = z[:-1] * weights
+    whole[solver.unknowns :] = z[-1] * path.rate
+    unit: Array = whole / np.abs(whole / solver.variable_scale).max()
+    return unit
+
+
 def _placed(solver: BlockSolver, where: IndexArray, values: Array) -> Array:
     whole = np.full(solver.variables, np.nan)
     whole[where] = values
     return whole
 
 
-def _most_singular(solver: BlockSolver, node: Node) -> int | None:
-    """The block with the smallest singular value, relative to its largest."""
+def most_singular(solver: BlockSolver, v: Array) -> int | None:
+    """The block with the smallest singular value, relative to its largest; ``None`` if all are far
+    from singular at v (N,).
+    """
     ratios = []
     for block in solver.blocks:
         n = len(block.unknowns)
         system = block.system
-        j = system.jacobian(node.v[None, block.variables])[0, :, :n]
+        j = system.jacobian(v[None, block.variables])[0, :, :n]
         scaled = j * system.variable_scale[:n] / system.equation_scale[:, None]
         values = np.linalg.svd(scaled, compute_uv=False)
         ratios.append(float(values[-1] / values[0]) if values[0] > 0 else 0.0)
@@ -187,8 +223,8 @@ class _Crossing:
                 break
         return x, t, w, beta, error
 
-    def tangents(self, x: Array, t: float, w: Array) -> tuple[Array, Array] | None:
-        """The derivatives by t of both branches in scaled unknowns, (n,) each."""
+    def tangents(self, x: Array, t: float, w: Array) -> tuple[Array, ...] | None:
+        """The directions of both branches in scaled unknowns and t, (n + 1,) each."""
         _, d = self.linear(x, t)
         null = np.linalg.svd(d)[2][-2:]
         h = self.bend(x, t, w)
@@ -200,12 +236,4 @@ class _Crossing:
         # the two roots (p : q) of a p² + 2 b p q + c q², without cancellation
         q = -(b + np.copysign(root, b))
         pairs = ((q, a), (c, q)) if q != 0.0 else ((1.0, 0.0), (0.0, 1.0))
-        directions = [p * null[0] + r * null[1] for p, r in pairs]
-        with np.errstate(all="ignore"):
-            rates = [
-                z[: self.n] / z[self.n]
-                if abs(z[self.n]) > 1e-9 * np.abs(z).max()
-                else np.full(self.n, np.nan)
-                for z in directions
-            ]
-        return rates[0], rates[1]
+        return tuple(p * null[0] + r * null[1] for p, r in pairs)

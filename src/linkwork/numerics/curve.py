@@ -9,8 +9,7 @@ the same means as a sweep; only a crossing of curves stops it.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -19,17 +18,20 @@ from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.change_point import ChangePoint, locate_change_point
 from linkwork.numerics.track import BOLD, InputPath, Node, TrackOptions, follow, node_at
 
 __all__ = [
     "Curve",
     "CurveOptions",
-    "Led",
     "Leads",
+    "Led",
     "Leg",
-    "TurningPoint",
+    "apart",
+    "fastest_leader",
+    "hermite",
+    "same_position",
     "trace",
-    "turning_points",
 ]
 
 _CONVERGED = Status.CONVERGED.code
@@ -56,6 +58,10 @@ class Led:
     def node(self, v: Array) -> Node:
         """The node of a position (N,) given in the whole's order."""
         return node_at(self.solver, self.path, float(v[self.lead]), v[self.order])
+
+    def place(self, variable: int) -> int:
+        """Where a variable of the whole stands in the solver's order."""
+        return int(np.flatnonzero(self.order == variable)[0])
 
     def whole(self, part: Array) -> Array:
         """Variables (..., N) of the solver's order in the whole's order."""
@@ -121,12 +127,14 @@ class Curve:
     """Legs in the order traced and why the curve ends.
 
     ``passes``: the positions (N,) at which the parameter came by its starting value, whole turns
-    aside, each with the number of the leg that it ends.
+    aside, each with the number of the leg that it ends. ``crossing``: the change point that it ends
+    at, as the last leg's leader sees it.
     """
 
     legs: tuple[Leg, ...]
     end: CircuitEnd
     passes: tuple[tuple[int, Array], ...]
+    crossing: ChangePoint | None = None
 
     @property
     def last(self) -> tuple[Led, Node]:
@@ -135,33 +143,42 @@ class Curve:
         return leg.led, leg.nodes[-1]
 
 
-def trace(leads: Leads, start: Array, side: float, options: CurveOptions | None = None) -> Curve:
+def trace(
+    leads: Leads, start: Array, heading: float | Array, options: CurveOptions | None = None
+) -> Curve:
     """Follow the curve through a position until it closes or ends.
 
     Parameters
     ----------
     start : (N,)
-        A position at which the parameter can lead.
-    side : float
-        +1 to begin with the parameter growing, -1 falling.
+        A position on the curve, not where curves cross.
+    heading : float or (N,)
+        How the variables move at first, in direction; +1 for a growing parameter, -1 for a falling
+        one.
     """
-    return _Tracer(leads, start, side, options or CurveOptions()).run()
+    if isinstance(heading, float):
+        side, heading = heading, np.zeros(len(start))
+        heading[leads.parameter] = side
+    return _Tracer(leads, start, heading, options or CurveOptions()).run()
 
 
 class _Tracer:
     """The state of one trace: the position reached and the direction of travel."""
 
-    def __init__(self, leads: Leads, start: Array, side: float, options: CurveOptions) -> None:
+    def __init__(self, leads: Leads, start: Array, heading: Array, options: CurveOptions) -> None:
         self.leads, self.start, self.options = leads, start, options
-        self.here = start
-        self.heading = np.zeros(len(start))  # direction of travel, only its signs count
-        self.heading[leads.parameter] = side
+        self.here, self.heading = start, heading
+        self.crossing: ChangePoint | None = None
         self.legs: list[Leg] = []
         self.passes: list[tuple[int, Array]] = []
         own = self._own()
         if own is None:
             raise ValueError("the parameter of a curve must determine the position")
         self.own = own
+        if np.count_nonzero(heading) == 1 and heading[leads.parameter]:
+            rates = own.whole(own.node(start).first)
+            if np.isfinite(rates).all():
+                self.heading = heading[leads.parameter] * rates
 
     def _own(self) -> Led | None:
         return self.leads.by(self.leads.parameter)
@@ -171,15 +188,19 @@ class _Tracer:
         opt, stuck = self.options, 0
         avoid: int | None = None
         for _ in range(opt.most_legs):
-            led, node = self._leader(avoid)
-            if led is None:
+            leader = self._leader(avoid)
+            if leader is None:
                 return self._ended(CircuitEnd.SINGULAR)
+            led, node = leader
             leg, end = self._leg(led, node)
             moved = len(leg.nodes) > 1
             if moved:
                 self.legs.append(leg)
                 self._arrive(leg)
             if end is not None:
+                self.crossing = _crossing_ahead(leg)
+                if self.crossing is not None:
+                    return self._ended(CircuitEnd.CHANGE_POINT)
                 stuck = 0 if moved else stuck + 1
                 avoid = led.lead
                 if stuck > 1:
@@ -192,7 +213,9 @@ class _Tracer:
         return self._ended(CircuitEnd.NEVER_CLOSES)
 
     def _ended(self, end: CircuitEnd) -> Curve:
-        return Curve(legs=tuple(self.legs), end=end, passes=tuple(self.passes))
+        return Curve(
+            legs=tuple(self.legs), end=end, passes=tuple(self.passes), crossing=self.crossing
+        )
 
     def _arrive(self, leg: Leg) -> None:
         last = leg.nodes[-1]
@@ -200,29 +223,18 @@ class _Tracer:
         sign = math.copysign(1.0, last.t - leg.nodes[0].t)
         self.heading = sign * leg.led.whole(last.first)
 
-    def _leader(self, avoid: int | None) -> tuple[Led | None, Node | None]:
+    def _leader(self, avoid: int | None) -> tuple[Led, Node] | None:
         """The parameter where it is fast enough, else the fastest variable that determines all."""
         scale, parameter = self.leads.scale, self.leads.parameter
         speed = np.abs(self.heading) / scale
-        if not self.legs and avoid is None:
-            return self.own, self.own.node(self.here)
-        by_speed = [int(k) for k in np.argsort(-speed, kind="stable")]
-        if speed[parameter] * self.options.slow >= speed.max():
-            by_speed.insert(0, parameter)
-        for lead in by_speed:
-            led = self.leads.by(lead) if lead != avoid else None
-            if led is not None and speed[lead] > 0.0:
-                node = led.node(self.here)
-                if np.isfinite(node.second).all():
-                    return led, node
-        return None, None
+        first = parameter if speed[parameter] * self.options.slow >= speed.max() else None
+        return fastest_leader(self.leads, self.here, speed, avoid, first)
 
     def _leg(self, led: Led, node: Node) -> tuple[Leg, object]:
         """One leg: up to a change of leader, a pass of the starting value, or an end."""
         opt = self.options
         parameter, scale = self.leads.parameter, self.leads.scale
-        place = np.empty(len(scale), dtype=np.intp)
-        place[led.order] = np.arange(len(scale))
+        place = led.place(parameter)
         sign = math.copysign(1.0, self.heading[led.lead])
         weights = scale[led.order]
         own = led.lead == parameter
@@ -231,8 +243,8 @@ class _Tracer:
         def done(before: Node, after: Node) -> bool:
             speed = np.abs(after.first) / weights
             if not own:
-                passed.extend(self._planes(place[parameter], before, after))
-                if passed or speed[place[parameter]] * opt.slow >= speed.max():
+                passed.extend(self._planes(place, before, after))
+                if passed or speed[place] * opt.slow >= speed.max():
                     return True
             if bool((np.abs(after.v / weights)[~self.leads.turns[led.order]] > opt.far).any()):
                 return True
@@ -283,7 +295,7 @@ class _Tracer:
         cuts = [0.0, 1.0]
         if ends[1] * ends[3] < 0.0:
             cuts.insert(1, ends[1] / (ends[1] - ends[3]))
-        values = [_hermite(s, h, *ends) for s in cuts]
+        values = [hermite(s, h, *ends) for s in cuts]
         for s0, s1, t0, t1 in zip(cuts, cuts[1:], values, values[1:], strict=False):
             if t0 == t1:
                 continue
@@ -299,14 +311,14 @@ class _Tracer:
         ends = [led.whole(part) for part in (before.v, before.first, after.v, after.first)]
         p, h = self.leads.parameter, after.t - before.t
         value, s0, s1 = plane
-        rising = _hermite(s1, h, *ends)[p] > _hermite(s0, h, *ends)[p]
+        rising = hermite(s1, h, *ends)[p] > hermite(s0, h, *ends)[p]
         for _ in range(60):
             s = 0.5 * (s0 + s1)
-            if (_hermite(s, h, *ends)[p] < value) == rising:
+            if (hermite(s, h, *ends)[p] < value) == rising:
                 s0 = s
             else:
                 s1 = s
-        guess = _hermite(0.5 * (s0 + s1), h, *ends)
+        guess = hermite(0.5 * (s0 + s1), h, *ends)
         guess[p] = value
         own = self.own
         found = own.solver.solve(guess[own.order][None, :])
@@ -322,15 +334,39 @@ class _Tracer:
         lengths = ~self.leads.turns
         if np.abs(v / scale)[lengths].max(initial=0.0) > self.options.far:
             return CircuitEnd.RUNS_TO_INFINITY
-        if self.passes and self.passes[-1][0] == len(self.legs) - 1:
-            if same_position(self.leads, v, self.start):
-                return CircuitEnd.CLOSED
+        passed = bool(self.passes) and self.passes[-1][0] == len(self.legs) - 1
+        if passed and same_position(self.leads, v, self.start):
+            return CircuitEnd.CLOSED
         if abs(v - self.start)[self.leads.parameter] > self.options.most_turns * 2.0 * np.pi:
             return CircuitEnd.NEVER_CLOSES
         return None
 
 
-def _hermite(s: float, h: float, v0: Array, d0: Array, v1: Array, d1: Array) -> Array:
+def _crossing_ahead(leg: Leg) -> ChangePoint | None:
+    """The change point at which a leg could not go on."""
+    first, last = leg.nodes[0], leg.nodes[-1]
+    for side in (1.0, -1.0) if first is last else (math.copysign(1.0, last.t - first.t),):
+        found = locate_change_point(leg.led.solver, leg.led.path, last, side)
+        if found is not None:
+            return found
+    return None
+
+
+def fastest_leader(
+    leads: Leads, v: Array, speed: Array, avoid: int | None = None, first: int | None = None
+) -> tuple[Led, Node] | None:
+    """The fastest variable that determines all others at a position, and the node it gives."""
+    by_speed = [int(k) for k in np.argsort(-speed, kind="stable")]
+    for lead in by_speed if first is None else [first, *by_speed]:
+        led = leads.by(lead) if lead != avoid and speed[lead] > 0.0 else None
+        if led is not None:
+            node = led.node(v)
+            if np.isfinite(node.second).all():
+                return led, node
+    return None
+
+
+def hermite(s: float, h: float, v0: Array, d0: Array, v1: Array, d1: Array) -> Array:
     """The cubic through both ends of a step, at the fraction s of it."""
     rise = v1 - v0
     bend = 3.0 * rise - h * (2.0 * d0 + d1) + s * (h * (d0 + d1) - 2.0 * rise)
@@ -348,84 +384,3 @@ def apart(leads: Leads, a: Array, b: Array) -> Array:
 def same_position(leads: Leads, a: Array, b: Array) -> bool:
     """Whether two positions agree, whole turns aside."""
     return bool(np.abs(apart(leads, a, b) / leads.scale).max() < _SAME)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class TurningPoint:
-    """Where the parameter turns back on a curve: a dead point.
-
-    ``v`` (N,) the position; ``bracket`` of the parameter around it; ``direction`` (N,) how the
-    variables move through it (weighted norm 1); ``leg``, ``after``: behind which node.
-    """
-
-    t: float
-    bracket: tuple[float, float]
-    v: Array
-    direction: Array
-    located: bool
-    leg: int
-    after: int
-
-
-def turning_points(leads: Leads, curve: Curve) -> Iterator[TurningPoint]:
-    """The dead points on a curve, in its order.
-
-    The parameter's rate by the leader changes sign between two nodes; Newton-Raphson on that rate,
-    kept inside the sign change, finds where.
-    """
-    p = leads.parameter
-    for number, leg in enumerate(curve.legs):
-        if leg.led.lead == p:
-            continue
-        rate = leg.first[:, p]
-        for k in np.flatnonzero(rate[:-1] * rate[1:] < 0.0):
-            found = _refined(leads, leg, int(k))
-            yield replace(found, leg=number)
-
-
-def _refined(leads: Leads, leg: Leg, k: int) -> TurningPoint:
-    led, p = leg.led, leads.parameter
-    place = int(np.flatnonzero(led.order == p)[0])
-    low, high = leg.nodes[k], leg.nodes[k + 1]
-    here = low if abs(low.first[place]) < abs(high.first[place]) else high
-    located, step = False, np.inf
-    for _ in range(60):
-        step = -here.first[place] / here.second[place] if here.second[place] else np.inf
-        s = here.t + step
-        edges = sorted((low.t, high.t))
-        if not edges[0] < s < edges[1]:
-            s = 0.5 * (low.t + high.t)
-            step = s - here.t
-        if abs(step) <= 4.0 * _UNIT * max(1.0, abs(s)):
-            located = True
-            break
-        guess = here.v + step * here.first + 0.5 * step * step * here.second
-        guess[-1] = s
-        found = led.solver.solve(guess[None, :])
-        if found.status[0] != _CONVERGED:
-            break
-        last = here
-        here = node_at(led.solver, led.path, s, found.v[0])
-        if here.first[place] * low.first[place] > 0.0:
-            low = here
-        else:
-            high = here
-        if here.first[place] == 0.0:
-            located = True
-            break
-        if abs(here.first[place]) >= abs(last.first[place]) and abs(step) < 1e-9:
-            located = True  # rounding
-            break
-    v = led.whole(here.v)
-    direction = led.whole(here.first)
-    # t is quadratic in the leader here, so the leader's last step counts squared
-    error = abs(here.second[place]) * step * step + 4.0 * _UNIT * max(1.0, abs(float(v[p])))
-    return TurningPoint(
-        t=float(v[p]),
-        bracket=(float(v[p] - error), float(v[p] + error)),
-        v=v,
-        direction=direction / np.abs(direction / leads.scale).max(),
-        located=located,
-        leg=0,
-        after=k,
-    )

@@ -8,21 +8,33 @@ The singularity is measured by bordering (Griewank & Reddien 1984, doi:10.1093/i
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.status import Status
-from linkwork.numerics.newton import NewtonOptions, newton
-from linkwork.numerics.system import System
 
 __all__ = ["Bending", "Family", "Fold", "locate_fold"]
 
 
-class Bending(System, Protocol):
-    """A system that also knows D²F[a, b]."""
+class Bending(Protocol):
+    """Equations as in :class:`~linkwork.numerics.system.System` that also know D²F[a, b]."""
+
+    @property
+    def unknowns(self) -> int:
+        """n, the first variables."""
+
+    @property
+    def equation_scale(self) -> Array:
+        """(n,) what residuals are divided by."""
+
+    @property
+    def variable_scale(self) -> Array:
+        """(N,) weights of the variables."""
+
+    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
+        """F, (B, n), and dF/dv, (B, n, N)."""
 
     def mixed(self, v: Array, a: Array, b: Array) -> Array:
         """D²F[a, b], (B, m)."""
@@ -62,6 +74,7 @@ _LONGEST = 0.5  # weighted: a step is shortened as a whole
 _STILL = 1e-13
 _FURTHER = 1e-6  # of the parameter's size: how far behind the fold a solution is looked for
 _CLOSED = 1e-10
+_SOLVED = 1e-13
 
 
 class _At:
@@ -172,7 +185,16 @@ def _opening(family: Family, begin: float, x: Array, p: float) -> Fold | None:
     further = towards * _FURTHER * family.size
     system, inputs = family.at(p + further), family.inputs
     start = x + np.sqrt(ratio * further) * here.z * here.weights[: here.n]
-    options = replace(NewtonOptions(), equation_tolerance=1e-13)
-    done = newton(system, np.concatenate([start, inputs])[None, :], options)
-    found = done.status[0] == Status.CONVERGED.code and done.residual[0] <= _CLOSED
-    return Fold(p=p, x=x, opens=float(towards), checked=bool(found))
+    found = _is_solved_from(system, np.concatenate([start, inputs]))
+    return Fold(p=p, x=x, opens=float(towards), checked=found)
+
+
+def _is_solved_from(system: Bending, v: Array) -> bool:
+    """Whether Newton-Raphson from v (N,) finds a solution."""
+    n, v = system.unknowns, v.copy()
+    for _ in range(_MOST_STEPS):
+        f, jacobian = system.residual_and_jacobian(v[None, :])
+        if np.abs(f[0] / system.equation_scale).max() <= _SOLVED:
+            return True
+        v[:n] -= np.linalg.solve(jacobian[0, :, :n], f[0])
+    return False

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
-from linkwork.numerics.block_solver import BlockSolver, Linearised
-from linkwork.numerics.certificate import bounds, radii
+from linkwork.numerics.block_solver import Block, BlockSolver, Linearised
+from linkwork.numerics.certificate import Radii, bounds, radii
 
-__all__ = ["Proof", "links_hold", "prove", "rounding_of_inputs"]
+__all__ = ["Proof", "links_hold", "prove", "prove_block", "rounding_of_inputs"]
 
 _UNIT = np.finfo(float).eps / 2
 
@@ -83,17 +83,28 @@ def prove(
         if not block.system.bends_boundedly:
             holds[:] = False
             continue
-        n = len(block.unknowns)
-        known = each[:, block.variables[n:]]
-        with np.errstate(all="ignore"):
-            found = radii(
-                bounds(block.system, v[:, block.variables], part.jacobian, part.inverse, known),
-                block.system.variable_scale[:n],
-            )
+        found = prove_block(block, part, v, each)
         holds &= found.holds
         exists[:, k], unique[:, k] = found.exists, found.unique
         each[:, block.unknowns] = found.each
     return Proof(holds=holds, exists=exists, unique=unique, each=each)
+
+
+def prove_block(block: Block, part: Linearised, v: Array, each: Array) -> Radii:
+    """Prove one block at v (B, N) for all values of what it takes as known within ``each`` (B, N).
+
+    Parameters
+    ----------
+    part : Linearised
+        The block at v. Its system has to have a curvature bound.
+    """
+    n = len(block.unknowns)
+    known = each[:, block.variables[n:]]
+    with np.errstate(all="ignore"):
+        return radii(
+            bounds(block.system, v[:, block.variables], part.jacobian, part.inverse, known),
+            block.system.variable_scale[:n],
+        )
 
 
 def links_hold(

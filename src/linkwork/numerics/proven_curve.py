@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
-from linkwork.numerics.curve import Curve, Led, Leads, Leg, apart
+from linkwork.numerics.curve import Curve, Leads, Led, Leg, apart
 from linkwork.numerics.proof import prove
 from linkwork.numerics.proven_path import Beads, prove_path
 
-__all__ = ["ProvenCurve", "prove_curve", "same_solution"]
+__all__ = ["ProvenCurve", "leg_is_proved", "prove_curve", "same_solution"]
 
 _UNIT = np.finfo(float).eps / 2
 
@@ -37,7 +37,7 @@ def prove_curve(leads: Leads, curve: Curve) -> ProvenCurve:
     legs = np.zeros(len(curve.legs), dtype=bool)
     joints = np.zeros(max(len(curve.legs) - 1, 0), dtype=bool)
     if all(_provable(leg.led) for leg in curve.legs):
-        legs[:] = [_leg_holds(leg) for leg in curve.legs]
+        legs[:] = [leg_is_proved(leg) for leg in curve.legs]
         for k, (leg, following) in enumerate(zip(curve.legs, curve.legs[1:], strict=False)):
             joints[k] = same_solution(leg.led, following.led, leg.v[-1])
     own = leads.by(leads.parameter)
@@ -53,7 +53,8 @@ def _provable(led: Led) -> bool:
     return all(block.system.bends_boundedly for block in led.solver.blocks)
 
 
-def _leg_holds(leg: Leg) -> bool:
+def leg_is_proved(leg: Leg) -> bool:
+    """Whether every position and every step of a leg is proved."""
     nodes = leg.nodes
     sign = np.sign(nodes[-1].t - nodes[0].t) or 1.0
     beads = Beads(

@@ -21,6 +21,8 @@ from linkwork.numerics.newton import NewtonOptions
 __all__ = ["BOLD", "End", "InputPath", "Node", "Track", "TrackOptions", "follow", "rows_on_track"]
 
 _CONVERGED = Status.CONVERGED.code
+_FAST = 5.0  # rate of a variable, weighted, from which on a dead point may be ahead
+_APPROACH = 0.75  # of the estimated distance to a dead point: the largest step
 _NODE_TOLERANCE = 1e-7  # a correction this small leaves an error of its square
 
 
@@ -175,7 +177,7 @@ def follow(
     failed_at = goal
     for _ in range(opt.most_steps):
         rest = abs(goal - here.t)
-        h = min(h, opt.largest_step * scale, rest)
+        h = min(h, opt.largest_step * scale, rest, _room(here, sign, solver.variable_scale, scale))
         t = goal if h == rest else here.t + sign * h
         following, correction = _step(solver, path, here, t, quick, opt)
         if following is None:
@@ -193,6 +195,18 @@ def follow(
             return nodes, None
         h *= min(2.0, max(0.5, correction or 2.0))
     return nodes, End(reached=here.t, failed=goal, status=Status.LOST)
+
+
+def _room(here: Node, sign: float, weights: Array, scale: float) -> float:
+    """How far a step may go towards a dead point, where rates grow like 1/√distance.
+
+    There x'/2x'' of the fastest variable is the distance; elsewhere it is no limit.
+    """
+    speed = np.abs(here.first) / weights
+    k = int(np.argmax(speed))
+    if speed[k] * scale < _FAST or sign * here.first[k] * here.second[k] <= 0.0:
+        return math.inf
+    return _APPROACH * abs(float(here.first[k] / (2.0 * here.second[k])))
 
 
 def _step(

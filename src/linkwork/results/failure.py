@@ -79,6 +79,8 @@ class Failure:
         The root beside the guess, if Newton-Raphson missed it.
     configurations : tuple of Mapping[str, float]
         The positions that exist at the values asked: unknowns by name.
+    configuration_names : tuple of str
+        What they are called, where configurations can be listed.
     complete : bool, optional
         Whether these are all; ``None`` if none were looked for.
     """
@@ -95,6 +97,7 @@ class Failure:
     unreachable: bool = False
     trouble: NewtonTrouble | None = None
     configurations: tuple[Mapping[str, float], ...] = ()
+    configuration_names: tuple[str, ...] = ()
     complete: bool | None = None
     meant: Mapping[str, float] = FrozenDict()
     units: Units
@@ -149,6 +152,9 @@ class Failure:
                 return "no configuration exists there"
             return "no position was found there from other guesses either"
         shown = [self._values(c, _MOST_VALUES) for c in self.configurations[:_MOST_CONFIGURATIONS]]
+        names = self.configuration_names
+        if names:
+            shown = [f"{n} ({text})" for n, text in zip(names, shown, strict=False)]
         more = len(self.configurations) - len(shown)
         texts = " or ".join(shown) + (f" or {more} more" if more else "")
         count = len(self.configurations)
@@ -189,5 +195,6 @@ class Failure:
             "through": dict(self.through),
             "trouble": None if self.trouble is None else self.trouble.name,
             "configurations": [dict(c) for c in self.configurations],
+            "configuration_names": list(self.configuration_names),
             "configurations_complete": self.complete,
         }

@@ -12,6 +12,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, CountArray
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.names import spelled
@@ -22,7 +23,7 @@ from linkwork.results.quantity import Quantity, Units
 from linkwork.results.summary import motion_summary
 from linkwork.results.table import Table, table_of
 
-__all__ = ["Limit", "LimitKind", "Motion", "Series"]
+__all__ = ["Limit", "LimitKind", "Motion", "OutputLimit", "Series"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -45,6 +46,11 @@ class LimitKind(Enum):
     DEAD_POINT = "dead point: the input can move no further"
     CHANGE_POINT = "change point: another branch crosses here"
     UNKNOWN = "the branch could not be followed further"
+
+    @property
+    def word(self) -> str:
+        """``dead point``, ``change point`` or ``limit``."""
+        return "limit" if self is LimitKind.UNKNOWN else self.value.partition(":")[0]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,6 +76,8 @@ class Limit:
     onward, other : Mapping[str, float]
         At a change point, the derivatives by the input of the locked loops' unknowns on the
         branch that was followed and on the one that crosses it.
+    passed : str
+        How the motion went on at a change point: ``straight`` or ``turn``; "" if it stopped.
     """
 
     kind: LimitKind
@@ -81,6 +89,32 @@ class Limit:
     in_line: tuple[str, ...] = ()
     onward: Mapping[str, float] = FrozenDict()
     other: Mapping[str, float] = FrozenDict()
+    passed: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputLimit:
+    """Where a quantity is largest or smallest while the input moves on.
+
+    Parameters
+    ----------
+    name : str
+    kind : str
+        ``maximum`` or ``minimum``.
+    input : float
+        Of the leading input, everyday units, with ``bracket`` around it.
+    value : float
+        Of the quantity, everyday units.
+    located : bool
+        Whether it was found to rounding.
+    """
+
+    name: str
+    kind: str
+    input: float
+    value: float
+    bracket: tuple[float, float]
+    located: bool
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -112,10 +146,19 @@ class Motion:
         Where proved: a true position lies within ``radius`` of the row and no other within
         ``unique_within`` (largest norm; lengths relative to the longest link).
     branch : tuple of str
+        On which branch of which circuit each row lies, "" if it was not found.
+    limit : tuple of str
+        ``dead point``, ``change point``, ``maximum of …`` for rows that lie at one, else "".
+    added : array (N,) of bool
+        Rows that the table did not ask for: limits, and with ``through`` those of further branches.
     speed : float, optional
         Rate of the first input [rad/s or length/s], if given.
     limits : tuple of Limit
-        Where the branch ends before the table does.
+        Where the branch ends before the table does; with ``through``, all dead points passed.
+    output_limits : tuple of OutputLimit
+        Extremes of the quantities that were asked for.
+    circuit : CircuitEnd, optional
+        With ``through``: how the circuit that was followed ends.
     q : array (N, n)
         The unknowns with angles in radians.
     failure : Failure, optional
@@ -143,13 +186,25 @@ class Motion:
     radius: Array
     unique_within: Array
     branch: tuple[str, ...]
+    limit: tuple[str, ...]
+    added: BoolArray
     speed: float | None = None
     limits: tuple[Limit, ...] = ()
+    output_limits: tuple[OutputLimit, ...] = ()
+    circuit: CircuitEnd | None = None
     q: Array
     failure: Failure | None = None
 
     def __post_init__(self) -> None:
-        for field in ("residual", "iterations", "condition", "radius", "unique_within", "q"):
+        for field in (
+            "residual",
+            "iterations",
+            "condition",
+            "radius",
+            "unique_within",
+            "added",
+            "q",
+        ):
             object.__setattr__(self, field, read_only(getattr(self, field)))
         inputs = {name: read_only(values) for name, values in self.inputs.items()}
         object.__setattr__(self, "inputs", FrozenDict(inputs))
@@ -182,6 +237,11 @@ class Motion:
     def found(self) -> BoolArray:
         """Which rows hold a position, shape (N,)."""
         return np.array([status.ok for status in self.status], dtype=bool)
+
+    @property
+    def asked(self) -> BoolArray:
+        """The rows of the input's table, shape (N,): all but those added at limits and around."""
+        return np.logical_not(self.added)
 
     @property
     def certified(self) -> BoolArray:

@@ -35,7 +35,7 @@ class Certificate:
     @property
     def certified(self) -> bool:
         """Whether everything is proved."""
-        return self.certification is Certification.CERTIFIED
+        return self.certification.certified
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,6 +96,8 @@ class Position:
         Largest closure error divided by the longest link.
     condition : float
         Largest condition number (largest norm, weighted) of a block's Jacobian.
+    configuration : str
+        What this way to put the mechanism together is called, if it comes from a list of them.
     q : array, shape (n,)
         The unknowns with angles in radians.
     failure : Failure, optional
@@ -124,6 +126,7 @@ class Position:
     condition: float
     certificate: Certificate = Certificate()
     branch: str = ""
+    configuration: str = ""
     q: Array
     steps: tuple[NewtonTrail, ...] = ()
     failure: Failure | None = None
@@ -175,6 +178,7 @@ class Position:
                 "reason": self.certificate.certification.value,
             },
             "branch": self.branch,
+            "configuration": self.configuration,
             **({} if self.failure is None else {"failure": self.failure.to_dict()}),
             **({"steps": [_trail(trail) for trail in self.steps]} if self.steps else {}),
         }

@@ -6,10 +6,12 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from linkwork.results.circuits import Circuits
+    from linkwork.results.configurations import Configurations
     from linkwork.results.motion import Motion
     from linkwork.results.position import Position
 
-__all__ = ["motion_summary", "position_summary"]
+__all__ = ["configurations_summary", "motion_summary", "position_summary"]
 
 
 def _aligned(rows: list[tuple[str, str]]) -> list[str]:
@@ -37,16 +39,50 @@ def position_summary(position: Position) -> str:
     return "\n".join([head, *_aligned(rows)])
 
 
+def configurations_summary(found: Configurations) -> str:
+    """One row per configuration, then completeness and what became of the paths."""
+    at = _driven(found.input, found.input_units)
+    head = f"Configurations of {found.mechanism}" + (f" at {at}" if at else "")
+    rows = []
+    for position in found:
+        values = ", ".join(f"{name} = {value:.8g}" for name, value in position.unknowns.items())
+        certified = "certified" if position.certificate.certified else "not certified"
+        rows.append((position.configuration, f"{values}  {certified}"))
+    rows.append(("completeness", found.message))
+    paths = [f"{count.real} real of {count.finite} solutions" for count in found.paths]
+    rows.append(("paths", "; ".join(paths)))
+    return "\n".join([head, *_aligned(rows)])
+
+
+def circuits_summary(circuits: Circuits) -> str:
+    """One line per branch."""
+    unit = circuits.input_unit
+    head = f"{len(circuits)} circuit{'' if len(circuits) == 1 else 's'} of {circuits.mechanism}"
+    rows = []
+    for circuit in circuits:
+        for branch in circuit.branches:
+            low, high = branch.input_range
+            rows.append((branch.name, f"{circuits.input} {low:.10g} to {high:.10g} {unit}"))
+    return "\n".join([head, *_aligned(rows)])
+
+
 def motion_summary(motion: Motion) -> str:
     """Range of the input, counts by status, limits, worst evidence, ranges of the unknowns."""
     name, values = next(iter(motion.inputs.items()))
+    values = values[motion.asked]
     unit = motion.input_units[name]
     head = (
         f"Motion of {motion.mechanism}, {name} {values[0]:.10g} to {values[-1]:.10g} {unit}, "
-        f"{len(motion)} positions"
+        f"{len(values)} positions"
     )
     rows = [(s.name.lower().replace("_", " "), str(n)) for s, n in motion.counts.most_common()]
-    rows += [("limit", f"{limit.input:.10g} {unit}") for limit in motion.limits]
+    rows += [(limit.kind.word, f"{limit.input:.10g} {unit}") for limit in motion.limits]
+    rows += [
+        (extreme.kind, f"{extreme.name} = {extreme.value:.10g} at {extreme.input:.10g} {unit}")
+        for extreme in motion.output_limits
+    ]
+    if motion.circuit is not None:
+        rows.append(("circuit", motion.circuit.value))
     found = motion.found
     if found.any():
         rows.append(("certified", f"{int(motion.certified.sum())} of {int(found.sum())}"))

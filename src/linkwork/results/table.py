@@ -23,7 +23,8 @@ Column = AnyArray
 class Table:
     """Columns by name, all of one length, with the unit of each ("" for none).
 
-    Numbers are float arrays, ``status`` and ``branch`` arrays of text, ``certified`` of bool.
+    Numbers are float arrays; ``status``, ``branch``, ``limit`` arrays of text; ``certified`` of
+    bool.
     """
 
     columns: Mapping[str, Column]
@@ -107,5 +108,6 @@ def table_of(motion: Motion) -> Table:
     add("iterations", motion.iterations, "")
     add("condition", motion.condition, "")
     add("certified", motion.certified, "")
-    add("branch", np.array(motion.branch), "")
+    add("branch", np.array(motion.branch, dtype=str), "")
+    add("limit", np.array(motion.limit, dtype=str), "")
     return Table(columns=columns, units=unit_of, index=next(iter(motion.inputs)))

@@ -1,8 +1,4 @@
-"""The positions that exist at one input value, as far as they are known.
-
-Blocks are taken in solving order, every block for every position of those before it: dyads in
-closed form, others by Newton-Raphson from many starts.
-"""
+"""The positions that exist at one input value, as far as they are known."""
 
 from __future__ import annotations
 
@@ -12,40 +8,57 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.status import Status
 from linkwork.kernels.loop_table import LoopTable
+from linkwork.motion.assembling import positions_at
 from linkwork.motion.dyads import dyad_of
 from linkwork.motion.model import Model
 from linkwork.numerics.block_solver import Block
 from linkwork.numerics.newton import NewtonOptions, newton
 
-__all__ = ["Assemblies", "AssembliesAt", "assemblies_at", "block_positions", "distance"]
+__all__ = ["Elsewhere", "ElsewhereAt", "block_positions", "distance", "positions_elsewhere"]
 
 _STARTS = 192  # per block that is no dyad
-_MOST_BLOCKS = 24
+_MOST_BLOCKS = 8
+_MOST_LOOPS = 4  # coupled, whose configurations are listed: more take seconds
 _MOST = 64  # positions; a chain of dyads has 2^blocks
 _SAME = 1e-6  # weighted
 _REACH = 2.0  # lengths are looked for within so many times the longest link around the guess
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Assemblies:
-    """All variables of every position found, (K, N); ``complete``: whether there are no others."""
+class Elsewhere:
+    """All variables of every position found, (K, N); ``complete``: whether there are no others;
+    ``names``: of the configurations, if they have any.
+    """
 
     v: Array
     complete: bool
+    names: tuple[str, ...] = ()
 
 
 #: What tells the positions that exist for given inputs (p,), internal units; ``None``: not looked
 #: for.
-AssembliesAt = Callable[[Model, Array], Assemblies | None]
+ElsewhereAt = Callable[[Model, Array], Elsewhere | None]
 
 
-def assemblies_at(model: Model, inputs: Array) -> Assemblies | None:
-    """The positions of a mechanism for the inputs (p,), block by block."""
+def positions_elsewhere(model: Model, inputs: Array) -> Elsewhere | None:
+    """The positions of a mechanism for the inputs (p,): its configurations where they can be
+    listed, else what Newton-Raphson finds from many starts, block by block.
+    """
     solver = model.compiled.solver
     if len(solver.blocks) > _MOST_BLOCKS:
         return None
+    if max((len(block.equations) for block in solver.blocks), default=0) <= _MOST_LOOPS:
+        listed = positions_at(model, inputs)
+        if listed.completeness is not Completeness.NOT_LISTED:
+            return Elsewhere(v=listed.v, complete=listed.completeness.complete, names=listed.names)
+    return _searched(model, inputs)
+
+
+def _searched(model: Model, inputs: Array) -> Elsewhere:
+    solver = model.compiled.solver
     guess = model.equations.start.copy()
     guess[solver.unknowns :] = inputs
     found, complete = guess[None, :], True
@@ -60,7 +73,7 @@ def assemblies_at(model: Model, inputs: Array) -> Assemblies | None:
         found = np.concatenate(pieces) if pieces else found[:0]
         if len(found) > _MOST:
             found, complete = found[:_MOST], False
-    return Assemblies(v=found, complete=complete)
+    return Elsewhere(v=found, complete=complete)
 
 
 def block_positions(block: Block, v: Array) -> tuple[Array, bool]:

@@ -1,0 +1,126 @@
+"""``linkwork circuits``"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import click
+
+from linkwork.cli.mechanism_source import read_mechanism
+from linkwork.cli.motion_page import limit_text
+from linkwork.cli.options import debug_option, file_argument, json_option, set_option
+from linkwork.cli.terminal import (
+    bad,
+    fields,
+    good,
+    print_json,
+    print_lines,
+    progress,
+    sentence,
+    title_lines,
+)
+from linkwork.cli.text_table import Column, short, table_lines
+from linkwork.results.circuits import Circuit, Circuits
+
+__all__ = ["circuits", "circuits_lines"]
+
+
+@click.command
+@file_argument
+@click.option("--no-certificates", is_flag=True, help="Prove nothing: faster.")
+@set_option
+@json_option
+@debug_option
+@click.pass_context
+def circuits(
+    context: click.Context,
+    file: str,
+    no_certificates: bool,
+    changes: tuple[str, ...],
+    as_json: bool,
+) -> None:
+    """Find every circuit, its branches, dead points and change points.
+
+    A circuit is all that can be reached without taking the mechanism apart;
+    a branch is a piece of it between dead points. Their names can be given
+    to solve and sweep.
+
+    \b
+      linkwork circuits rapier.toml
+      linkwork sweep rapier.toml --configuration "circuit 3 branch 1"
+    """
+    mechanism = read_mechanism(file, changes)
+    with progress("following circuits") as tell:
+        found = mechanism.circuits(certify=not no_certificates, progress=tell)
+    if as_json:
+        print_json(found.as_dict())
+    else:
+        print_lines(circuits_lines(found))
+    if not len(found):
+        context.exit(1)
+
+
+def circuits_lines(found: Circuits) -> list[str]:
+    """The page: branches of every circuit, how it ends, what turns, its limits."""
+    count = len(found)
+    what = "1 circuit" if count == 1 else f"{count or 'No'} circuits"
+    lines = [
+        *title_lines(found.mechanism),
+        *sentence(good if count else bad, what, f"driven by {found.input}"),
+    ]
+    for circuit in found:
+        lines += ["", *_circuit_lines(found, circuit)]
+    return [*lines, "", *fields([("complete", found.message)])]
+
+
+def _circuit_lines(found: Circuits, circuit: Circuit) -> list[str]:
+    unit = f" [{found.input_unit}]" if found.input_unit else ""
+    branches = circuit.branches
+    table = [
+        Column(
+            header=circuit.name, cells=[b.name.removeprefix(f"{circuit.name} ") for b in branches]
+        ),
+        Column(
+            header=f"from {found.input}{unit}",
+            cells=[short(branch.input_range[0]) for branch in branches],
+            align="point",
+        ),
+        Column(
+            header="to", cells=[short(branch.input_range[1]) for branch in branches], align="point"
+        ),
+        Column(
+            header="at the guess's input",
+            cells=[branch.configuration or "-" for branch in branches],
+        ),
+    ]
+    return [*table_lines(table), *fields(list(_facts(found, circuit)))]
+
+
+def _facts(found: Circuits, circuit: Circuit) -> Iterator[tuple[str, str]]:
+    proof = "proved" if circuit.certified else "not proved"
+    yield ("closed" if circuit.closed else "not closed"), f"{circuit.end.story}; {proof}"
+    if circuit.closed:
+        yield from _turning(circuit)
+    for limit in (*circuit.dead_points, *circuit.change_points):
+        yield limit.kind.word, limit_text(limit, found.input, found.input_unit)
+    if not (circuit.dead_points or circuit.change_points):
+        where = f"{found.input} = {short(circuit.weakest)} {found.input_unit}".rstrip()
+        yield (
+            "weakest",
+            f"smallest singular value {circuit.smallest_singular_value:.3g}, at {where}",
+        )
+
+
+def _turning(circuit: Circuit) -> Iterator[tuple[str, str]]:
+    """What turns fully and what rocks while the circuit is passed once."""
+    if circuit.turns:
+        times = "once" if circuit.turns == 1 else f"{circuit.turns} times"
+        yield "input", f"turns {times} until the circuit closes"
+    elif circuit.turns == 0:
+        yield "input", "turns back at the dead points"
+    turns = [f"{link} ({n:+d})" if abs(n) > 1 else link for link, n in circuit.turning.items() if n]
+    rocks = [link for link, n in circuit.turning.items() if not n]
+    if turns:
+        yield "turning", ", ".join(turns)
+    if rocks:
+        yield "rocking", ", ".join(rocks)

@@ -1,0 +1,113 @@
+"""``linkwork configurations``"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import click
+
+from linkwork.cli.mechanism_source import read_mechanism
+from linkwork.cli.options import (
+    at_option,
+    debug_option,
+    file_argument,
+    input_values,
+    json_option,
+    set_option,
+)
+from linkwork.cli.position_page import Row, inputs_text, value_cells
+from linkwork.cli.terminal import bad, fields, good, print_json, print_lines, sentence, title_lines
+from linkwork.cli.text_table import Column, table_lines
+from linkwork.everyday import Mechanism
+from linkwork.results.configurations import Configurations, PathCount
+from linkwork.results.quantity import Kind
+
+__all__ = ["configurations", "configurations_lines"]
+
+
+@click.command
+@file_argument
+@at_option
+@set_option
+@json_option
+@debug_option
+@click.pass_context
+def configurations(
+    context: click.Context,
+    file: str,
+    at: tuple[str, ...],
+    changes: tuple[str, ...],
+    as_json: bool,
+) -> None:
+    """List every way to put the mechanism together at one input.
+
+    Tells how sure it is that none is missing. A name in the list can be
+    given to solve and sweep.
+
+    \b
+      linkwork configurations rapier.toml --at 60
+      linkwork solve fourbar.toml --at 60 --configuration crossed
+    """
+    mechanism = read_mechanism(file, changes)
+    found = mechanism.configurations(input_values(mechanism, at))
+    if as_json:
+        print_json(found.to_dict())
+    else:
+        print_lines(configurations_lines(mechanism, found))
+    if not (found.completeness.complete and len(found)):
+        context.exit(1)
+
+
+def configurations_lines(mechanism: Mechanism, found: Configurations) -> list[str]:
+    """The page: one row per configuration, completeness, what became of the paths."""
+    lines = title_lines(found.mechanism)
+    count = len(found)
+    what = "1 configuration" if count == 1 else f"{count or 'No'} configurations"
+    where = inputs_text(found.input, found.input_units)
+    lines += sentence(good if found.completeness.complete and count else bad, what, where)
+    if count:
+        lines += ["", *_table(mechanism, found)]
+    return [*lines, "", *fields(_evidence(found))]
+
+
+def _table(mechanism: Mechanism, found: Configurations) -> list[str]:
+    columns = [Column(header="name", cells=found.names)]
+    for variable in mechanism.loop_equations.unknowns:
+        kind = Kind(variable.kind)
+        unit = found.positions[0].units.of(kind)
+        rows = [
+            Row(name=variable.name, kind=kind, value=position.unknowns[variable.name])
+            for position in found
+        ]
+        header = f"{variable.name} [{unit}]" if unit else variable.name
+        columns.append(Column(header=header, cells=value_cells(rows), align="point"))
+    certified = ["yes" if p.certificate.certified else "no" for p in found]
+    columns.append(Column(header="certified", cells=certified))
+    return table_lines(columns)
+
+
+def _evidence(found: Configurations) -> Iterator[tuple[str, str]]:
+    yield "complete", found.message
+    label = "paths"
+    for count in found.paths:
+        yield label, path_sentence(count, several=len(found.paths) > 1)
+        label = ""
+
+
+def path_sentence(count: PathCount, *, several: bool) -> str:
+    """What became of the paths of one block, in words."""
+    who = f"{', '.join(count.unknowns)}: " if several else ""
+    if not count.paths:
+        return f"{who}follow from the others"
+    parts = [f"{count.real} real of {count.finite + count.multiple} finite"]
+    parts += [
+        f"{number} {what}"
+        for number, what in (
+            (count.at_infinity, "at infinity"),
+            (count.multiple, "of them multiple"),
+            (count.failed, "lost"),
+        )
+        if number
+    ]
+    times = f", for {count.solved} positions before" if count.solved > 1 else ""
+    return f"{who}{count.paths} solutions{times}: {', '.join(parts)}"

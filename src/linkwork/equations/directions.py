@@ -1,0 +1,251 @@
+"""Blocks of loop equations as bilinear systems: unknown directions e^{iθ} instead of angles.
+
+Every term c s e^{i(Σ w θ + known)} of a block must stand along one unknown direction, or none. Linear
+rows between angles are solved first; then the sums of angles that occur in the terms become the
+unknown directions themselves, which works as long as there are as many of them as angles left and
+angles follow from them without fractions. Otherwise the block leaves this form, and says why.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.kernels.loop_table import LoopTable
+from linkwork.numerics.bilinear import BilinearSystem
+
+__all__ = ["DirectionForm", "NoDirectionForm", "direction_form"]
+
+_UNIT = np.finfo(float).eps / 2
+_WHOLE = 1e-12  # how far a weight may be from a whole number
+
+
+class NoDirectionForm(Exception):
+    """A block has no such form; the message says why, in words that follow "its equations"."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DirectionForm:
+    """A block over M = 2L unknown directions and lengths, for any values of what it takes as known.
+
+    Parameters
+    ----------
+    table : LoopTable
+        The block, with n unknowns.
+    column : (T,) int
+        The column of each term: a direction, then the lengths, M for known terms.
+    rows : (4, M) int
+        The products of :class:`~linkwork.numerics.bilinear.BilinearSystem`.
+    angles : (A, D)
+        Unknown angles = ``angles`` · directions + ``shift`` · (known variables, 1).
+    shift : (A, p + 1)
+    along : tuple of int
+        The direction of each unknown length, -1 if it is known.
+    """
+
+    table: LoopTable
+    column: IndexArray
+    rows: IndexArray
+    angles: Array
+    shift: Array
+    along: tuple[int, ...]
+
+    @property
+    def directions(self) -> int:
+        """D, the number of unknown directions."""
+        return self.angles.shape[1]
+
+    @property
+    def turning(self) -> IndexArray:
+        """The unknowns of the block that are angles."""
+        return np.flatnonzero(self.table.turns[: self.table.unknowns])
+
+    @property
+    def sliding(self) -> IndexArray:
+        """The unknowns of the block that are lengths."""
+        return np.flatnonzero(~self.table.turns[: self.table.unknowns])
+
+    def closures(self, known: Array, spread: Array) -> tuple[ComplexArray, Array]:
+        """``left`` of the bilinear systems, (B, L, M + 1), and how far its numbers may be off.
+
+        Parameters
+        ----------
+        known, spread : (B, p)
+            Values of the known variables and how far each may be from its true value.
+        """
+        table, loops = self.table, self.table.loops
+        n, scale = table.unknowns, table.variable_scale
+        ones = np.ones((len(known), 1))
+        shifted = np.concatenate([known, ones], axis=1) @ self.shift.T
+        shifted_off = np.concatenate([spread, 0.0 * ones], axis=1) @ np.abs(self.shift).T
+        v = np.zeros((len(known), table.variables))
+        v[:, self.turning], v[:, n:] = shifted, known
+        off = np.zeros_like(v)
+        off[:, self.turning], off[:, n:] = shifted_off, spread
+        size = float(table.equation_scale[0])
+        weights = np.zeros((table.variables, len(loops.row)))
+        np.add.at(weights, (loops.phase_variable, loops.phase_term), loops.phase_weight)
+        phase = v @ weights
+        slack = off @ np.abs(weights) + 4.0 * _UNIT * (4.0 + np.abs(v) @ np.abs(weights))
+        length = np.ones(phase.shape)
+        length_off = np.zeros(phase.shape)
+        for t, j in enumerate(loops.length):
+            if j >= n:
+                length[:, t], length_off[:, t] = v[:, j], off[:, j]
+            elif j >= 0:
+                length[:, t] = scale[j]
+        term = loops.coefficient * length * np.exp(1j * phase) / size
+        error = np.abs(loops.coefficient) / size * (np.abs(length) * slack + length_off)
+        left = np.zeros((len(known), loops.rows, self.rows.shape[1] + 1), dtype=complex)
+        away = np.zeros(left.shape)
+        np.add.at(left, (slice(None), loops.row, self.column), term)
+        np.add.at(away, (slice(None), loops.row, self.column), error)
+        return left, away
+
+    def system(self, left: ComplexArray) -> BilinearSystem:
+        """The bilinear system of one closure matrix (L, M + 1)."""
+        return BilinearSystem(left=left, right=left.conj(), rows=self.rows)
+
+    def unknowns(self, x: ComplexArray, known: Array, near: Array) -> Array:
+        """The block's unknowns (R, n) of real solutions (U, V) (R, 2M) for known values (R, p).
+
+        Angles are those within half a turn of ``near`` (n,).
+        """
+        count, m = self.directions, self.rows.shape[1]
+        psi = np.angle(x[:, :count] + x[:, m : m + count].conj())
+        ones = np.ones((len(x), 1))
+        angles = psi @ self.angles.T + np.concatenate([known, ones], axis=1) @ self.shift.T
+        home = near[self.turning]
+        found = np.zeros((len(x), self.table.unknowns))
+        found[:, self.turning] = home + np.remainder(angles - home + np.pi, 2.0 * np.pi) - np.pi
+        for k, (j, a) in enumerate(zip(self.sliding, self.along, strict=True)):
+            z = x[:, count + k]
+            turned = z * np.exp(-1j * psi[:, a]) if a >= 0 else z
+            found[:, j] = turned.real * self.table.variable_scale[j]
+        return found
+
+
+def direction_form(table: LoopTable) -> DirectionForm:
+    """The form of a block.
+
+    Raises
+    ------
+    NoDirectionForm
+        If it has none.
+    """
+    if table.functions:
+        raise NoDirectionForm("are plain equations, not loops")
+    n, loops = table.unknowns, table.loops
+    turning = np.flatnonzero(table.turns[:n])
+    sliding = np.flatnonzero(~table.turns[:n])
+    reduce, shift = _solved_lines(table, turning, sliding)
+    phases = np.zeros((len(loops.row), table.variables))
+    np.add.at(phases, (loops.phase_term, loops.phase_variable), loops.phase_weight)
+    if np.abs(phases[:, sliding]).max(initial=0.0) > 0.0:
+        raise NoDirectionForm("turn by a length, as racks and rolling do")
+    sums = phases[:, turning] @ reduce
+    directions, number = _directions(sums)
+    angles = reduce @ _inverse(directions, reduce.shape[1])
+    along = _along(table, number, sliding)
+    size = len(directions) + len(sliding)
+    if size != 2 * loops.rows:
+        raise NoDirectionForm("do not have two unknown directions or lengths for every loop")
+    place = {int(j): len(directions) + k for k, j in enumerate(sliding)}
+    column = np.where(number < 0, size, number)
+    column = np.array(
+        [place.get(int(j), int(c)) for j, c in zip(loops.length, column, strict=True)],
+        dtype=np.intp,
+    )
+    one = size
+    products = [(k, k, one, one) for k in range(len(directions))]
+    for k, a in enumerate(along, len(directions)):
+        products.append((k, one, one, k) if a < 0 else (k, a, a, k))
+    return DirectionForm(
+        table=table,
+        column=column,
+        rows=np.array(products, dtype=np.intp).reshape(size, 4).T,
+        angles=angles,
+        shift=shift,
+        along=along,
+    )
+
+
+def _solved_lines(
+    table: LoopTable, turning: IndexArray, sliding: IndexArray
+) -> tuple[Array, Array]:
+    """Angles = first · (angles left) + second · (known, 1), from the linear rows."""
+    n, lines = table.unknowns, table.linear
+    rows = np.zeros((len(lines.constant), table.variables + 1))
+    np.add.at(rows, (lines.row, lines.variable), lines.weight)
+    rows[:, -1] = lines.constant
+    if np.abs(rows[:, sliding]).max(initial=0.0) > 0.0:
+        raise NoDirectionForm("tie an angle to a length, as racks and rolling do")
+    own = rows[:, turning].copy()
+    rest = np.concatenate([rows[:, n:-1], rows[:, -1:]], axis=1)
+    pivots: list[int] = []
+    for k in range(len(own)):
+        units = [j for j in range(own.shape[1]) if abs(abs(own[k, j]) - 1.0) <= _WHOLE]
+        if not units:
+            raise NoDirectionForm("tie angles by ratios other than 1, as gears do")
+        j = units[0]
+        pivots.append(j)
+        own[k], rest[k] = own[k] / own[k, j], rest[k] / own[k, j]
+        for other in range(len(own)):
+            if other != k and own[other, j]:
+                factor = own[other, j]
+                own[other] -= factor * own[k]
+                rest[other] -= factor * rest[k]
+    free = [j for j in range(len(turning)) if j not in pivots]
+    reduce = np.zeros((len(turning), len(free)))
+    shift = np.zeros((len(turning), rest.shape[1]))
+    for column, j in enumerate(free):
+        reduce[j, column] = 1.0
+    for k, j in enumerate(pivots):
+        reduce[j] = -own[k, free]
+        shift[j] = -rest[k]
+    return reduce, shift
+
+
+def _directions(sums: Array) -> tuple[list[tuple[float, ...]], IndexArray]:
+    """The different sums of angles in the terms, and the number of each term's, -1 for none."""
+    rows = [tuple(row) for row in sums.tolist()]
+    # in the order of the angles, whatever the order of the terms
+    found = sorted({row for row in rows if any(row)}, reverse=True)
+    place = {row: k for k, row in enumerate(found)}
+    if any(tuple(-w for w in row) in place for row in found):
+        raise NoDirectionForm("contain an angle both forwards and backwards")
+    number = np.array([place.get(row, -1) for row in rows], dtype=np.intp)
+    return found, number
+
+
+def _inverse(directions: list[tuple[float, ...]], angles: int) -> Array:
+    """Angles by directions: an inverse of whole numbers."""
+    if len(directions) > angles:
+        raise NoDirectionForm("contain more sums of angles than angles, as gears do")
+    if len(directions) < angles:
+        raise NoDirectionForm("leave an angle open")
+    matrix = np.array(directions, dtype=float).reshape(angles, angles)
+    if angles and abs(abs(float(np.linalg.det(matrix))) - 1.0) > 1e-9:
+        raise NoDirectionForm("contain angles with ratios other than 1, as gears do")
+    inverse = np.linalg.inv(matrix)
+    whole: Array = np.round(inverse)
+    if (
+        np.abs(inverse - whole).max(initial=0.0) > 1e-9
+        or np.abs(matrix - np.round(matrix)).max(initial=0.0) > _WHOLE
+    ):
+        raise NoDirectionForm("contain angles with ratios other than 1, as gears do")
+    return whole
+
+
+def _along(table: LoopTable, number: IndexArray, sliding: IndexArray) -> tuple[int, ...]:
+    """The direction of each unknown length, -1 for a known one."""
+    found = []
+    for j in sliding:
+        mine: BoolArray = table.loops.length == j
+        ways = set(number[mine].tolist())
+        if len(ways) != 1:
+            raise NoDirectionForm("use one length along several directions")
+        found.append(int(ways.pop()))
+    return tuple(found)

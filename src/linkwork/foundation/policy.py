@@ -1,0 +1,35 @@
+"""What to do where two branches cross."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from linkwork.foundation.errors import InputError, choices
+
+__all__ = ["ChangePointPolicy"]
+
+
+class ChangePointPolicy(Enum):
+    """Which way a motion goes on at a change point; nothing but this choice decides it."""
+
+    STOP = "stop"
+    STRAIGHT = "straight"
+    TURN = "turn"
+
+    @classmethod
+    def of(cls, name: str | ChangePointPolicy) -> ChangePointPolicy:
+        """The policy of a name: ``stop``, ``straight`` (keep the tangent) or ``turn``.
+
+        Raises
+        ------
+        InputError
+            For any other name.
+        """
+        if isinstance(name, ChangePointPolicy):
+            return name
+        names = [policy.value for policy in cls]
+        if name not in names:
+            raise InputError(
+                f'"{name}" is no way to go on at a change point {choices("ways", names, name)}'
+            )
+        return cls(name)

@@ -1,0 +1,273 @@
+"""All curves of positions that can be reached from a few: closed ones, and arcs between crossings.
+
+Where two curves cross (a change point) four half-branches leave; each is followed, so that what is
+connected is found as a whole.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.foundation.status import Status
+from linkwork.motion.branches import CurveBranch, Traced, branches_of, traced
+from linkwork.numerics.change_point import ChangePoint, Crossing
+from linkwork.numerics.curve import Leads, Led, apart, fastest_leader, same_position
+
+__all__ = ["Arc", "Explorer", "positions_near"]
+
+_STRIDES = (1e-2, 3e-3, 1e-3, 1e-4)  # weighted, tried in this order
+_CLOSER = 0.1  # a position belongs to a tangent it is so many times nearer to than to the other
+_REGULAR = 1e5
+_NEAR = 0.3  # weighted: positions further from a branch do not lie on it
+_STILL = 1e-5  # weighted change of the parameter along an arc on which it rests, up to a crossing
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Arc:
+    """A curve followed as far as it goes.
+
+    ``up``: the walk that began forwards; ``down``: the one backwards, if the first did not close.
+    ``crossings``: numbers of the change points at its ends. ``branches``: in the order start's own,
+    onwards, backwards.
+    """
+
+    up: Traced
+    down: Traced | None
+    end: CircuitEnd
+    crossings: tuple[int, ...]
+    branches: tuple[CurveBranch, ...]
+
+    @property
+    def walks(self) -> tuple[Traced, ...]:
+        """All pieces."""
+        return (self.up,) if self.down is None else (self.up, self.down)
+
+    @property
+    def certified(self) -> bool:
+        """Whether all of it is proved."""
+        return all(walk.certified for walk in self.walks)
+
+
+class Explorer:
+    """All curves found so far, and the change points between them.
+
+    Parameters
+    ----------
+    leads : Leads
+    certify : bool
+        Prove every curve.
+    fine : int
+        Positions per step that branches keep.
+    """
+
+    def __init__(self, leads: Leads, certify: bool, fine: int) -> None:
+        self.leads, self.certify, self.fine = leads, certify, fine
+        self.arcs: list[Arc] = []
+        self.crossings: list[Crossing] = []
+        self._covered: set[tuple[int, int, float]] = set()
+        self._passed: list[tuple[Array, int]] = []
+
+    def visit(self, seed: Array) -> int:
+        """The number of the arc through a position at which the parameter can lead.
+
+        The curve is followed if it is new, with everything that branches off at change points.
+        """
+        for v, number in self._passed:
+            if same_position(self.leads, v, seed):
+                return number
+        for number, arc in enumerate(self.arcs):
+            if any(_lies_on(self.leads, branch, seed) for branch in arc.branches):
+                return number
+        found = self._explore(seed, 1.0)
+        self._branch_off()
+        return found
+
+    def _branch_off(self) -> None:
+        """Follow every half-branch of every crossing that nothing came along yet."""
+        number = 0
+        while number < len(self.crossings):
+            crossing = self.crossings[number]
+            for k, direction in enumerate(crossing.directions):
+                for sign in (1.0, -1.0):
+                    if (number, k, sign) in self._covered:
+                        continue
+                    other = crossing.directions[1 - k]
+                    beyond = _beyond(self.leads, crossing.v, sign * direction, other)
+                    self._covered.add((number, k, sign))
+                    if beyond is not None:
+                        self._explore(beyond, sign * direction)
+            number += 1
+
+    def _explore(self, seed: Array, heading: float | Array) -> int:
+        """Follow the curve through a seed both ways; the number of the arc."""
+        up, above = self._walk(seed, heading)
+        down, below = (None, None) if up.curve.end.closed else self._walk(seed, -heading)
+        ends = [c for c in (above, below) if c is not None]
+        return self._keep(up, down, seed, ends)
+
+    def _keep(self, up: Traced, down: Traced | None, seed: Array, ends: list[int]) -> int:
+        number = len(self.arcs)
+        reasons = [walk.curve.end for walk in (up, down) if walk is not None]
+        # the reason that leaves most open
+        reason = max(reasons, key=list(CircuitEnd).index)
+        arc = Arc(
+            up=up,
+            down=down,
+            end=reason,
+            crossings=tuple(ends),
+            branches=tuple(_branches(self.leads, up, down, self.fine)),
+        )
+        if _rests(self.leads, arc):
+            arc = replace(arc, end=CircuitEnd.INPUT_CONSTANT)
+        self.arcs.append(arc)
+        self._passed.append((seed, number))
+        for walk in arc.walks:
+            self._passed += [(v, number) for _, v in walk.curve.passes]
+        return number
+
+    def _walk(self, start: Array, heading: float | Array) -> tuple[Traced, int | None]:
+        """A walk and the number of the crossing it ends at, if it does."""
+        walk = traced(self.leads, start, heading, self.certify)
+        found = walk.curve.crossing
+        if found is None or not walk.curve.legs:
+            return walk, None
+        led, node = walk.curve.last
+        first = walk.curve.legs[-1].nodes[0]
+        side = math.copysign(1.0, node.t - first.t)
+        return walk, self._register(led, found, -side * led.whole(node.first))
+
+    def _register(self, led: Led, found: ChangePoint, came_from: Array) -> int:
+        v = led.whole(found.v)
+        directions = np.stack([led.whole(d) for d in found.directions])
+        number = next(
+            (k for k, known in enumerate(self.crossings) if same_position(self.leads, known.v, v)),
+            len(self.crossings),
+        )
+        if number == len(self.crossings):
+            p = self.leads.parameter
+            width = 0.5 * (found.bracket[1] - found.bracket[0])
+            self.crossings.append(
+                Crossing(
+                    v=v,
+                    directions=directions,
+                    bracket=(float(v[p]) - width, float(v[p]) + width),
+                    located=found.located,
+                )
+            )
+        scaled = came_from / self.leads.scale
+        scaled = scaled / np.linalg.norm(scaled)
+        best = max(
+            ((k, sign) for k in (0, 1) for sign in (1.0, -1.0)),
+            key=lambda which: (
+                which[1]
+                * float(
+                    scaled @ _unit(self.crossings[number].directions[which[0]] / self.leads.scale)
+                )
+            ),
+        )
+        self._covered.add((number, *best))
+        return number
+
+
+def _unit(direction: Array) -> Array:
+    unit: Array = direction / np.linalg.norm(direction)
+    return unit
+
+
+def _beyond(leads: Leads, v: Array, direction: Array, other: Array) -> Array | None:
+    """A position just beyond a crossing along a direction, told from the other curve."""
+    speed = np.abs(direction) / leads.scale
+    gap = min(float(np.abs((direction - sign * other) / leads.scale).max()) for sign in (1.0, -1.0))
+    leader = fastest_leader(leads, v, speed)
+    lead = int(np.argmax(speed)) if leader is None else leader[0].lead
+    led = leads.by(lead)
+    if led is None:
+        return None
+    for stride in _STRIDES:
+        guess = v + stride * direction
+        done = led.solver.solve(guess[led.order][None, :])
+        if done.status[0] != Status.CONVERGED.code:
+            continue
+        found = led.whole(done.v[0])
+        moving = speed > 0.0
+        off = float(np.abs((found - guess) / leads.scale)[moving].max())
+        if off <= _CLOSER * stride * gap and led.node(found).condition < _REGULAR:
+            return found
+    return None
+
+
+def _branches(leads: Leads, up: Traced, down: Traced | None, fine: int) -> list[CurveBranch]:
+    """The branches of an arc; the first one is joined from both walks."""
+    onward = branches_of(leads, up, fine) if up.curve.legs else []
+    back = branches_of(leads, down, fine) if down is not None and down.curve.legs else []
+    if not onward or not back:
+        return onward or back
+    first, first_back = onward[0], back[0]
+    best = first if first.ratio >= first_back.ratio else first_back
+    joined = replace(
+        first,
+        v=np.concatenate([first_back.v[:0:-1], first.v]),
+        begin=first_back.end,
+        anchor=best.anchor,
+        leader=best.leader,
+        ratio=best.ratio,
+        proved=first.proved and first_back.proved,
+    )
+    return [joined, *onward[1:], *back[1:]]
+
+
+def _lies_on(leads: Leads, branch: CurveBranch, seed: Array) -> bool:
+    """Whether a position is the one of a branch at the same value of the parameter.
+
+    The branch's samples are so dense that Newton's method from between two of them stays there.
+    """
+    own = leads.by(leads.parameter)
+    if own is None:
+        return False
+    for guess in positions_near(leads, branch, float(seed[leads.parameter])):
+        if np.abs(apart(leads, guess, seed) / leads.scale).max() > _NEAR:
+            continue
+        done = own.solver.solve(guess[own.order][None, :])
+        if done.status[0] != Status.CONVERGED.code:
+            continue
+        if same_position(leads, own.whole(done.v[0]), seed):
+            return True
+    return False
+
+
+def positions_near(leads: Leads, branch: CurveBranch, value: float) -> list[Array]:
+    """Interpolated positions (N,) of a branch at a value of the parameter, whole turns aside."""
+    p = leads.parameter
+    low, high = branch.range(p)
+    shifts = [0.0]
+    if leads.turns[p]:
+        turn = 2.0 * math.pi
+        first, last = math.ceil((low - value) / turn), math.floor((high - value) / turn)
+        shifts = [k * turn for k in range(first, last + 1)]
+    order = np.argsort(branch.v[:, p], kind="stable")
+    t = branch.v[order, p]
+    found = []
+    for shift in shifts:
+        here = value + shift
+        if low <= here <= high:
+            k = int(np.clip(np.searchsorted(t, here, side="right") - 1, 0, len(t) - 2))
+            width = t[k + 1] - t[k]
+            s = (here - t[k]) / width if width else 0.0
+            guess = (1.0 - s) * branch.v[order[k]] + s * branch.v[order[k + 1]]
+            guess[p] = here
+            found.append(guess)
+    return found
+
+
+def _rests(leads: Leads, arc: Arc) -> bool:
+    """Whether the parameter stands still all along."""
+    p = leads.parameter
+    values = [leg.v[:, p] for walk in arc.walks for leg in walk.curve.legs]
+    if not values:
+        return False
+    return bool(np.ptp(np.concatenate(values)) < _STILL * leads.scale[p])

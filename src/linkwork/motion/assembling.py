@@ -1,0 +1,383 @@
+"""All ways to put a mechanism together at given inputs, block by block, as arrays.
+
+Every block is solved once for each configuration of the blocks before it, so the configurations of
+the whole are counted like a product.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.equations.directions import DirectionForm, NoDirectionForm, direction_form
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, CountArray, IndexArray
+from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.status import Status
+from linkwork.kernels.loop_table import LoopTable
+from linkwork.motion.model import Model
+from linkwork.motion.turned_slides import TurnedSlide, turned_slides
+from linkwork.numerics.bilinear import Roots, proved_roots
+from linkwork.numerics.block_solver import Block, linearised
+from linkwork.numerics.generic_roots import isolated_roots
+from linkwork.numerics.newton import newton
+from linkwork.numerics.proof import Proof, prove_block, rounding_of_inputs
+from linkwork.numerics.quadratic_roots import quadratic_roots
+from linkwork.results.configurations import PathCount
+
+__all__ = ["Assemblies", "positions_at"]
+
+_LARGEST = 4096  # configurations of the whole that are listed
+_ALMOST_REAL = 1e-6  # an unproved root this near to its mirror image is tried as a real one,
+_ALMOST_DOUBLE = 1e-3  # and a multiple one
+_MOVED = 1e-5  # weighted: how far Newton's method may carry a root to its position,
+_MOVED_DOUBLE = 1e-2  # and a multiple one
+_CLOSED = 1e-12  # scaled residual at which a multiple root is a position
+_ROUND = 1e-9  # rad: angles are ordered from 0 to a full turn, this much below counts as 0
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Assemblies:
+    """All configurations at one input, internal units.
+
+    Parameters
+    ----------
+    v : (K, N)
+        Unknowns, then inputs.
+    proof : Proof
+        Of every position, for the rounding of its inputs.
+    iterations : (K,) int
+        Of Newton's method in angles and lengths, most of any block.
+    names : (K,) str
+        ``open``, ``open-crossed`` for several dyads, ``configuration 3`` otherwise.
+    completeness, message : Completeness, str
+    paths : one entry per solved block
+    """
+
+    v: Array
+    proof: Proof
+    iterations: CountArray
+    names: tuple[str, ...]
+    completeness: Completeness
+    message: str
+    paths: tuple[PathCount, ...]
+
+
+def positions_at(model: Model, inputs: Array) -> Assemblies:
+    """All real configurations of the whole mechanism at input values (p,), internal units.
+
+    Notes
+    -----
+    Angles are those within half a turn of the guess. Ordered by block in solving order; inside a
+    block ``open`` before ``crossed``, else by its unknowns in their order, angles from 0 to 2π.
+    """
+    return _Assembly(model, inputs).run()
+
+
+class _Assembly:
+    """Rows of partly solved positions, one block after the other."""
+
+    def __init__(self, model: Model, inputs: Array) -> None:
+        solver = model.compiled.solver
+        self.model, self.solver = model, solver
+        self.v = model.equations.start[None, :].copy()
+        self.v[:, solver.unknowns :] = inputs
+        each = np.zeros_like(self.v)
+        each[:, solver.unknowns :] = rounding_of_inputs(self.v, solver.unknowns)
+        nothing = np.zeros((1, 0))
+        self.proof = Proof(holds=np.ones(1, dtype=bool), exists=nothing, unique=nothing, each=each)
+        self.iterations = np.zeros(1, dtype=np.int64)
+        self.labels: list[tuple[str, ...]] = [()]
+        self.completeness = Completeness.PROVED
+        self.notes: list[str] = []
+        self.paths: list[PathCount] = []
+        self.slides = turned_slides(model)
+
+    def run(self) -> Assemblies:
+        """Solve every block for every row."""
+        for block in self.solver.blocks:
+            if not len(self.v):
+                break
+            try:
+                self._add(block)
+            except NoDirectionForm as reason:
+                self._give_up(f"the equations of {self._names(block)} {reason}")
+                break
+            if len(self.v) > _LARGEST:
+                self._give_up(f"there are more than {_LARGEST} of them")
+                break
+        notes = [self.completeness.value, *self.notes]
+        return Assemblies(
+            v=self.v,
+            proof=self.proof,
+            iterations=self.iterations,
+            names=tuple(_combined(labels, k + 1) for k, labels in enumerate(self.labels)),
+            completeness=self.completeness,
+            message="; ".join(notes),
+            paths=tuple(self.paths),
+        )
+
+    def _names(self, block: Block) -> str:
+        return ", ".join(self.model.equations.unknowns[int(k)].name for k in block.unknowns)
+
+    def _give_up(self, why: str) -> None:
+        self.completeness = Completeness.NOT_LISTED
+        self.notes = [why]
+        self.v, self.proof = self.v[:0], _rows_of(self.proof, np.zeros(0, dtype=np.intp))
+        self.iterations, self.labels = self.iterations[:0], []
+
+    def _add(self, block: Block) -> None:
+        table = block.system
+        if not isinstance(table, LoopTable):
+            raise NoDirectionForm("are not loops")
+        form = direction_form(table)
+        found = _block_configurations(self.model, block, form, self.v, self.proof.each)
+        self.completeness = self.completeness.and_then(found.completeness)
+        self.paths.append(replace(found.paths, unknowns=tuple(self._names(block).split(", "))))
+        v, rows = found.v, found.rows
+        keep = np.arange(len(v))
+        for slide in self.slides:
+            if slide.angle in block.unknowns:
+                v, keep = _folded(slide, v, rows, keep)
+                if len(keep) < len(rows):
+                    self.notes.append(self._fold_note(slide))
+        v, rows, double = v[keep], rows[keep], found.multiple[keep]
+        folded = any(slide.angle in block.unknowns for slide in self.slides)
+        part = linearised(block, v)
+        order, labels = _ordered(block, form, v, rows, part.sign, double, folded)
+        before = _rows_of(self.proof, rows)
+        radii = prove_block(block, part, v, before.each)
+        each = before.each
+        each[:, block.unknowns] = np.where(np.isfinite(radii.each), radii.each, 0.0)
+        proof = Proof(
+            holds=before.holds & radii.holds,
+            exists=np.concatenate([before.exists, radii.exists[:, None]], axis=1),
+            unique=np.concatenate([before.unique, radii.unique[:, None]], axis=1),
+            each=each,
+        )
+        self.v, self.proof = v[order], _rows_of(proof, np.array(order, dtype=np.intp))
+        self.iterations = np.maximum(self.iterations[rows], found.iterations[keep])[order]
+        self.labels = [(*self.labels[rows[k]], labels[k]) for k in order]
+
+    def _fold_note(self, slide: TurnedSlide) -> str:
+        unknowns = self.model.equations.unknowns
+        length, angle = unknowns[slide.lengths[0]].name, unknowns[slide.angle].name
+        return f"{length} and {angle} turned around, with {length} < 0, are the same assembly"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _BlockFound:
+    """A block's configurations: positions (R, N), the rows they belong to, which are multiple."""
+
+    v: Array
+    rows: IndexArray
+    multiple: BoolArray
+    iterations: CountArray
+    completeness: Completeness
+    paths: PathCount
+
+
+def _block_configurations(
+    model: Model, block: Block, form: DirectionForm, v: Array, each: Array
+) -> _BlockFound:
+    n = len(block.unknowns)
+    known, spread = v[:, block.variables[n:]], each[:, block.variables[n:]]
+    near = model.equations.start[block.unknowns]
+    count = PathCount(unknowns=(), solved=0)
+    grade = Completeness.PROVED
+    starts: list[Array] = []
+    rows: list[int] = []
+    multiple: list[bool] = []
+    left, off = (None, None) if not form.table.loops.rows else form.closures(known, spread)
+    for row in range(len(v)):
+        if left is None or off is None:  # angles that follow from others without a loop
+            x, double = np.zeros((1, 0), dtype=complex), np.zeros(1, dtype=bool)
+            count = count.plus(PathCount(unknowns=(), paths=0, finite=1, real=1, expected=1))
+        else:
+            solved = _solved(form, left[row], off[row])
+            grade = grade.and_then(solved.grade)
+            x, double = solved.x, solved.multiple
+            count = count.plus(solved.paths)
+        own = form.unknowns(x, np.repeat(known[row : row + 1], len(x), axis=0), near)
+        starts += list(own)
+        rows += [row] * len(x)
+        multiple += double.tolist()
+    place = np.array(rows, dtype=np.intp)
+    doubles = np.array(multiple, dtype=bool)
+    whole = v[place]
+    if not len(place):
+        return _BlockFound(
+            v=whole,
+            rows=place,
+            multiple=doubles,
+            iterations=np.zeros(0, dtype=np.int64),
+            completeness=grade,
+            paths=count,
+        )
+    whole[:, block.unknowns] = np.array(starts)
+    done = newton(block.system, whole[:, block.variables], model.compiled.solver.options)
+    weights = block.system.variable_scale[:n]
+    moved = np.abs(done.v[:, :n] - whole[:, block.unknowns]) / weights
+    far = moved.max(axis=1, initial=0.0)
+    size = 1.0 + np.abs(whole[:, block.unknowns] / weights * ~block.system.turns[:n]).max(axis=1)
+    good = (done.status == Status.CONVERGED.code) & (far <= _MOVED * size)
+    good |= doubles & (done.residual <= _CLOSED) & (far <= _MOVED_DOUBLE * size)
+    whole[:, block.unknowns] = done.v[:, :n]
+    lost = int((~good & ~doubles).sum())
+    if lost:
+        grade = grade.and_then(Completeness.NOT_PROVED)
+        count = replace(count, failed=count.failed + lost, real=count.real - lost)
+    return _BlockFound(
+        v=whole[good],
+        rows=place[good],
+        multiple=doubles[good],
+        iterations=done.iterations[good],
+        completeness=grade,
+        paths=count,
+    )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Solved:
+    """The real solutions of one system, (R, 2M), with what is known about completeness."""
+
+    x: ComplexArray
+    multiple: BoolArray
+    grade: Completeness
+    paths: PathCount
+
+
+def _solved(form: DirectionForm, left: ComplexArray, off: Array) -> _Solved:
+    system = form.system(left)
+    roots = quadratic_roots(system) if system.loops == 1 else isolated_roots(system)
+    proofs = proved_roots(system, roots.x, off)
+    m = system.size
+    real = proofs.real | (~proofs.holds & (_mirror_gap(roots.x, m) < _ALMOST_REAL))
+    undecided = not (proofs.holds & (proofs.real | proofs.unreal)).all()
+    unproved = real & ~proofs.holds
+    doubles = roots.multiple[_mirror_gap(roots.multiple, m) < _ALMOST_DOUBLE]
+    if roots.continuum:
+        grade = Completeness.CONTINUUM
+    elif roots.failed or roots.paths != len(roots.x) + roots.at_infinity + roots.singular:
+        grade = Completeness.NOT_PROVED
+    elif roots.singular or unproved.any():
+        grade = Completeness.MULTIPLE
+    elif len(roots.x) == system.bound and proofs.apart and not undecided:
+        grade = Completeness.PROVED
+    else:
+        grade = Completeness.WITH_PROBABILITY_ONE
+    x = np.concatenate([roots.x[real], doubles])
+    return _Solved(
+        x=x,
+        multiple=np.concatenate([unproved[real], np.ones(len(doubles), dtype=bool)]),
+        grade=grade,
+        paths=_count(roots, int(real.sum()) + len(doubles), system.bound),
+    )
+
+
+def _count(roots: Roots, real: int, bound: int) -> PathCount:
+    return PathCount(
+        unknowns=(),
+        paths=roots.paths,
+        finite=len(roots.x),
+        real=real,
+        at_infinity=roots.at_infinity,
+        multiple=roots.singular,
+        failed=roots.failed,
+        expected=roots.expected,
+        bound=bound,
+    )
+
+
+def _mirror_gap(x: ComplexArray, m: int) -> Array:
+    """How far solutions (R, 2M) are from their mirror images, relative to their size."""
+    gap = np.abs(x[:, :m] - x[:, m:].conj()).max(axis=1, initial=0.0)
+    relative: Array = gap / (1.0 + np.abs(x).max(axis=1, initial=0.0))
+    return relative
+
+
+def _rows_of(proof: Proof, rows: IndexArray) -> Proof:
+    """Some rows of a proof, copied."""
+    return Proof(
+        holds=proof.holds[rows],
+        exists=proof.exists[rows],
+        unique=proof.unique[rows],
+        each=proof.each[rows],
+    )
+
+
+def _folded(
+    slide: TurnedSlide, v: Array, rows: IndexArray, keep: IndexArray
+) -> tuple[Array, IndexArray]:
+    """Positions with a negative length turned around; the first of each pair that then agrees."""
+    v = v.copy()
+    negative = v[:, slide.lengths[0]] < 0.0
+    v[np.ix_(negative, slide.lengths)] *= -1.0
+    v[negative, slide.angle] += np.where(v[negative, slide.angle] > 0.0, -np.pi, np.pi)
+    size = np.maximum(np.abs(v).max(axis=0), 1.0)
+    stay: list[int] = []
+    for k in keep.tolist():
+        gap = [np.abs(v[k] - v[other]) for other in stay if rows[other] == rows[k]]
+        turned = [np.minimum(g, np.abs(g - 2.0 * np.pi)) for g in gap]
+        if not any(bool((g <= 1e-7 * size).all()) for g in turned):
+            stay.append(k)
+    return v, np.array(stay, dtype=np.intp)
+
+
+def _ordered(
+    block: Block,
+    form: DirectionForm,
+    v: Array,
+    rows: IndexArray,
+    sign: Array,
+    double: BoolArray,
+    folded: bool,
+) -> tuple[list[int], dict[int, str]]:
+    """The documented order of a block's configurations, and what each is called."""
+    dyad = form.table.loops.rows == 1
+    single = len(form.turning) == 0 or form.rows.shape[1] == 0 or (dyad and folded)
+    turns = block.system.turns[: len(block.unknowns)]
+    keys: list[tuple[float, ...]] = []
+    names = []
+    for k in range(len(v)):
+        own = v[k, block.unknowns]
+        angle = np.mod(own + _ROUND, 2.0 * np.pi)
+        values = np.round(np.where(turns, angle, own) / _ROUND).tolist()
+        name = "" if single else "number"
+        rank = 0.0
+        if dyad and not single:
+            name = "double" if double[k] else "open" if _is_open(form, sign[k]) else "crossed"
+            rank = float(("open", "crossed", "double").index(name))
+        names.append(name)
+        keys.append((float(rows[k]), rank, *values))
+    order = sorted(range(len(v)), key=keys.__getitem__)
+    labels: dict[int, str] = {}
+    number = {int(row): 0 for row in rows}
+    for k in order:
+        number[int(rows[k])] += 1
+        labels[k] = str(number[int(rows[k])]) if names[k] == "number" else names[k]
+    return order, labels
+
+
+def _is_open(form: DirectionForm, sign: float) -> bool:
+    """Which of two configurations of a dyad is called open; ``sign`` is that of det J.
+
+    Two links: the turn from the first one to the second, head to tail, is clockwise. A link and a
+    length along a known direction: the link points towards larger lengths. A length along the
+    turning link: the side of larger lengths.
+    """
+    length_first = len(form.sliding) > 0 and form.sliding[0] < form.turning[0]
+    turned = -sign if length_first else sign
+    if len(form.sliding) and form.along[0] < 0:
+        return turned > 0
+    return turned < 0
+
+
+def _combined(labels: tuple[str, ...], number: int) -> str:
+    """The name of a configuration: ``open``, ``open-crossed``, ``configuration 3``."""
+    parts = [label for label in labels if label]
+    if not parts:
+        return f"configuration {number}"
+    if len(parts) == 1 and parts[0].isdigit():
+        return f"configuration {parts[0]}"
+    return "-".join(parts)

@@ -1,0 +1,235 @@
+"""The rows of a table that lie on one branch: followed, solved, proved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.certification import Certification
+from linkwork.foundation.status import Status
+from linkwork.motion.limits import BranchEnd, ends_of
+from linkwork.motion.model import Model
+from linkwork.motion.proving import RowProofs, prove_rows
+from linkwork.motion.rows import SolvedRows
+from linkwork.motion.tracking import leading_scale, track_to, turns_freely
+from linkwork.numerics.track import (
+    BOLD,
+    InputPath,
+    Node,
+    Rows,
+    Track,
+    TrackOptions,
+    follow,
+    joined_rows,
+    rows_on_track,
+)
+
+__all__ = ["Asked", "BranchRows", "Report", "rows_of_branch"]
+
+_CHUNK = 4096  # rows solved together: large enough to amortise NumPy calls, small enough for cache
+_FULL_TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Asked:
+    """Rows that are asked for: values ``t`` (B,) of the path, the inputs in internal units (B, p)
+    and as they are named (B, p).
+    """
+
+    t: Array
+    inputs: Array
+    everyday: Array
+
+    def take(self, where: IndexArray) -> Asked:
+        """Some of them."""
+        return Asked(t=self.t[where], inputs=self.inputs[where], everyday=self.everyday[where])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BranchRows:
+    """The rows asked for, those that lie on the branch filled; the branch's track and its ends."""
+
+    rows: SolvedRows
+    track: Track
+    placed: Array
+    ends: tuple[BranchEnd, ...]
+    proved_to_ends: bool
+
+    @property
+    def here(self) -> BoolArray:
+        """Which rows lie on the branch, (B,)."""
+        return ~np.isnan(self.placed)
+
+
+class Report:
+    """Progress as a fraction: tracking, rows and proofs take about a third each."""
+
+    def __init__(
+        self, progress: Callable[[float], None] | None, start: float, low: float, high: float
+    ) -> None:
+        self.progress = progress
+        self.start = start
+        self.span = max(high, start) - min(low, start) or 1.0
+
+    def tracked(self, t: float) -> None:
+        """A step of the track has arrived at t."""
+        if self.progress is not None:
+            self.progress(min(1.0, abs(t - self.start) / self.span) / 3.0)
+
+    def solved(self, fraction: float) -> None:
+        """A fraction of the rows is done."""
+        if self.progress is not None:
+            self.progress((1.0 + fraction) / 3.0)
+
+    def proved(self, fraction: float) -> None:
+        """A fraction of the rows is proved."""
+        if self.progress is not None:
+            self.progress((2.0 + fraction) / 3.0)
+
+
+def rows_of_branch(
+    model: Model,
+    path: InputPath,
+    lead: int,
+    anchor: Node,
+    asked: Asked,
+    report: Report,
+    certify: bool,
+) -> BranchRows:
+    """Follow the branch of ``anchor`` over the values asked for and solve those that lie on it.
+
+    The track is bold first; where that leaves rows unproved it is followed again with care.
+    """
+    scale = leading_scale(model, lead)
+    free = turns_freely(model)
+    provable = all(block.system.bends_boundedly for block in model.compiled.solver.blocks)
+    tries = (BOLD, None) if certify and provable else (None,)
+    for care in tries:
+        track = _covering(model, path, anchor, asked.t, scale, report, care)
+        placed = _placed(track, asked.t, free)
+        rows, to_ends = _solved(model, path, track, placed, asked, scale, report, certify)
+        if care is None or not _doubtful(rows, placed, to_ends):
+            break
+    ends = ends_of(model, path, track, lead, certify)
+    if not to_ends:
+        ends = tuple(_not_joined(end) for end in ends)
+    _mark_missing(rows, track, asked.t, np.isnan(placed), ends)
+    return BranchRows(rows=rows, track=track, placed=placed, ends=ends, proved_to_ends=to_ends)
+
+
+def _not_joined(end: BranchEnd) -> BranchEnd:
+    if end.certification is not Certification.CERTIFIED:
+        return end
+    return replace(end, certification=Certification.MOTION_NOT_PROVED)
+
+
+def _doubtful(rows: SolvedRows, placed: Array, to_ends: bool) -> bool:
+    """Whether a bold track left rows that are on it unproved."""
+    there = ~np.isnan(placed)
+    unproved_rows = rows.certification[there] != Certification.CERTIFIED.code
+    return bool(unproved_rows.any()) or not to_ends
+
+
+def _covering(
+    model: Model,
+    path: InputPath,
+    anchor: Node,
+    t: Array,
+    scale: float,
+    report: Report,
+    care: TrackOptions | None,
+) -> Track:
+    """A track over the table's range, wound on the other way where a limit cuts it short."""
+    solver = model.compiled.solver
+    low, high = float(t.min()), float(t.max())
+    track = track_to(solver, path, anchor, [low, high], scale, report.tracked, care)
+    if not turns_freely(model):
+        return track
+    # the other way around, from where the track stands there already
+    if track.above is not None and track.below is None:
+        beyond = t[t > track.last_t]
+        if len(beyond):
+            goal = float(beyond.min()) - _FULL_TURN
+            nodes, end = follow(solver, path, track.nodes[0], goal, scale, care)
+            return replace(
+                track,
+                nodes=(*reversed(nodes), *track.nodes),
+                start=len(nodes) + track.start,
+                below=end,
+            )
+    if track.below is not None and track.above is None:
+        beyond = t[t < track.first_t]
+        if len(beyond):
+            goal = float(beyond.max()) + _FULL_TURN
+            nodes, end = follow(solver, path, track.nodes[-1], goal, scale, care)
+            return replace(track, nodes=(*track.nodes, *nodes), above=end)
+    return track
+
+
+def _placed(track: Track, t: Array, free: bool) -> Array:
+    """Where on the track each row lies, whole turns apart if need be; NaN if nowhere."""
+    placed = np.where((t >= track.first_t) & (t <= track.last_t), t, np.nan)
+    if not free:
+        return placed
+    for turns in (-1, 1, -2, 2):
+        moved = t + turns * _FULL_TURN
+        inside = np.isnan(placed) & (moved >= track.first_t) & (moved <= track.last_t)
+        placed[inside] = moved[inside]
+    return placed
+
+
+def _solved(
+    model: Model,
+    path: InputPath,
+    track: Track,
+    placed: Array,
+    asked: Asked,
+    scale: float,
+    report: Report,
+    certify: bool,
+) -> tuple[SolvedRows, bool]:
+    """All rows that lie on the track, and whether the track is proved up to its ends."""
+    solver = model.compiled.solver
+    found = SolvedRows.blank(asked.everyday, solver.variables, Status.CONVERGED)
+    if not certify:
+        found.certification[:] = Certification.NOT_ASKED.code
+    there = np.flatnonzero(~np.isnan(placed))
+    there = there[np.argsort(placed[there], kind="stable")]
+    pieces: list[Rows] = []
+    for begin in range(0, len(there), _CHUNK):
+        chunk = there[begin : begin + _CHUNK]
+        rows = rows_on_track(solver, path, track, placed[chunk], scale)
+        pieces.append(rows)
+        found.v[chunk], found.first[chunk] = rows.v, rows.rates.first
+        found.second[chunk] = rows.rates.second
+        found.status[chunk], found.iterations[chunk] = rows.status, rows.iterations
+        found.residual[chunk], found.condition[chunk] = rows.residual, rows.rates.condition
+        report.solved((begin + len(chunk)) / len(there))
+    if not (certify and pieces):
+        return found, certify
+    proofs: RowProofs = prove_rows(
+        solver,
+        path,
+        track,
+        placed[there],
+        joined_rows(pieces),
+        asked.inputs[there],
+        report.proved,
+    )
+    found.prove(there, proofs)
+    return found, proofs.up_to_ends
+
+
+def _mark_missing(
+    rows: SolvedRows, track: Track, t: Array, missing: BoolArray, ends: tuple[BranchEnd, ...]
+) -> None:
+    """Rows that are nowhere on the track say what was met on the straight way to them."""
+    if not ends:
+        return
+    lower = ends[0] if track.below is not None else ends[-1]
+    upper = ends[-1] if track.above is not None else ends[0]
+    rows.status[missing & (t < track.first_t)] = lower.limit.status.code
+    rows.status[missing & (t > track.last_t)] = upper.limit.status.code

@@ -1,0 +1,350 @@
+"""All circuits of a mechanism, seeded from its configurations at many inputs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.equations.leading import LeadTable
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.certification import Certification
+from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.status import Status
+from linkwork.motion.arcs import Arc, Explorer, positions_near
+from linkwork.motion.assembling import positions_at
+from linkwork.motion.branches import CurveBranch
+from linkwork.motion.limits import change_point_limit, dead_point_limit
+from linkwork.motion.lock_step import lock_step
+from linkwork.motion.model import Model
+from linkwork.motion.motion_of_rows import motion_of_rows
+from linkwork.motion.rows import SolvedRows
+from linkwork.motion.start import first_position
+from linkwork.motion.tracking import turns_freely
+from linkwork.numerics.change_point import Crossing
+from linkwork.numerics.curve import same_position
+from linkwork.numerics.newton import NewtonOptions
+from linkwork.numerics.track import InputPath
+from linkwork.results.circuits import Branch, Circuit, Circuits
+from linkwork.results.motion import Motion
+
+__all__ = ["branch_start", "circuits", "is_branch_name"]
+
+_FULL_TURN = 2.0 * np.pi
+_LOOKED_AT = 24  # input values at which all configurations are listed
+_FINE = 8  # positions kept per step of a curve
+_REGULAR = 1e5  # condition up to which a configuration can begin a curve
+
+
+def circuits(
+    model: Model,
+    *,
+    certify: bool = True,
+    progress: Callable[[float], None] | None = None,
+) -> Circuits:
+    """Every circuit that comes by one of many inputs, as a proved curve, with its branches.
+
+    All configurations at the guess's own input and at further ones are listed; through each that
+    lies on no circuit yet the curve of positions is followed in both directions, through dead
+    points, and at change points into every branch.
+
+    Raises
+    ------
+    InputError
+        If the mechanism has no input.
+    """
+    work = _Circuits(model, certify)
+    work.look(progress)
+    return work.result()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Group:
+    """Arcs that change points join."""
+
+    arcs: tuple[Arc, ...]
+    crossings: tuple[Crossing, ...]
+
+
+class _Circuits:
+    def __init__(self, model: Model, certify: bool) -> None:
+        rows = model.rows
+        self.model, self.certify = model, certify
+        self.lead, rate = lock_step(rows)
+        own = model.start_inputs
+        self.path = InputPath(origin=own - rate * own[self.lead], rate=rate)
+        self.leads = LeadTable(model.compiled.table, self.path, self.lead)
+        self.explorer = Explorer(self.leads, certify, _FINE)
+        self.names: list[tuple[Array, str]] = []
+        self.grade = Completeness.PROVED
+        self.seeded = 0
+
+    def look(self, progress: Callable[[float], None] | None) -> None:
+        """Seed with the guess, the configurations at its input, and those at further inputs."""
+        model = self.model
+        start = first_position(model, model.start_inputs, NewtonOptions())
+        if start.status.ok and self._regular(start.v):
+            self.explorer.visit(start.v)
+        values = [float(model.start_inputs[self.lead]), *self._further_inputs()]
+        for k, value in enumerate(values):
+            found = positions_at(model, self.path.at(value))
+            self.grade = self.grade.and_then(found.completeness)
+            if found.completeness is Completeness.NOT_LISTED:
+                break
+            if k == 0:
+                self.names = list(zip(found.v, found.names, strict=True))
+            for v in found.v:
+                if self._regular(v):
+                    self.explorer.visit(v)
+            self.seeded += 1
+            if progress is not None:
+                progress((k + 1) / len(values))
+
+    def _regular(self, v: Array) -> bool:
+        """Whether the input can lead at a position: not at dead points and change points."""
+        own = self.leads.by(self.leads.parameter)
+        return own is not None and own.node(v).condition < _REGULAR
+
+    def _further_inputs(self) -> list[float]:
+        """Equally spaced over a turn, or over the input's table."""
+        start = float(self.model.start_inputs[self.lead])
+        if turns_freely(self.model):
+            return [start + k * _FULL_TURN / _LOOKED_AT for k in range(1, _LOOKED_AT)]
+        t = self.model.rows[:, self.lead]
+        low, high = float(min(t.min(), start)), float(max(t.max(), start))
+        # off the round numbers at which a table begins and ends
+        return [low + (high - low) * (k + 0.5) / _LOOKED_AT for k in range(_LOOKED_AT)]
+
+    def result(self) -> Circuits:
+        """Circuits in the order found: that of the guess first."""
+        found = [
+            self._circuit(f"circuit {number}", group)
+            for number, group in enumerate(self._groups(), start=1)
+        ]
+        name = self.model.equations.inputs[self.lead].name
+        grade, message = self._completeness()
+        return Circuits(
+            mechanism=self.model.description.name,
+            circuits=tuple(found),
+            completeness=grade,
+            message=message,
+            input=name,
+            input_unit=self.model.input_units[name],
+            seeded=self.seeded,
+        )
+
+    def _completeness(self) -> tuple[Completeness, str]:
+        if self.grade is Completeness.NOT_LISTED:
+            return self.grade, (
+                "only the circuit of the guess: the configurations of these equations cannot be "
+                "listed"
+            )
+        what = "every circuit that comes by one of"
+        if not self.grade.complete:
+            what = "the circuits found at"
+        return Completeness.NOT_PROVED, (
+            f"{what} {self.seeded} input values looked at; one that lies between two of them "
+            "would be missing"
+        )
+
+    def _groups(self) -> list[_Group]:
+        """Arcs joined by the change points they share, in the order found."""
+        arcs, crossings = self.explorer.arcs, self.explorer.crossings
+        owner = list(range(len(arcs)))
+
+        def root(k: int) -> int:
+            while owner[k] != k:
+                k = owner[k]
+            return k
+
+        first: dict[int, int] = {}
+        for k, arc in enumerate(arcs):
+            for crossing in arc.crossings:
+                other = first.setdefault(crossing, k)
+                a, b = sorted((root(k), root(other)))
+                owner[b] = a
+        groups: dict[int, list[int]] = {}
+        for k in range(len(arcs)):
+            groups.setdefault(root(k), []).append(k)
+        return [
+            _Group(
+                arcs=tuple(arcs[k] for k in members),
+                crossings=tuple(
+                    crossings[c] for c in sorted({c for k in members for c in arcs[k].crossings})
+                ),
+            )
+            for members in groups.values()
+        ]
+
+    def _circuit(self, name: str, group: _Group) -> Circuit:
+        model, p = self.model, self.leads.parameter
+        scale = float(model.input_scale[self.lead])
+        pieces = [(arc, branch) for arc in group.arcs for branch in arc.branches]
+        branches = tuple(
+            self._branch(f"{name} branch {number}", arc, branch)
+            for number, (arc, branch) in enumerate(pieces, start=1)
+        )
+        ranges = np.array([branch.range(p) for _, branch in pieces]) / scale
+        turns = [turn for arc in group.arcs for walk in arc.walks for turn in walk.turns]
+        end = _end_of(group)
+        motion = self._motion([branch for _, branch in pieces], branches)
+        singular, weakest = self._weakest([branch for _, branch in pieces])
+        if turns or group.crossings:
+            singular = 0.0
+            weakest = float((turns[0].t if turns else group.crossings[0].v[p]) / scale)
+        around = self._around(group) if end.closed else None
+        return Circuit(
+            name=name,
+            end=end,
+            certified=all(arc.certified for arc in group.arcs),
+            input_range=(float(ranges[:, 0].min()), float(ranges[:, 1].max())),
+            turns=self._turns(around),
+            turning={} if around is None else self._turning(around),
+            branches=branches,
+            dead_points=tuple(dead_point_limit(model, turn, self.lead) for turn in turns),
+            change_points=tuple(
+                change_point_limit(model, self.leads, crossing, self.lead)
+                for crossing in group.crossings
+            ),
+            smallest_singular_value=singular,
+            weakest=weakest,
+            motion=motion,
+        )
+
+    def _branch(self, name: str, arc: Arc, branch: CurveBranch) -> Branch:
+        low, high = branch.range(self.leads.parameter)
+        scale = float(self.model.input_scale[self.lead])
+        return Branch(
+            name=name,
+            input_range=(low / scale, high / scale),
+            configuration=self._configuration_on(branch),
+            certified=arc.certified,
+        )
+
+    def _configuration_on(self, branch: CurveBranch) -> str:
+        """The first of the configurations at the guess's input that lies on a branch."""
+        value = float(self.model.start_inputs[self.lead])
+        for here in self._solved(branch, value):
+            for v, name in self.names:
+                if same_position(self.leads, here, v):
+                    return name
+        return ""
+
+    def _solved(self, branch: CurveBranch, value: float) -> list[Array]:
+        """The positions of a branch at a value of the parameter, whole turns aside."""
+        own = self.leads.by(self.leads.parameter)
+        found = []
+        for guess in positions_near(self.leads, branch, value):
+            if own is not None:
+                done = own.solver.solve(guess[own.order][None, :])
+                if done.status[0] == Status.CONVERGED.code:
+                    found.append(own.whole(done.v[0]))
+        return found
+
+    def _around(self, group: _Group) -> Array:
+        legs = group.arcs[0].up.curve.legs
+        change: Array = legs[-1].v[-1] - legs[0].v[0]
+        return change
+
+    def _turns(self, around: Array | None) -> int | None:
+        p = self.leads.parameter
+        if around is None or not self.leads.turns[p]:
+            return None
+        return abs(round(float(around[p]) / _FULL_TURN))
+
+    def _turning(self, around: Array) -> dict[str, int]:
+        """Whole turns of the links, for one turn of the input in its positive direction."""
+        equations = self.model.equations
+        sign = -1.0 if around[self.leads.parameter] < 0.0 else 1.0
+        number = {v.symbol: k for k, v in enumerate(equations.variables)}
+        angles = {v.name: k for k, v in enumerate(equations.variables) if v.kind == "angle"}
+        links = {
+            link: number[angle.variable]
+            for link, angle in equations.links.items()
+            if angle.variable is not None
+        }
+        return {
+            name: round(sign * float(around[k]) / _FULL_TURN)
+            for name, k in (links or angles).items()
+        }
+
+    def _weakest(self, pieces: Sequence[CurveBranch]) -> tuple[float, float]:
+        """The smallest singular value of the weighted Jacobian, and the input there."""
+        v = np.concatenate([branch.v for branch in pieces])
+        values = np.linalg.svd(self.leads.jacobian(v), compute_uv=False)[:, -1]
+        k = int(np.argmin(values))
+        scale = float(self.model.input_scale[self.lead])
+        return float(values[k]), float(v[k, self.leads.parameter] / scale)
+
+    def _motion(self, pieces: Sequence[CurveBranch], names: Sequence[Branch]) -> Motion:
+        model, solver = self.model, self.model.compiled.solver
+        v = np.concatenate([branch.v for branch in pieces])
+        inputs = v[:, solver.unknowns :] / model.input_scale
+        rows = SolvedRows.blank(inputs, solver.variables, Status.CONVERGED)
+        rates = solver.rates(v, self.path.rate)
+        rows.v[:] = v
+        regular = rates.condition < _REGULAR
+        rows.first[regular], rows.second[regular] = rates.first[regular], rates.second[regular]
+        rows.residual[:], rows.condition[:] = solver.residual(v), rates.condition
+        begin = 0
+        for branch, named in zip(pieces, names, strict=True):
+            here = slice(begin, begin + len(branch.v))
+            begin += len(branch.v)
+            rows.branch[here] = named.name
+            code = Certification.CERTIFIED if named.certified else Certification.MOTION_NOT_PROVED
+            rows.certification[here] = (code if self.certify else Certification.NOT_ASKED).code
+        return motion_of_rows(model, rows, "", added=np.zeros(len(v), dtype=bool), circuit=None)
+
+
+def _end_of(group: _Group) -> CircuitEnd:
+    """Of all arcs that which leaves most open; change points where arcs only meet others."""
+    ends = [arc.end for arc in group.arcs]
+    if group.crossings and all(
+        end in (CircuitEnd.CLOSED, CircuitEnd.CHANGE_POINT, CircuitEnd.INPUT_CONSTANT)
+        for end in ends
+    ):
+        return CircuitEnd.CHANGE_POINT
+    return max(ends, key=list(CircuitEnd).index)
+
+
+def is_branch_name(name: str) -> bool:
+    """Whether a name is one of a circuit or of a branch."""
+    return re.fullmatch(r"circuit \d+( branch \d+)?", name) is not None
+
+
+def branch_start(model: Model, name: str) -> Model:
+    """The model with a position on a named circuit or branch as its guess.
+
+    At the guess's own input value if the branch comes by there, else where the input leads best.
+
+    Raises
+    ------
+    UnknownNameError
+        With the names that exist.
+    """
+    work = _Circuits(model, False)
+    work.look(None)
+    known: dict[str, CurveBranch] = {}
+    for number, group in enumerate(work._groups(), start=1):
+        pieces = [branch for arc in group.arcs for branch in arc.branches]
+        known[f"circuit {number}"] = pieces[0]
+        for k, branch in enumerate(pieces, start=1):
+            known[f"circuit {number} branch {k}"] = branch
+    if name not in known:
+        names = [key for key in known if "branch" in key]
+        raise UnknownNameError(
+            f'there is no "{name}" of {model.description.name} {choices("branches", names, name)}'
+        )
+    branch = known[name]
+    here = work._solved(branch, float(model.start_inputs[work.lead]))
+    if not here and branch.ratio == 0.0:
+        raise InputError(f'the input stands still on "{name}", so no motion can start there')
+    start = here[0] if here else branch.anchor
+    equations = replace(model.equations, start=start)
+    return replace(
+        model, equations=equations, branch=name if "branch" in name else f"{name} branch 1"
+    )

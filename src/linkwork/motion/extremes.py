@@ -1,0 +1,133 @@
+"""Limits of an output: positions at which a chosen quantity stands still while the input moves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import UnknownNameError, choices
+from linkwork.foundation.names import canonical
+from linkwork.foundation.status import Status
+from linkwork.motion.model import Model
+from linkwork.motion.reading import Named, named_series
+from linkwork.numerics.track import InputPath, Track, rows_on_track
+from linkwork.results.motion import OutputLimit, Series
+
+__all__ = ["check_quantities", "output_limits"]
+
+_UNIT = np.finfo(float).eps
+
+
+def check_quantities(model: Model, names: Sequence[str]) -> None:
+    """Whether all names can be read from a position.
+
+    Raises
+    ------
+    UnknownNameError
+        With the names that exist.
+    """
+    if names:
+        blank = np.full((1, model.compiled.solver.variables), np.nan)
+        inputs = np.full((1, len(model.equations.inputs)), np.nan)
+        named = named_series(model, blank, blank, blank, inputs, np.zeros(1, dtype=bool))
+        for name in names:
+            _series(named, name)
+
+
+def _series(named: Named, name: str) -> Series:
+    for table in (named.unknowns, named.links, named.sliders, named.outputs):
+        for known, series in table.items():
+            if canonical(known) == canonical(name):
+                return series
+    point, _, axis = name.rpartition(".")
+    if point in named.points and axis in ("x", "y"):
+        return named.points[point][axis == "y"]
+    tables = (named.unknowns, named.links, named.sliders, named.outputs)
+    known_names = dict.fromkeys(known for table in tables for known in table)
+    raise UnknownNameError(f'there is no "{name}" {choices("names", known_names, name)}')
+
+
+def output_limits(
+    model: Model,
+    path: InputPath,
+    track: Track,
+    window: tuple[float, float],
+    lead: int,
+    scale: float,
+    name: str,
+) -> list[tuple[float, OutputLimit]]:
+    """Where a quantity is largest or smallest along a track, between two values of t.
+
+    The quantity's derivative changes sign between two nodes; Newton-Raphson on it, kept inside the
+    sign change, finds the place.
+
+    Returns
+    -------
+    list of (t, limit)
+    """
+    nodes = [node for node in track.nodes if window[0] <= node.t <= window[1]]
+    edges = [t for t in window if track.first_t <= t <= track.last_t]
+    t = np.unique([*(node.t for node in nodes), *edges])
+    # between the nodes of a bold track a quantity may turn twice
+    t = np.unique(np.concatenate([t, *(t[:-1] + s * np.diff(t) for s in (0.25, 0.5, 0.75))]))
+    if len(t) < 2:
+        return []
+    search = _Search(model, path, track, scale, name)
+    rate = search.at(t)[1]
+    found = []
+    for k in np.flatnonzero(rate[:-1] * rate[1:] < 0.0):
+        here, error = search.between(float(t[k]), float(t[k + 1]), float(rate[k]))
+        value, _, second = (float(part[0]) for part in search.at(np.array([here])))
+        unit = model.input_scale[lead]
+        limit = OutputLimit(
+            name=name,
+            kind="maximum" if second < 0.0 else "minimum",
+            input=float(here / unit),
+            value=value,
+            bracket=(float((here - error) / unit), float((here + error) / unit)),
+            located=bool(error <= 1e-9 * max(1.0, abs(here))),
+        )
+        found.append((here, limit))
+    return found
+
+
+class _Search:
+    """A quantity along a track: value, first and second derivative by the leading input."""
+
+    def __init__(
+        self, model: Model, path: InputPath, track: Track, scale: float, name: str
+    ) -> None:
+        self.model, self.path, self.track = model, path, track
+        self.scale, self.name = scale, name
+
+    def at(self, t: Array) -> tuple[Array, Array, Array]:
+        """At the values t (B,)."""
+        rows = rows_on_track(self.model.compiled.solver, self.path, self.track, t, self.scale)
+        inputs = np.zeros((len(t), len(self.model.equations.inputs)))
+        good = rows.status == Status.CONVERGED.code
+        named = named_series(self.model, rows.v, rows.rates.first, rows.rates.second, inputs, good)
+        series = _series(named, self.name)
+        return series.value, series.first, series.second
+
+    def between(self, low: float, high: float, rate: float) -> tuple[float, float]:
+        """Where the derivative is zero, and the last change of t."""
+        here, error = 0.5 * (low + high), high - low
+        for _ in range(60):
+            _, first, second = (float(part[0]) for part in self.at(np.array([here])))
+            if first == 0.0 or not np.isfinite(first):
+                break
+            if first * rate > 0.0:
+                low = here
+            else:
+                high = here
+            following = here - first / second if second else np.inf
+            if not low < following < high:
+                following = 0.5 * (low + high)
+            last, error = error, abs(following - here)
+            here = following
+            tiny = 4.0 * _UNIT * max(1.0, abs(here))
+            if error <= tiny or (error >= last and last < 1e-10):
+                break
+        return here, max(error, 4.0 * _UNIT * max(1.0, abs(here)))

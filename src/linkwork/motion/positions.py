@@ -1,0 +1,117 @@
+"""Rows of a solved batch as positions with their evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.status import Status
+from linkwork.motion.lock_step import lock_step
+from linkwork.motion.model import Model
+from linkwork.motion.reading import Named
+from linkwork.results.failure import Failure
+from linkwork.results.motion import Series
+from linkwork.results.position import Certificate, NewtonTrail, Position
+
+__all__ = ["Evidence", "found_message", "input_rate", "position_of", "target_values"]
+
+_HOPELESS = 1e12  # condition beyond which derivatives mean nothing
+_SINGULAR = (
+    "position found, at a dead point or change point: there its derivatives do not exist, "
+    "and a motion cannot start"
+)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Evidence:
+    """How a position was found, or why not."""
+
+    status: Status
+    message: str
+    residual: float
+    iterations: int
+    condition: float
+    certificate: Certificate
+    trails: tuple[NewtonTrail, ...] = ()
+    configuration: str = ""
+    failure: Failure | None = None
+
+
+def found_message(status: Status, condition: float, failure: Failure | None = None) -> str:
+    """The sentence for a status or its explanation; a position too near to singular says so."""
+    if status.ok and condition > _HOPELESS:
+        return _SINGULAR
+    return status.value if failure is None else failure.message
+
+
+def target_values(model: Model, at: float | Mapping[str, float] | None) -> Array:
+    """The input values asked for, everyday units, (p,); the guess's own for ``None``.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        For input values that do not fit the mechanism.
+    """
+    if at is None:
+        return model.everyday_start
+    if not isinstance(at, Mapping):
+        inputs = model.equations.inputs
+        at = {inputs[0].name: float(at)} if len(inputs) == 1 else {"": float(at)}
+    return model.input_values(dict(at))
+
+
+def input_rate(model: Model) -> Array:
+    """How all inputs move by the leading one, (p,)."""
+    rows = model.rows if model.description.inputs else np.zeros((1, 0))
+    return lock_step(rows)[1]
+
+
+def position_of(model: Model, named: Named, row: int, evidence: Evidence, q: Array) -> Position:
+    """One row of named quantities as a position; ``q`` (n,) in internal units."""
+    everything: dict[str, Series] = {
+        **named.unknowns,
+        **named.links,
+        **named.sliders,
+        **named.outputs,
+        **{s.quantity.name: s for pair in named.points.values() for s in pair},
+    }
+    first = {name: float(s.first[row]) for name, s in everything.items()}
+    second = {name: float(s.second[row]) for name, s in everything.items()}
+    speed = model.speed
+    return Position(
+        mechanism=model.description.name,
+        units=model.units,
+        skeleton=model.skeleton,
+        status=evidence.status,
+        message=evidence.message,
+        input={name: float(value[row]) for name, value in named.inputs.items()},
+        input_units=model.input_units,
+        derivative_unit=model.derivative_unit,
+        unknowns=_values(named.unknowns, row),
+        links=_values(named.links, row),
+        sliders=_values(named.sliders, row),
+        points={
+            name: (float(x.value[row]), float(y.value[row]))
+            for name, (x, y) in named.points.items()
+        },
+        outputs=_values(named.outputs, row),
+        first=first,
+        second=second,
+        velocity={} if speed is None else {n: d * speed for n, d in first.items()},
+        acceleration={} if speed is None else {n: d * speed**2 for n, d in second.items()},
+        residual=evidence.residual,
+        iterations=evidence.iterations,
+        condition=evidence.condition,
+        certificate=evidence.certificate,
+        configuration=evidence.configuration,
+        q=q,
+        steps=evidence.trails,
+        failure=evidence.failure,
+    )
+
+
+def _values(table: Mapping[str, Series], row: int) -> dict[str, float]:
+    return {name: float(series.value[row]) for name, series in table.items()}

@@ -1,0 +1,179 @@
+"""Dead points: where the parameter of a curve of positions turns back, to machine precision.
+
+With a fast unknown in the lead the dead point is an ordinary position at which the parameter's rate
+is zero, so Newton-Raphson on that rate finds it, and the branch through it can be proved.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.status import Status
+from linkwork.numerics.curve import (
+    Curve,
+    CurveOptions,
+    Leads,
+    Led,
+    Leg,
+    fastest_leader,
+    hermite,
+)
+from linkwork.numerics.track import Node, follow, node_at
+
+__all__ = ["TurningPoint", "turn_beyond", "turning_points"]
+
+_CONVERGED = Status.CONVERGED.code
+_UNIT = np.finfo(float).eps
+_RESTING = 1e-7  # weighted rate below which, from node to node, the parameter does not move at all
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TurningPoint:
+    """Where the parameter turns back on a curve: a dead point.
+
+    ``v`` (N,) the position; ``bracket`` of the parameter around it; ``direction`` (N,) how the
+    variables move through it (weighted norm 1). ``leg``, ``after``: behind which node of the curve
+    it lies. ``node``: the position as the leg's leader sees it.
+    """
+
+    t: float
+    bracket: tuple[float, float]
+    v: Array
+    direction: Array
+    located: bool
+    leg: int
+    after: int
+    node: Node
+
+
+def turning_points(leads: Leads, curve: Curve) -> Iterator[TurningPoint]:
+    """The dead points on a curve, in its order.
+
+    Where the parameter's rate by the leader changes sign, Newton-Raphson on that rate, kept inside
+    the sign change, finds the place. Steps in which the rate may change sign twice are divided.
+    """
+    for number, leg in enumerate(curve.legs):
+        if leg.led.lead == leads.parameter:
+            continue
+        place = leg.led.place(leads.parameter)
+        resting = _RESTING * leads.scale[leads.parameter] / leads.scale[leg.led.lead]
+        for k, (a, b) in enumerate(itertools.pairwise(leg.nodes)):
+            if max(abs(a.first[place]), abs(b.first[place])) < resting:
+                continue
+            chain = _divided(leg.led, a, b, place)
+            for low, high in itertools.pairwise(chain):
+                if low.first[place] * high.first[place] < 0.0:
+                    yield _refined(leads, leg.led, low, high, (number, k))
+
+
+def turn_beyond(
+    leads: Leads, v: Array, rates: Array, side: float, options: CurveOptions | None = None
+) -> tuple[Leg, TurningPoint] | None:
+    """The dead point ahead of a position at which a branch could not be followed further.
+
+    Parameters
+    ----------
+    v, rates : (N,)
+        The position and its derivatives by the parameter.
+    side : float
+        +1 if the parameter was growing, -1 if it was falling.
+
+    Returns
+    -------
+    leg, turn
+        The way from the position through the dead point, led by the fastest variable; ``None`` if
+        the parameter does not turn back there.
+    """
+    opt = options or CurveOptions()
+    speed = np.abs(rates / leads.scale)
+    leader = fastest_leader(leads, v, speed, avoid=leads.parameter)
+    if leader is None:
+        return None
+    led, node = leader
+    place = led.place(leads.parameter)
+    sign = math.copysign(1.0, side * rates[led.lead])
+    weight = float(leads.scale[led.lead])
+    nodes, _ = follow(
+        led.solver,
+        led.path,
+        node,
+        node.t + sign * weight,
+        weight,
+        opt.track,
+        until=lambda _, after: bool(after.first[place] * node.first[place] <= 0.0),
+    )
+    if not nodes or nodes[-1].first[place] * node.first[place] > 0.0:
+        return None
+    before = nodes[-2] if len(nodes) > 1 else node
+    turn = _refined(leads, led, before, nodes[-1], (0, max(len(nodes) - 1, 0)))
+    chain = (node, *nodes[:-1], turn.node) if turn.node.t != before.t else (node, *nodes[:-1])
+    return Leg(led=led, nodes=chain), turn
+
+
+def _divided(led: Led, a: Node, b: Node, place: int) -> list[Node]:
+    """The step from a to b, divided if the parameter may turn back twice within it."""
+    h = b.t - a.t
+    ends = (a.first[place], a.second[place], b.first[place], b.second[place])
+    if ends[0] * ends[2] < 0.0:
+        return [a, b]
+    inside = [s for s in np.linspace(0.125, 0.875, 7) if hermite(s, h, *ends) * ends[0] <= 0.0]
+    if not inside:
+        return [a, b]
+    s = min(inside, key=lambda x: float(hermite(x, h, *ends) * ends[0]))
+    guess = hermite(s, h, a.v, a.first, b.v, b.first)
+    guess[-1] = a.t + s * h
+    found = led.solver.solve(guess[None, :])
+    if found.status[0] != _CONVERGED:
+        return [a, b]
+    return [a, node_at(led.solver, led.path, float(guess[-1]), found.v[0]), b]
+
+
+def _refined(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, int]) -> TurningPoint:
+    place, p = led.place(leads.parameter), leads.parameter
+    here = low if abs(low.first[place]) < abs(high.first[place]) else high
+    sharp = replace(led.solver.options, equation_tolerance=_UNIT)
+    located, step = False, np.inf
+    for _ in range(60):
+        step = -here.first[place] / here.second[place] if here.second[place] else np.inf
+        s = here.t + step
+        edges = sorted((low.t, high.t))
+        if not edges[0] < s < edges[1]:
+            s = 0.5 * (low.t + high.t)
+            step = s - here.t
+        if abs(step) <= 4.0 * _UNIT * max(1.0, abs(s)):
+            located = True
+            break
+        guess = here.v + step * here.first + 0.5 * step * step * here.second
+        guess[-1] = s
+        found = led.solver.solve(guess[None, :], sharp)
+        if found.status[0] != _CONVERGED:
+            break
+        last = abs(here.first[place])
+        here = node_at(led.solver, led.path, s, found.v[0])
+        if here.first[place] * low.first[place] > 0.0:
+            low = here
+        else:
+            high = here
+        if here.first[place] == 0.0 or (abs(here.first[place]) >= last and abs(step) < 1e-9):
+            located = True  # to rounding
+            break
+    v = led.whole(here.v)
+    direction = led.whole(here.first)
+    # t is quadratic in the leader here, so the leader's last step counts squared
+    error = abs(here.second[place]) * step * step + 4.0 * _UNIT * max(1.0, abs(float(v[p])))
+    return TurningPoint(
+        t=float(v[p]),
+        bracket=(float(v[p] - error), float(v[p] + error)),
+        v=v,
+        direction=direction / np.abs(direction / leads.scale).max(),
+        located=located,
+        leg=where[0],
+        after=where[1],
+        node=here,
+    )

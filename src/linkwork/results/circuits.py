@@ -1,0 +1,205 @@
+"""All circuits of a mechanism: what can be reached without taking it apart, and its branches."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.errors import UnknownNameError, choices
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.results.motion import Limit, Motion
+from linkwork.results.summary import circuits_summary
+
+__all__ = ["Branch", "Circuit", "Circuits"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Branch:
+    """A piece of a circuit between dead points or change points (Chase & Mirth 1993).
+
+    Parameters
+    ----------
+    name : str
+        ``circuit 1 branch 2``.
+    input_range : (float, float)
+        Smallest and largest value of the leading input, everyday units, unwrapped.
+    configuration : str
+        The name of its configuration at the guess's own input, "" if it does not come by there.
+    certified : bool
+        Whether the way to it and along it is proved.
+    """
+
+    name: str
+    input_range: tuple[float, float]
+    configuration: str
+    certified: bool
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Circuit:
+    """All positions that can be reached from one without taking the mechanism apart.
+
+    Parameters
+    ----------
+    name : str
+        ``circuit 1`` holds the guess.
+    end : CircuitEnd
+        That the curve closes, or why not.
+    certified : bool
+        Whether the curve is proved to be one curve, and to close; up to a millionth of a radian
+        at change points.
+    input_range : (float, float)
+        Of the leading input, everyday units, unwrapped.
+    turns : int, optional
+        Turns of the input until the circuit closes: 0 if it turns back; ``None`` if it does not
+        close or the input is a length.
+    turning : Mapping[str, int]
+        Whole turns of every moving link once around a closed circuit, positive counter-clockwise:
+        0 for a link that rocks.
+    branches : tuple of Branch
+    dead_points, change_points : tuple of Limit
+    smallest_singular_value : float
+        Of the weighted Jacobian along the circuit, 0 at dead points and change points; ``weakest``
+        is the input value at which it is smallest [everyday units].
+    motion : Motion
+        Positions along the circuit in the order of travel, branch by branch.
+    """
+
+    name: str
+    end: CircuitEnd
+    certified: bool
+    input_range: tuple[float, float]
+    turns: int | None
+    turning: Mapping[str, int] = FrozenDict()
+    branches: tuple[Branch, ...]
+    dead_points: tuple[Limit, ...] = ()
+    change_points: tuple[Limit, ...] = ()
+    smallest_singular_value: float
+    weakest: float
+    motion: Motion
+
+    @property
+    def closed(self) -> bool:
+        """Whether the motion comes back to where it began."""
+        return self.end.closed
+
+    def __getitem__(self, name: str) -> Array:
+        """Values of a quantity along the circuit: ``circuit["s16"]``."""
+        return self.motion[name]
+
+    def range(self, name: str) -> tuple[float, float]:
+        """Smallest and largest value of a quantity among the positions along the circuit."""
+        values = self.motion[name]
+        return float(np.nanmin(values)), float(np.nanmax(values))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Circuits:
+    """All circuits of a mechanism, that of the guess first; by number (from 0) or name.
+
+    Parameters
+    ----------
+    completeness : Completeness
+        Whether the list is complete.
+    message : str
+        The same as a sentence.
+    input : str
+        The leading input, which the branches refer to.
+    input_unit : str
+    seeded : int
+        At how many input values all configurations were listed to find the circuits.
+    """
+
+    mechanism: str
+    circuits: tuple[Circuit, ...]
+    completeness: Completeness
+    message: str
+    input: str
+    input_unit: str
+    seeded: int
+
+    def __len__(self) -> int:
+        return len(self.circuits)
+
+    def __iter__(self) -> Iterator[Circuit]:
+        return iter(self.circuits)
+
+    def __getitem__(self, which: int | str) -> Circuit:
+        if isinstance(which, int):
+            return self.circuits[which]
+        for circuit in self.circuits:
+            if circuit.name == which:
+                return circuit
+        names = [circuit.name for circuit in self.circuits]
+        raise UnknownNameError(f'there is no "{which}" {choices("circuits", names, which)}')
+
+    def branch(self, name: str) -> Branch:
+        """A branch by its name, ``circuit 1 branch 2``.
+
+        Raises
+        ------
+        UnknownNameError
+            With the names that exist.
+        """
+        known = {branch.name: branch for circuit in self.circuits for branch in circuit.branches}
+        if name not in known:
+            raise UnknownNameError(f'there is no "{name}" {choices("branches", known, name)}')
+        return known[name]
+
+    def __repr__(self) -> str:
+        return circuits_summary(self)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data, as in the command line's JSON."""
+        return {
+            "mechanism": self.mechanism,
+            "input": self.input,
+            "unit": self.input_unit,
+            "circuits": [_circuit_data(circuit) for circuit in self.circuits],
+            "completeness": self.completeness.name,
+            "message": self.message,
+        }
+
+
+def _circuit_data(circuit: Circuit) -> dict[str, Any]:
+    def limits(found: tuple[Limit, ...]) -> list[dict[str, Any]]:
+        return [
+            {
+                "kind": limit.kind.name,
+                "input": limit.input,
+                "bracket": list(limit.bracket),
+                "located": limit.located,
+                "loops": list(limit.loops),
+                "in_line": list(limit.in_line),
+            }
+            for limit in found
+        ]
+
+    return {
+        "name": circuit.name,
+        "closed": circuit.closed,
+        "end": circuit.end.name,
+        "certified": circuit.certified,
+        "input_range": list(circuit.input_range),
+        "turns": circuit.turns,
+        "turning": dict(circuit.turning),
+        "branches": [
+            {
+                "name": branch.name,
+                "input_range": list(branch.input_range),
+                "configuration": branch.configuration,
+                "certified": branch.certified,
+            }
+            for branch in circuit.branches
+        ],
+        "dead_points": limits(circuit.dead_points),
+        "change_points": limits(circuit.change_points),
+        "smallest_singular_value": circuit.smallest_singular_value,
+        "weakest": circuit.weakest,
+    }

@@ -1,0 +1,129 @@
+"""Every way a mechanism can be put together at one input, with what is known of completeness."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, fields, replace
+from typing import Any
+
+from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.errors import UnknownNameError, choices
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.results.position import Position
+from linkwork.results.summary import configurations_summary
+
+__all__ = ["Configurations", "PathCount"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PathCount:
+    """What became of the solution paths of one block, over all configurations before it.
+
+    Parameters
+    ----------
+    unknowns : tuple of str
+        What the block determines.
+    solved : int
+        For how many configurations of the blocks before it the block was solved.
+    paths : int
+        Paths followed: finite + at_infinity + multiple + failed.
+    finite : int
+        Isolated solutions, complex ones included.
+    real : int
+        Those that are positions.
+    at_infinity, multiple, failed : int
+        Paths that ran to infinity, ended where solutions coincide, or were lost.
+    expected : int
+        Solutions of random mechanisms of the same structure.
+    bound : int
+        Solutions that can exist at most.
+    """
+
+    unknowns: tuple[str, ...]
+    solved: int = 1
+    paths: int = 0
+    finite: int = 0
+    real: int = 0
+    at_infinity: int = 0
+    multiple: int = 0
+    failed: int = 0
+    expected: int = 0
+    bound: int = 0
+
+    def plus(self, other: PathCount) -> PathCount:
+        """Both together."""
+        numbers = [f.name for f in fields(self) if f.name not in ("unknowns", "solved")]
+        sums = {name: getattr(self, name) + getattr(other, name) for name in numbers}
+        return replace(self, solved=self.solved + other.solved, **sums)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Configurations:
+    """All configurations of a mechanism at one input value.
+
+    Iterates over positions, each with its name in ``position.configuration``; by number (from 0)
+    or by name. Ordered by block in solving order; inside a block ``open`` before ``crossed``, else
+    by the block's unknowns in their order, angles from 0 to a full turn.
+
+    Parameters
+    ----------
+    positions : tuple of Position
+    completeness : Completeness
+        How sure it is that none is missing.
+    message : str
+        The same as a sentence, with what was special.
+    input, input_units : Mapping
+        Input values and their units.
+    paths : tuple of PathCount
+        For every block.
+    seed : int
+        What all random numbers were drawn from.
+    """
+
+    mechanism: str
+    positions: tuple[Position, ...]
+    completeness: Completeness
+    message: str
+    input: Mapping[str, float]
+    input_units: Mapping[str, str] = FrozenDict()
+    paths: tuple[PathCount, ...] = ()
+    seed: int
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    def __iter__(self) -> Iterator[Position]:
+        return iter(self.positions)
+
+    def __getitem__(self, which: int | str) -> Position:
+        """A configuration by number, from 0, or by name."""
+        if isinstance(which, int):
+            return self.positions[which]
+        for position in self.positions:
+            if position.configuration == which:
+                return position
+        raise UnknownNameError(
+            f'there is no configuration "{which}" of {self.mechanism} at this input '
+            f"{choices('configurations', self.names, which)}"
+        )
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of all configurations."""
+        return tuple(position.configuration for position in self.positions)
+
+    def __repr__(self) -> str:
+        return configurations_summary(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The list as JSON-ready data."""
+        return {
+            "mechanism": self.mechanism,
+            "input": dict(self.input),
+            "configurations": [position.to_dict() for position in self.positions],
+            "completeness": self.completeness.name,
+            "complete": self.completeness.complete,
+            "message": self.message,
+            "paths": [{**asdict(count), "unknowns": list(count.unknowns)} for count in self.paths],
+            "seed": self.seed,
+        }
