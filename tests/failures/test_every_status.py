@@ -33,8 +33,8 @@ def singular_jacobian() -> Reached:
         "the Jacobian became singular during the iteration: the derivative is singular at an "
         "iterate, where Newton-Raphson has no next step: start from a guess beside it; "
         "a damped iteration does find θ3 = 14.40014098°, θ4 = 58.22758874°; "
-        "2 configurations exist there: θ3 = -74.40014098°, θ4 = -118.2275887° or "
-        "θ3 = 14.40014098°, θ4 = 58.22758874°"
+        "2 configurations exist there: open (θ3 = 14.40014098°, θ4 = 58.22758874°) or "
+        "crossed (θ3 = -74.40014098°, θ4 = -118.2275887°)"
     )
 
 
@@ -87,8 +87,8 @@ def change_point() -> Reached:
         "the motion reaches a change point, where two branches cross, before this input value: "
         "ask for values before it, or start from a guess beyond it (met at crank = 180° and 0°); "
         "nearest reachable input: crank = 180° (change point); "
-        "2 configurations exist there: coupler = 0°, rocker = -160° or "
-        "coupler = 13.27254518°, rocker = 173.2725452°"
+        "2 configurations exist there: open (coupler = 13.27254518°, rocker = 173.2725452°) or "
+        "crossed (coupler = 0°, rocker = -160°)"
     )
 
 
@@ -107,8 +107,8 @@ def start_singular() -> Reached:
     return mechanism.solve(at=100), (
         "the start itself is a dead point or change point, where the motion has no direction: "
         "start from a guess beside it (met at s = 160); "
-        f"2 configurations exist there: crank = -{crank:.10g}°, rod = {rod:.10g}° or "
-        f"crank = {crank:.10g}°, rod = -{rod:.10g}°"
+        f"2 configurations exist there: open (crank = {crank:.10g}°, rod = -{rod:.10g}°) or "
+        f"crossed (crank = -{crank:.10g}°, rod = {rod:.10g}°)"
     )
 
 

@@ -199,7 +199,7 @@ def test_beyond_a_dead_point_other_configurations_are_told() -> None:
     assert failure.nearest_input["θ12"] == pytest.approx(155.227836297534, abs=1e-11)
     there = sorted(c["s16"] for c in failure.configurations)
     assert len(there) == 2
-    assert failure.complete is False
+    assert failure.complete
     for configuration in failure.configurations:
         follows = lw.example("rapier-drive").changed(guess={**configuration, "θ12": 170})
         assert follows.solve()["s16"] == pytest.approx(configuration["s16"], abs=1e-9)

@@ -9,11 +9,15 @@ import numpy as np
 
 from linkwork.equations.leading import LeadTable
 from linkwork.foundation.arrays import Array
-from linkwork.motion.branches import Traced, traced
+from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.motion.branches import Traced
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
+from linkwork.numerics.curve import Curve, CurveOptions, Leg, trace
 from linkwork.numerics.least_squares import nearest_miss
-from linkwork.numerics.track import InputPath
+from linkwork.numerics.proven_curve import prove_curve
+from linkwork.numerics.track import BOLD, InputPath, TrackOptions, follow
+from linkwork.numerics.turning_point import turning_points
 
 __all__ = ["MOST_UNKNOWNS", "Reach", "assembled_near", "reach_towards"]
 
@@ -22,6 +26,10 @@ _CLOSED = 1e-9  # relative gap of a position that was found with the input free
 _HELD = 0.1  # weight of the input beside the unknowns: it moves as little as need be
 _TRIES = 8  # input values around the circle from which an assembled position is looked for
 _TURN = 2.0 * np.pi
+_FAST = 6.0  # where a variable moves so many times faster than the input, a dead point is near
+_ASIDE = 0.2  # weighted: how far from it a circuit is begun
+_MOST_LEGS = 200
+_CARES = (replace(BOLD, most_steps=2000), TrackOptions(most_steps=4000))  # until one is proved
 
 
 @dataclass(frozen=True)
@@ -140,13 +148,52 @@ def _everyday(model: Model, path: InputPath, lead: int, edge: _Edge, turns: int)
 
 def _circuit(leads: LeadTable, v: Array, side: float) -> list[Traced]:
     """The whole circuit through a position (N,): one curve if it closes, else one each way."""
-    try:
-        walks = [traced(leads, v, side, True)]
-        if not walks[0].curve.end.closed:
-            walks.append(traced(leads, v, -side, True))
-    except (ValueError, np.linalg.LinAlgError):
-        return []
-    return [walk for walk in walks if walk.curve.legs]
+    walks: list[Traced] = []
+    for care in _CARES:
+        try:
+            aside = _off_dead_point(leads, v, care)
+            start = v if aside is None else aside.curve.legs[-1].v[-1]
+            walks = [_walk(leads, start, side, care)]
+            if not walks[0].curve.end.closed:
+                walks.append(_walk(leads, start, -side, care))
+            walks += [] if aside is None else [aside]
+        except (ValueError, np.linalg.LinAlgError):
+            return []
+        walks = [walk for walk in walks if walk.curve.legs]
+        if walks and all(walk.certified for walk in walks):
+            break
+    return walks
+
+
+def _walk(leads: LeadTable, v: Array, side: float, care: TrackOptions) -> Traced:
+    """A curve with its proof and dead points, given up sooner than when it is asked for."""
+    curve = trace(leads, v, side, CurveOptions(most_legs=_MOST_LEGS, track=care))
+    if not curve.legs:
+        return Traced(curve=curve, proof=None, turns=())
+    turns = tuple(turning_points(leads, curve))
+    return Traced(curve=curve, proof=prove_curve(leads, curve), turns=turns)
+
+
+def _off_dead_point(leads: LeadTable, v: Array, care: TrackOptions) -> Traced | None:
+    """A way from a position (N,) at which the parameter is slow to one where it can lead."""
+    table = leads.table
+    slope = table.jacobian(v[None, :])[0] * table.variable_scale / table.equation_scale[:, None]
+    speed = np.abs(np.linalg.svd(slope)[2][-1])
+    if speed.max() <= _FAST * speed[leads.parameter]:
+        return None
+    lead = int(np.argmax(speed))
+    led = leads.by(lead)
+    if led is None:
+        raise ValueError("the fastest variable must determine the position")
+    node, weight = led.node(v), float(table.variable_scale[lead])
+    for sign in (1.0, -1.0):
+        goal = node.t + sign * _ASIDE * weight
+        nodes, _ = follow(led.solver, led.path, node, goal, weight, care)
+        if nodes:
+            leg = Leg(led=led, nodes=(node, *nodes))
+            curve = Curve(legs=(leg,), end=CircuitEnd.SINGULAR, passes=())
+            return Traced(curve=curve, proof=prove_curve(leads, curve), turns=())
+    return None
 
 
 def _edges(leads: LeadTable, walk: Traced) -> list[_Edge]:

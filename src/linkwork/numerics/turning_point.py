@@ -30,6 +30,7 @@ __all__ = ["TurningPoint", "turn_beyond", "turning_points"]
 
 _CONVERGED = Status.CONVERGED.code
 _UNIT = np.finfo(float).eps
+_MOST_STEPS = 400  # to a dead point ahead: it is near, unless it is none
 _RESTING = 1e-7  # weighted rate below which, from node to node, the parameter does not move at all
 
 
@@ -105,7 +106,7 @@ def turn_beyond(
         node,
         node.t + sign * weight,
         weight,
-        opt.track,
+        replace(opt.track, most_steps=_MOST_STEPS),
         until=lambda _, after: bool(after.first[place] * node.first[place] <= 0.0),
     )
     if not nodes or nodes[-1].first[place] * node.first[place] > 0.0:
