@@ -112,6 +112,10 @@ def branches_of(leads: Leads, found: Traced, fine: int = 1) -> list[CurveBranch]
                 pieces.append([at])
                 proved.append(found.certified)
             pieces[-1].append(_Sample(v=v[k], ratio=float(ratio[k]), leader=leg.led))
+    crossing = found.curve.crossing
+    if crossing is not None and found.curve.legs:
+        led = found.curve.legs[-1].led
+        pieces[-1].append(_Sample(v=led.whole(crossing.v), ratio=0.0, leader=led))
     begins: list[TurningPoint | None] = [None, *ends]
     finishes: list[TurningPoint | None] = [*ends, None]
     branches = [
