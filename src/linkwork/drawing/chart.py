@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.frozen import read_only
-from linkwork.results.circuits import Circuit, Circuits
-from linkwork.results.motion import Limit, LimitKind
+from linkwork.results.circuits import Circuits
+from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind
 
 __all__ = ["Chart", "Curve", "Mark", "Panel", "circuit_chart"]
@@ -62,6 +63,14 @@ class Chart:
     turn: float = 360.0
 
 
+@dataclass(frozen=True, kw_only=True)
+class Turns:
+    """A full turn of either coordinate, 0 where it is no angle."""
+
+    x: float
+    y: float
+
+
 def circuit_chart(circuits: Circuits, names: tuple[str, ...] = ()) -> Chart:
     """Every circuit as a closed curve of each unknown over the input, limits marked.
 
@@ -79,14 +88,16 @@ def circuit_chart(circuits: Circuits, names: tuple[str, ...] = ()) -> Chart:
         quantity = motions[0].series(name).quantity
         angle = quantity.kind is Kind.ANGLE
         unit = motions[0].units.of(quantity.kind)
-        curves, marks = [], []
+        turns = Turns(x=turn if turning else 0.0, y=turn if angle else 0.0)
+        curves: list[Curve] = []
+        marks: list[Mark] = []
         for tone, circuit in enumerate(circuits, start=1):
             x, y = circuit.motion[circuits.input], circuit.motion[name]
             for branch in circuit.branches:
                 mine = np.array([b == branch.name for b in circuit.motion.branch])
-                line = _folded(x[mine], y[mine], turn if turning else 0.0, turn if angle else 0.0)
+                line = _folded(x[mine], y[mine], turns.x, turns.y)
                 curves.append(Curve(x=line[0], y=line[1], tone=tone, name=circuit.name))
-            marks += list(_marks(circuit, circuits.input, name, tone, turning, angle, turn))
+            marks += _marks(circuit.motion, circuits.input, name, tone, turns)
         label = f"{name} [{unit}]" if unit else name
         panels.append(
             Panel(label=label, curves=tuple(curves), marks=tuple(marks), whole_turns=angle)
@@ -103,40 +114,43 @@ def circuit_chart(circuits: Circuits, names: tuple[str, ...] = ()) -> Chart:
 
 
 def _folded(x: Array, y: Array, x_turn: float, y_turn: float) -> tuple[Array, Array]:
-    """Both coordinates inside one turn, the line broken where it leaves one side."""
-    x = np.mod(x, x_turn) if x_turn else x
-    y = np.mod(y, y_turn) if y_turn else y
-    jump = np.zeros(max(len(x) - 1, 0), dtype=bool)
-    if x_turn:
-        jump |= np.abs(np.diff(x)) > 0.5 * x_turn
-    if y_turn:
-        jump |= np.abs(np.diff(y)) > 0.5 * y_turn
-    places = np.flatnonzero(jump) + 1
-    return np.insert(x, places, np.nan), np.insert(y, places, np.nan)
+    """Both coordinates inside one turn; the line goes on at the other side of the panel."""
+    cuts = [(0.0, x[0], y[0])] if len(x) else []
+    for k in range(len(x) - 1):
+        places = {1.0}
+        for here, there, turn in ((x[k], x[k + 1], x_turn), (y[k], y[k + 1], y_turn)):
+            if turn:
+                low, high = sorted((here / turn, there / turn))
+                edges = np.arange(np.floor(low) + 1.0, np.ceil(high))
+                places |= {float((e * turn - here) / (there - here)) for e in edges}
+        cuts += [
+            (k + s, x[k] + s * (x[k + 1] - x[k]), y[k] + s * (y[k + 1] - y[k]))
+            for s in sorted(places)
+        ]
+    pieces: list[tuple[float, float]] = []
+    last: tuple[float, float] | None = None
+    for (_, x0, y0), (_, x1, y1) in pairwise(cuts):
+        shift_x = x_turn * np.floor(0.5 * (x0 + x1) / x_turn) if x_turn else 0.0
+        shift_y = y_turn * np.floor(0.5 * (y0 + y1) / y_turn) if y_turn else 0.0
+        start = (float(x0 - shift_x), float(y0 - shift_y))
+        if last is None or max(abs(start[0] - last[0]), abs(start[1] - last[1])) > 1e-9:
+            pieces += [(np.nan, np.nan), start] if last is not None else [start]
+        last = (float(x1 - shift_x), float(y1 - shift_y))
+        pieces.append(last)
+    folded = np.array(pieces).reshape(-1, 2)
+    return folded[:, 0], folded[:, 1]
 
 
-def _marks(
-    circuit: Circuit, driver: str, name: str, tone: int, turning: bool, angle: bool, turn: float
-) -> list[Mark]:
+def _marks(motion: Motion, driver: str, name: str, tone: int, turns: Turns) -> list[Mark]:
     """Dead points and change points on the curve of one quantity."""
-    found = []
-    x, y = circuit.motion[driver], circuit.motion[name]
-    limits: list[Limit] = [*circuit.dead_points, *circuit.change_points]
-    for limit in limits:
-        gap = x - limit.input
-        if turning:
-            gap = gap - turn * np.round(gap / turn)
-        places = np.flatnonzero(np.abs(gap) < 1e-6)
-        if not len(places):
-            continue
-        for place in places:
-            value = float(y[place])
-            found.append(
-                Mark(
-                    x=float(np.mod(x[place], turn)) if turning else float(x[place]),
-                    y=float(np.mod(value, turn)) if angle else value,
-                    tone=tone,
-                    kind=LimitKind(limit.kind).word,
-                )
-            )
-    return found
+    x, y = motion[driver], motion[name]
+    return [
+        Mark(
+            x=float(np.mod(x[k], turns.x)) if turns.x else float(x[k]),
+            y=float(np.mod(y[k], turns.y)) if turns.y else float(y[k]),
+            tone=tone,
+            kind=kind,
+        )
+        for k, kind in enumerate(motion.limit)
+        if kind
+    ]

@@ -294,7 +294,7 @@ class _Circuits:
         for branch, named in zip(pieces, names, strict=True):
             here = slice(begin, begin + len(branch.v))
             begin += len(branch.v)
-            rows.branch[here] = named.name
+            rows.branch[here], rows.limit[here] = named.name, branch.limits
             code = Certification.CERTIFIED if named.certified else Certification.MOTION_NOT_PROVED
             rows.certification[here] = (code if self.certify else Certification.NOT_ASKED).code
         return motion_of_rows(model, rows, "", added=np.zeros(len(v), dtype=bool), circuit=None)
