@@ -169,7 +169,9 @@ def _steps(mechanism: Mechanism, position: Position, from_guess: bool) -> Iterat
     yield from sentence(str, f"Newton-Raphson from the guess {where}".rstrip())
     if position.status.ok and here != dict(position.input):
         yield from sentence(
-            str, f"(then followed to the position {inputs_text(position.input, position.input_units)})", ""
+            str,
+            f"(then followed to the position {inputs_text(position.input, position.input_units)})",
+            "",
         )
     for trail in position.steps:
         yield from ("", *_trail(mechanism, trail))

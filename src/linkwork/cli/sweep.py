@@ -96,9 +96,7 @@ def sweep(
         context.exit(1)
 
 
-def _start_scene(
-    mechanism: Mechanism, motion: Motion, configuration: str | None
-) -> Scene | None:
+def _start_scene(mechanism: Mechanism, motion: Motion, configuration: str | None) -> Scene | None:
     """The picture of the start; None if there is no start to draw."""
     position = mechanism.solve(configuration=configuration)
     return picture.scene(position, motion) if position.status.ok else None

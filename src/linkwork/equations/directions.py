@@ -1,9 +1,9 @@
 """Blocks of loop equations as bilinear systems: unknown directions e^{iθ} instead of angles.
 
-Every term c s e^{i(Σ w θ + known)} of a block must stand along one unknown direction, or none. Linear
-rows between angles are solved first; then the sums of angles that occur in the terms become the
-unknown directions themselves, which works as long as there are as many of them as angles left and
-angles follow from them without fractions. Otherwise the block leaves this form, and says why.
+Every term c s e^{i(Σ w θ + known)} of a block must stand along one unknown direction, or none.
+Linear rows between angles are solved first; then the sums of angles that occur in the terms become
+the unknown directions themselves, which works as long as there are as many of them as angles left
+and angles follow from them without fractions. Otherwise the block leaves this form, and says why.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class DirectionForm:
     @property
     def directions(self) -> int:
         """D, the number of unknown directions."""
-        return self.angles.shape[1]
+        return int(self.angles.shape[1])
 
     @property
     def turning(self) -> IndexArray:
@@ -100,8 +100,9 @@ class DirectionForm:
         error = np.abs(loops.coefficient) / size * (np.abs(length) * slack + length_off)
         left = np.zeros((len(known), loops.rows, self.rows.shape[1] + 1), dtype=complex)
         away = np.zeros(left.shape)
-        np.add.at(left, (slice(None), loops.row, self.column), term)
-        np.add.at(away, (slice(None), loops.row, self.column), error)
+        for t, (row, column) in enumerate(zip(loops.row, self.column, strict=True)):
+            left[:, row, column] += term[:, t]
+            away[:, row, column] += error[:, t]
         return left, away
 
     def system(self, left: ComplexArray) -> BilinearSystem:
@@ -172,7 +173,9 @@ def direction_form(table: LoopTable) -> DirectionForm:
     )
 
 
-def _solved_lines(table: LoopTable, turning: IndexArray, sliding: IndexArray) -> tuple[Array, Array]:
+def _solved_lines(
+    table: LoopTable, turning: IndexArray, sliding: IndexArray
+) -> tuple[Array, Array]:
     """Angles = first · (angles left) + second · (known, 1), from the linear rows."""
     n, lines = table.unknowns, table.linear
     rows = np.zeros((len(lines.constant), table.variables + 1))
@@ -228,10 +231,11 @@ def _inverse(directions: list[tuple[float, ...]], angles: int) -> Array:
     if angles and abs(abs(float(np.linalg.det(matrix))) - 1.0) > 1e-9:
         raise NoDirectionForm("contain angles with ratios other than 1, as gears do")
     inverse = np.linalg.inv(matrix)
-    whole: Array = np.round(inverse)
-    if np.abs(inverse - whole).max(initial=0.0) > 1e-9 or np.abs(
-        matrix - np.round(matrix)
-    ).max(initial=0.0) > _WHOLE:
+    whole = np.asarray(np.round(inverse), dtype=float)
+    if (
+        np.abs(inverse - whole).max(initial=0.0) > 1e-9
+        or np.abs(matrix - np.round(matrix)).max(initial=0.0) > _WHOLE
+    ):
         raise NoDirectionForm("contain angles with ratios other than 1, as gears do")
     return whole
 

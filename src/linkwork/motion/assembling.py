@@ -11,10 +11,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.equations.directions import DirectionForm, NoDirectionForm, direction_form
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, CountArray, IndexArray
+from linkwork.foundation.arrays import (
+    Array,
+    BoolArray,
+    ComplexArray,
+    CountArray,
+    IndexArray,
+)
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.status import Status
 from linkwork.kernels.loop_table import LoopTable
+from linkwork.motion.configuration_names import combined_name, ordered
 from linkwork.motion.model import Model
 from linkwork.motion.turned_slides import TurnedSlide, turned_slides
 from linkwork.numerics.bilinear import Roots, proved_roots
@@ -33,7 +40,6 @@ _ALMOST_DOUBLE = 1e-3  # and a multiple one
 _MOVED = 1e-5  # weighted: how far Newton's method may carry a root to its position,
 _MOVED_DOUBLE = 1e-2  # and a multiple one
 _CLOSED = 1e-12  # scaled residual at which a multiple root is a position
-_ROUND = 1e-9  # rad: angles are ordered from 0 to a full turn, this much below counts as 0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -85,9 +91,7 @@ class _Assembly:
         each = np.zeros_like(self.v)
         each[:, solver.unknowns :] = rounding_of_inputs(self.v, solver.unknowns)
         nothing = np.zeros((1, 0))
-        self.proof = Proof(
-            holds=np.ones(1, dtype=bool), exists=nothing, unique=nothing, each=each
-        )
+        self.proof = Proof(holds=np.ones(1, dtype=bool), exists=nothing, unique=nothing, each=each)
         self.iterations = np.zeros(1, dtype=np.int64)
         self.labels: list[tuple[str, ...]] = [()]
         self.completeness = Completeness.PROVED
@@ -113,7 +117,7 @@ class _Assembly:
             v=self.v,
             proof=self.proof,
             iterations=self.iterations,
-            names=tuple(_combined(labels, k + 1) for k, labels in enumerate(self.labels)),
+            names=tuple(combined_name(labels, k + 1) for k, labels in enumerate(self.labels)),
             completeness=self.completeness,
             message="; ".join(notes),
             paths=tuple(self.paths),
@@ -146,7 +150,7 @@ class _Assembly:
         v, rows, double = v[keep], rows[keep], found.multiple[keep]
         folded = any(slide.angle in block.unknowns for slide in self.slides)
         part = linearised(block, v)
-        order, labels = _ordered(block, form, v, rows, part.sign, double, folded)
+        order, labels = ordered(block, form, v, rows, part.sign, double, folded)
         before = _rows_of(self.proof, rows)
         radii = prove_block(block, part, v, before.each)
         each = before.each
@@ -314,7 +318,7 @@ def _folded(
     """Positions with a negative length turned around; the first of each pair that then agrees."""
     v = v.copy()
     negative = v[:, slide.lengths[0]] < 0.0
-    v[np.ix_(negative, slide.lengths)] *= -1.0
+    v[np.ix_(negative, np.array(slide.lengths))] *= -1.0
     v[negative, slide.angle] += np.where(v[negative, slide.angle] > 0.0, -np.pi, np.pi)
     size = np.maximum(np.abs(v).max(axis=0), 1.0)
     stay: list[int] = []
@@ -324,64 +328,3 @@ def _folded(
         if not any(bool((g <= 1e-7 * size).all()) for g in turned):
             stay.append(k)
     return v, np.array(stay, dtype=np.intp)
-
-
-def _ordered(
-    block: Block,
-    form: DirectionForm,
-    v: Array,
-    rows: IndexArray,
-    sign: Array,
-    double: BoolArray,
-    folded: bool,
-) -> tuple[list[int], dict[int, str]]:
-    """The documented order of a block's configurations, and what each is called."""
-    dyad = form.table.loops.rows == 1
-    single = len(form.turning) == 0 or form.rows.shape[1] == 0 or (dyad and folded)
-    turns = block.system.turns[: len(block.unknowns)]
-    keys: list[tuple[float, ...]] = []
-    names = []
-    for k in range(len(v)):
-        own = v[k, block.unknowns]
-        angle = np.mod(own + _ROUND, 2.0 * np.pi)
-        values = np.round(np.where(turns, angle, own) / _ROUND).tolist()
-        name = "" if single else "number"
-        rank = 0.0
-        if dyad and not single:
-            name = "double" if double[k] else "open" if _is_open(form, sign[k]) else "crossed"
-            rank = float(("open", "crossed", "double").index(name))
-        names.append(name)
-        keys.append((float(rows[k]), rank, *values))
-    order = sorted(range(len(v)), key=keys.__getitem__)
-    labels: dict[int, str] = {}
-    number = {int(row): 0 for row in rows}
-    for k in order:
-        number[int(rows[k])] += 1
-        labels[k] = str(number[int(rows[k])]) if names[k] == "number" else names[k]
-    return order, labels
-
-
-def _is_open(form: DirectionForm, sign: float) -> bool:
-    """Which of two configurations of a dyad is called open; ``sign`` is that of det J.
-
-    Two links: the turn from the first one to the second, head to tail, is clockwise. A link and a
-    length along a known direction: the link points towards larger lengths. A length along the
-    turning link: the side of larger lengths.
-    """
-    length_first = len(form.sliding) > 0 and form.sliding[0] < form.turning[0]
-    turned = -sign if length_first else sign
-    if len(form.sliding) and form.along[0] < 0:
-        return turned > 0
-    return turned < 0
-
-
-def _combined(labels: tuple[str, ...], number: int) -> str:
-    """The name of a configuration: ``open``, ``open-crossed``, ``configuration 3``."""
-    parts = [label for label in labels if label]
-    if not parts:
-        return f"configuration {number}"
-    if len(parts) == 1 and parts[0].isdigit():
-        return f"configuration {parts[0]}"
-    return "-".join(parts)
-
-

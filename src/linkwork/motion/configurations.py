@@ -91,9 +91,7 @@ def _positions(model: Model, target: Array, found: Assemblies) -> tuple[Position
             certificate=certificate,
             configuration=found.names[k],
         )
-        positions.append(
-            position_of(model, named, k, evidence, found.v[k, : solver.unknowns])
-        )
+        positions.append(position_of(model, named, k, evidence, found.v[k, : solver.unknowns]))
     return tuple(positions)
 
 

@@ -90,7 +90,8 @@ def position_of(model: Model, named: Named, row: int, evidence: Evidence, q: Arr
         links=_values(named.links, row),
         sliders=_values(named.sliders, row),
         points={
-            name: (float(x.value[row]), float(y.value[row])) for name, (x, y) in named.points.items()
+            name: (float(x.value[row]), float(y.value[row]))
+            for name, (x, y) in named.points.items()
         },
         outputs=_values(named.outputs, row),
         first=first,

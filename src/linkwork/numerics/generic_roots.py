@@ -2,11 +2,11 @@
 
 Systems with the same zeros and the same sums within the columns of their closure matrices (a link
 with three joints enters three loops with a, b and a + b) form a family. Almost every member of a
-family has the same number of isolated solutions, and a straight path from a random complex member to
-any other one leads to all isolated solutions of the latter (Morgan & Sommese 1989,
-doi:10.1016/0096-3003(89)90099-4; Sommese & Wampler 2005, ch. 7). The random member is solved once
-per process from C(2L, L) products of linear forms, and its set of solutions is completed until
-closed paths of systems lead to no new one.
+family has the same number of isolated solutions, and a straight path from a random complex member
+to any other one leads to all isolated solutions of the latter (Morgan & Sommese 1989, Appl. Math.
+Comput. 29, 123; Sommese & Wampler 2005, ch. 7). The random member is solved once per process from
+C(2L, L) products of linear forms, and its set of solutions is completed until closed paths of
+systems lead to no new one.
 """
 
 from __future__ import annotations
@@ -18,10 +18,19 @@ from itertools import product
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.foundation.arrays import BoolArray, ComplexArray
 from linkwork.numerics.bilinear import BilinearSystem, Roots, polished
 from linkwork.numerics.bilinear_homotopy import ParameterHomotopy, StartHomotopy
-from linkwork.numerics.homotopy import ARRIVED, BOLD, CAREFUL, LOST, SINGULAR, Paths, TrackOptions, track
+from linkwork.numerics.homotopy import (
+    ARRIVED,
+    BOLD,
+    CAREFUL,
+    LOST,
+    SINGULAR,
+    Paths,
+    TrackOptions,
+    track,
+)
 
 __all__ = ["SEED", "Structure", "isolated_roots", "structure_of"]
 

@@ -18,7 +18,17 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
 from linkwork.numerics.bilinear import solved
 
-__all__ = ["ARRIVED", "BOLD", "CAREFUL", "LOST", "SINGULAR", "Homotopy", "Paths", "TrackOptions", "track"]
+__all__ = [
+    "ARRIVED",
+    "BOLD",
+    "CAREFUL",
+    "LOST",
+    "SINGULAR",
+    "Homotopy",
+    "Paths",
+    "TrackOptions",
+    "track",
+]
 
 ARRIVED, SINGULAR, LOST = 0, 1, 2
 
