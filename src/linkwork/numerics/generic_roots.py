@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -71,12 +70,11 @@ class Structure:
             both.append(np.stack(parts, axis=1))
         return BilinearSystem(left=both[0], right=both[1], rows=np.array(self.rows))
 
-    @cached_property
-    def seed(self) -> np.random.SeedSequence:
-        """A seed of its own that does not depend on what was solved before."""
+    def generator(self, purpose: int) -> np.random.Generator:
+        """Random numbers of the family's own, the same in every run and in any order of calls."""
         flat = [k for row in self.rows for k in row]
         flat += [w + 1 for column in self.columns for entry in column for w in (*entry, 2)]
-        return np.random.SeedSequence([SEED, *flat])
+        return np.random.default_rng([SEED, purpose, *flat])
 
 
 def structure_of(system: BilinearSystem) -> Structure:
@@ -135,7 +133,7 @@ def isolated_roots(system: BilinearSystem) -> Roots:
     """
     structure = structure_of(system)
     generic = _generic(structure)
-    rng = np.random.default_rng(structure.seed.spawn(2)[1])
+    rng = structure.generator(1)
     expected = len(generic.x)
     best: _Ends | None = None
     for attempt in range(_ATTEMPTS):
@@ -163,7 +161,7 @@ def _agree(system: BilinearSystem, a: _Ends, b: _Ends) -> bool:
 def _generic(structure: Structure) -> _Generic:
     """The stored random member; solved when it is first wanted."""
     if structure not in _KNOWN:
-        rng = np.random.default_rng(structure.seed.spawn(1)[0])
+        rng = structure.generator(0)
         system = structure.random(rng)
         x = np.zeros((0, 2 * system.size), dtype=complex)
         for _ in range(_ATTEMPTS):
