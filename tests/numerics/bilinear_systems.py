@@ -6,7 +6,7 @@ import numpy as np
 
 from linkwork.numerics.bilinear import BilinearSystem
 
-__all__ = ["TRUSS_18", "THETA_18", "angles_only", "random_triad", "real_solution"]
+__all__ = ["THETA_18", "TRUSS_18", "angles_only", "random_triad", "real_solution"]
 
 Complex = np.ndarray
 
@@ -32,7 +32,7 @@ THETA_18 = np.array(
 
 def angles_only(c: Complex, f: Complex) -> BilinearSystem:
     """C t + f = 0 with all unknowns directions."""
-    loops, size = c.shape
+    size = c.shape[1]
     left = np.concatenate([c, f[:, None]], axis=1) / max(np.abs(c).max(), np.abs(f).max())
     k, one = np.arange(size), np.full(size, size)
     return BilinearSystem(

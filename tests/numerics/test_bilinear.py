@@ -26,7 +26,7 @@ def _exact(system: BilinearSystem) -> np.ndarray:
 
 
 def test_jacobian_is_the_derivative_of_the_residual() -> None:
-    system, t = random_triad(0)
+    system, _ = random_triad(0)
     mixed = BilinearSystem(  # an angle, a length on a fixed line, one along the angle
         left=system.left, right=system.right, rows=np.array([[0, 1, 2, 3], [0, 4, 0, 3],
                                                              [4, 4, 0, 4], [4, 1, 2, 4]])

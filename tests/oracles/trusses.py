@@ -66,9 +66,14 @@ def random_graph(links: int, rng: np.random.Generator) -> tuple[int, Edges]:
     pairs = list(combinations(range(links), 2))
     while True:
         chosen = [pairs[i] for i in sorted(rng.choice(len(pairs), pins, replace=False))]
-        if all(_free(chosen, set(part)) for k in range(2, links) for part in combinations(
-            range(links), k
-        )) and min(sum(link in edge for edge in chosen) for link in range(links)) > 1:
+        if (
+            all(
+                _free(chosen, set(part))
+                for k in range(2, links)
+                for part in combinations(range(links), k)
+            )
+            and min(sum(link in edge for edge in chosen) for link in range(links)) > 1
+        ):
             return links, chosen
 
 
