@@ -9,7 +9,7 @@ from typing import Any, Self
 
 from linkwork import drawing, motion, textfile
 from linkwork import equations as closure
-from linkwork.foundation.errors import MechanismError, UnknownNameError, choices
+from linkwork.foundation.errors import InputError, MechanismError, UnknownNameError, choices
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
@@ -120,10 +120,11 @@ class Mechanism:
         Parameters
         ----------
         configuration : str, optional
-            The one of this name in ``configurations(at)``, whatever the guess; the arguments about
-            Newton-Raphson from the guess then mean nothing.
+            The one of this name in ``configurations(at)``, whatever the guess is near to.
         """
         if configuration is not None:
+            if from_guess or with_steps:
+                raise InputError("a configuration has no steps from the guess: ask for one of both")
             return motion.solve_configuration(self.model, at, configuration, throw=throw)
         return motion.solve(
             self.model,

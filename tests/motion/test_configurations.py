@@ -11,6 +11,7 @@ import pytest
 import linkwork as lw
 from linkwork import Completeness
 from linkwork.motion.assembling import positions_at
+from linkwork.numerics import generic_roots, homotopy
 from tests.campaigns.configurations import judge_truss
 from tests.laws.mechanisms import NAMES, mechanism_of
 from tests.oracles.four_bar import FourBar
@@ -333,6 +334,50 @@ def test_solve_takes_a_configuration_by_name() -> None:
         stuck.solve(90, configuration="open", throw=True)
     with pytest.raises(lw.InputError, match="plain equations"):
         lw.example("newton-inflection").solve(configuration="open")
+
+
+def test_a_configuration_has_no_steps_from_the_guess() -> None:
+    for option in ({"from_guess": True}, {"with_steps": True}):
+        with pytest.raises(lw.InputError, match=r"^a configuration has no steps from the guess"):
+            lw.example("four-bar").solve(60, configuration="open", **option)
+
+
+def test_loops_that_say_the_same_twice_are_refused_with_a_reason() -> None:
+    one = "2*e^(i*a) + 3*e^(i*b) + 4*e^(i*c) + 5*e^(i*d) = e^(i*q)"
+    two = "4*e^(i*a) + 6*e^(i*b) + 8*e^(i*c) + 10*e^(i*d) = 2*e^(i*q)"
+    found = looped({"1": one, "2": two}, a=0, b=100, c=190, d=280).configurations()
+    assert found.completeness is Completeness.NOT_LISTED
+    assert found.message.endswith("do not say different things: one follows from the others")
+
+
+def test_blocks_of_many_loops_are_not_tried() -> None:
+    loops = {
+        str(k): f"{k + 3}*e^(i*a{k}) + 2*e^(i*b{k}) + e^(i*q) = 3 + e^(i*a{(k + 1) % 7})"
+        for k in range(7)
+    }
+    found = looped(loops, **{f"{c}{k}": 10.0 for k in range(7) for c in "ab"}).configurations()
+    assert found.completeness is Completeness.NOT_LISTED
+    assert "are 7 coupled loops, more than the 6 whose paths are followed" in found.message
+
+
+def test_a_random_start_that_was_not_confirmed_makes_no_claim(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    mechanism = truss("F?o~_", np.random.default_rng(5))
+    assert mechanism.configurations().completeness is Completeness.WITH_PROBABILITY_ONE
+    monkeypatch.setattr(generic_roots, "_KNOWN", {})
+    monkeypatch.setattr(generic_roots, "_TRIES", 1)
+    assert mechanism.configurations().completeness is Completeness.NOT_PROVED
+
+
+def test_lost_paths_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    mechanism = truss("Ds[", np.random.default_rng(5))
+    mechanism.configurations()
+    monkeypatch.setattr(homotopy, "_LARGEST_STEPS", 3)
+    found = mechanism.configurations()
+    assert (found.completeness, len(found)) == (Completeness.NOT_PROVED, 0)
+    assert found.message.startswith("not proved: solution paths were lost")
+    assert found.paths[0].failed == 6
 
 
 def test_sweep_starts_from_a_configuration() -> None:

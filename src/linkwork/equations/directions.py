@@ -19,6 +19,8 @@ from linkwork.numerics.bilinear import BilinearSystem
 __all__ = ["DirectionForm", "NoDirectionForm", "direction_form"]
 
 _UNIT = np.finfo(float).eps / 2
+_MOST_LOOPS = 6  # C(12, 6) = 924 paths to a random system
+_DEPENDENT = 1e-12  # smallest singular value of a closure matrix, relative to the largest
 _WHOLE = 1e-12  # how far a weight may be from a whole number
 
 
@@ -88,7 +90,8 @@ class DirectionForm:
         weights = np.zeros((table.variables, len(loops.row)))
         np.add.at(weights, (loops.phase_variable, loops.phase_term), loops.phase_weight)
         phase = v @ weights
-        slack = off @ np.abs(weights) + 4.0 * _UNIT * (4.0 + np.abs(v) @ np.abs(weights))
+        turned = np.abs(v) @ np.abs(weights)
+        slack = off @ np.abs(weights) + _UNIT * (4.0 * turned + 16.0 + len(loops.row))
         length = np.ones(phase.shape)
         length_off = np.zeros(phase.shape)
         for t, j in enumerate(loops.length):
@@ -106,7 +109,16 @@ class DirectionForm:
         return left, away
 
     def system(self, left: ComplexArray) -> BilinearSystem:
-        """The bilinear system of one closure matrix (L, M + 1)."""
+        """The bilinear system of one closure matrix (L, M + 1).
+
+        Raises
+        ------
+        NoDirectionForm
+            If the loops say the same twice.
+        """
+        sizes = np.linalg.svd(left, compute_uv=False)
+        if sizes[-1] <= _DEPENDENT * sizes[0]:
+            raise NoDirectionForm("do not say different things: one follows from the others")
         return BilinearSystem(left=left, right=left.conj(), rows=self.rows)
 
     def unknowns(self, x: ComplexArray, known: Array, near: Array) -> Array:
@@ -150,6 +162,10 @@ def direction_form(table: LoopTable) -> DirectionForm:
     directions, number = _directions(sums)
     angles = reduce @ _inverse(directions, reduce.shape[1])
     along = _along(table, number, sliding)
+    if loops.rows > _MOST_LOOPS:
+        raise NoDirectionForm(
+            f"are {loops.rows} coupled loops, more than the {_MOST_LOOPS} whose paths are followed"
+        )
     size = len(directions) + len(sliding)
     if size != 2 * loops.rows:
         raise NoDirectionForm("do not have two unknown directions or lengths for every loop")

@@ -229,10 +229,9 @@ def _block_configurations(
     good = (done.status == Status.CONVERGED.code) & (far <= _MOVED * size)
     good |= doubles & (done.residual <= _CLOSED) & (far <= _MOVED_DOUBLE * size)
     whole[:, block.unknowns] = done.v[:, :n]
-    lost = int((~good & ~doubles).sum())
-    if lost:
+    if (~good & ~doubles).any():
         grade = grade.and_then(Completeness.NOT_PROVED)
-        count = replace(count, failed=count.failed + lost, real=count.real - lost)
+    count = replace(count, real=int(good.sum()))
     return _BlockFound(
         v=whole[good],
         rows=place[good],
@@ -264,7 +263,11 @@ def _solved(form: DirectionForm, left: ComplexArray, off: Array) -> _Solved:
     doubles = roots.multiple[_mirror_gap(roots.multiple, m) < _ALMOST_DOUBLE]
     if roots.continuum:
         grade = Completeness.CONTINUUM
-    elif roots.failed or roots.paths != len(roots.x) + roots.at_infinity + roots.singular:
+    elif (
+        not roots.sure
+        or roots.failed
+        or roots.paths != len(roots.x) + roots.at_infinity + roots.singular
+    ):
         grade = Completeness.NOT_PROVED
     elif roots.singular or unproved.any():
         grade = Completeness.MULTIPLE

@@ -107,6 +107,8 @@ class Roots:
         Paths tracked; those that ran to infinity, ended at a singular solution, were lost.
     expected : int
         How many solutions random systems of this structure have.
+    sure : bool
+        Whether that number was confirmed.
     continuum : bool
         Whether a singular end belongs to a curve of solutions.
     """
@@ -118,6 +120,7 @@ class Roots:
     singular: int
     failed: int
     expected: int
+    sure: bool
     continuum: bool
 
 

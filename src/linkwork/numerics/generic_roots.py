@@ -12,7 +12,7 @@ systems lead to no new one.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -115,10 +115,11 @@ class _Ends:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Generic:
-    """A random member of a family with all its solutions."""
+    """A random member of a family with its solutions; ``sure`` that these are all."""
 
     system: BilinearSystem
     x: ComplexArray
+    sure: bool = False
 
 
 _KNOWN: dict[Structure, _Generic] = {}
@@ -145,7 +146,7 @@ def isolated_roots(system: BilinearSystem) -> Roots:
             if ends.regular.all() or (agreed and not ends.failed.any()):
                 break
     assert best is not None
-    return _roots(system, best, expected)
+    return _roots(system, best, generic)
 
 
 def _quality(ends: _Ends) -> tuple[int, int]:
@@ -188,7 +189,8 @@ def _closed(structure: Structure, known: _Generic, rng: np.random.Generator) -> 
         quiet = quiet + 1 if whole else 0
         tries += 1
         known = _Generic(system=known.system, x=x)
-    return known
+    sure = quiet == _LOOPS or len(known.x) == known.system.bound
+    return replace(known, sure=sure)
 
 
 def _followed(
@@ -292,17 +294,18 @@ def _distinct(x: ComplexArray, same: float = _SAME) -> ComplexArray:
     return x[kept]
 
 
-def _roots(system: BilinearSystem, ends: _Ends, expected: int) -> Roots:
+def _roots(system: BilinearSystem, ends: _Ends, generic: _Generic) -> Roots:
     multiple = _distinct(ends.x[ends.singular], 1e-2)
     continuum = [_on_a_curve(system, x) for x in multiple]
     return Roots(
         x=ends.x[ends.regular],
         multiple=multiple[~np.array(continuum, dtype=bool)] if continuum else multiple,
-        paths=expected,
+        paths=len(generic.x),
         at_infinity=int(ends.infinite.sum()),
         singular=int(ends.singular.sum()),
         failed=int(ends.failed.sum()),
-        expected=expected,
+        expected=len(generic.x),
+        sure=generic.sure,
         continuum=any(continuum),
     )
 
