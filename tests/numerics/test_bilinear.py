@@ -198,6 +198,11 @@ def test_three_legs_in_one_point_are_multiple_but_no_continuum() -> None:
     assert np.abs(roots.multiple[0] - real_solution(t)).max() < 1e-3
 
 
+def test_a_regular_solution_is_on_no_curve() -> None:
+    system, t = random_triad(4)
+    assert not generic_roots._on_a_curve(system, real_solution(t))
+
+
 def _dyad(p: complex, q: complex, f: complex) -> BilinearSystem:
     return angles_only(np.array([[p, q]]), np.array([f]))
 
@@ -232,6 +237,8 @@ def test_a_dyad_beside_its_limit_is_told_apart(beside: float) -> None:
         assert (len(roots.x), len(roots.multiple)) == (2, 0)
         proofs = proved_roots(system, roots.x, _exact(system))
         assert proofs.real.all() == real
+        # with coefficients this uncertain it might as well be at its limit, or beyond
+        assert not proved_roots(system, roots.x, _exact(system) + 10 * beside).holds.any()
 
 
 def test_a_dyad_that_folds_onto_itself_is_a_continuum() -> None:
