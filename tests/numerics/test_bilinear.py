@@ -149,6 +149,24 @@ def test_lost_paths_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     assert (len(roots.x), roots.failed) == (0, 6)
 
 
+def test_solutions_missing_at_first_are_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    system, _ = random_triad(8)
+    followed, calls = generic_roots._followed, []
+
+    def careless(*arguments: object, **options: object) -> object:
+        ends = followed(*arguments, **options)  # type: ignore[arg-type]
+        calls.append(options)
+        if len(calls) == 1:  # as if a path had run to infinity by mistake
+            ends.regular[2], ends.infinite[2] = False, True
+        return ends
+
+    isolated_roots(system)
+    monkeypatch.setattr(generic_roots, "_followed", careless)
+    roots = isolated_roots(system)
+    assert (len(roots.x), roots.at_infinity, len(calls)) == (6, 0, 2)
+    assert [options["nearest"] for options in calls] == [True, False]
+
+
 def test_a_path_that_jumped_is_not_counted_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     system, _ = random_triad(9)
     known = generic_roots._generic(structure_of(system))
