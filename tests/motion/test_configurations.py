@@ -243,8 +243,33 @@ def test_a_slide_that_only_directs_itself_is_one_assembly() -> None:
     assert found.message.endswith("s and t turned around, with s < 0, are the same assembly")
     offset = looped({"l": "2*e^(i*q) + 5*i = (s + i)*e^(i*t)"}, t=60, s=3)
     assert offset.configurations().names == ("open", "crossed")
+    twice = looped(  # s stands along another direction, too
+        {"l": "2*e^(i*q) + 5*i = s*e^(i*t)", "m": "s + 3*e^(i*a) = u*e^(i*20)"},
+        t=60, s=3, a=0, u=9,
+    )  # fmt: skip
+    assert len({round(p["s"], 6) for p in twice.configurations()}) == 2
     seen = lw.example("inverted-slider-crank")  # the lever's end tells the two apart
     assert len(seen.configurations()) == 2
+
+
+@pytest.mark.parametrize(
+    ("ends", "legs", "finite"),
+    [
+        ([0, 2, 0.5 + 1.5j], [3, 3.5, 2.8], 4),  # similar to the base, smaller
+        ([0, 4, 1 + 3j], [3, 3.5, 2.8], 4),  # congruent with it
+        ([0, 2, 2], [3, 3.5, 2.8], 4),  # two legs on one pin
+        ([0, 2, 0.5], [3, 3.5, 2.8], 6),  # pins in line
+    ],
+)
+def test_special_platforms_lose_solutions_to_infinity_and_no_others(
+    ends: list[complex], legs: list[float], finite: int
+) -> None:
+    found = _platform([0, 4, 1 + 3j], legs, ends).configurations()
+    (paths,) = found.paths
+    assert (paths.finite, paths.failed, paths.multiple) == (finite, 0, 0)
+    assert paths.finite + paths.at_infinity == paths.paths == paths.expected
+    assert found.completeness.complete
+    assert all(p.certificate.certified for p in found)
 
 
 def test_a_dead_point_is_one_double_configuration_without_certificate() -> None:
