@@ -10,6 +10,7 @@ import pytest
 
 import linkwork as lw
 from linkwork import Completeness
+from linkwork.motion import assembling
 from linkwork.motion.assembling import positions_at
 from linkwork.numerics import generic_roots, homotopy
 from tests.campaigns.configurations import judge_truss
@@ -393,6 +394,24 @@ def test_a_random_start_that_was_not_confirmed_makes_no_claim(
     monkeypatch.setattr(generic_roots, "_KNOWN", {})
     monkeypatch.setattr(generic_roots, "_TRIES", 1)
     assert mechanism.configurations().completeness is Completeness.NOT_PROVED
+
+
+def test_two_solutions_that_settle_on_one_position_make_no_claim(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    bar = lw.example("four-bar").model
+    once = positions_at(bar, np.array([1.0]))
+    settled = assembling._settled
+
+    def merged(*arguments: object) -> tuple[np.ndarray, ...]:
+        end, good, iterations = settled(*arguments)  # type: ignore[arg-type]
+        end[1] = end[0]
+        return end, good, iterations
+
+    monkeypatch.setattr(assembling, "_settled", merged)
+    found = positions_at(bar, np.array([1.0]))
+    assert (len(once.v), len(found.v)) == (2, 1)
+    assert found.completeness is Completeness.NOT_PROVED
 
 
 def test_lost_paths_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
