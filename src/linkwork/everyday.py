@@ -128,9 +128,11 @@ class Mechanism:
         ----------
         configuration : str, optional
             The one of this name in ``configurations(at)``, or on this branch of ``circuits()``,
-            whatever the guess; the arguments about Newton-Raphson then mean nothing.
+            whatever the guess is near to.
         """
         if configuration is not None:
+            if from_guess or with_steps:
+                raise InputError("a configuration has no steps from the guess: ask for one of both")
             return motion.solve_configuration(self.model, at, configuration, throw=throw)
         return motion.solve(
             self.model,
