@@ -9,7 +9,13 @@ from typing import Any, Self
 
 from linkwork import drawing, motion, textfile
 from linkwork import equations as closure
-from linkwork.foundation.errors import MechanismError, UnknownNameError, choices
+from linkwork.foundation.errors import (
+    InputError,
+    MechanismError,
+    Problem,
+    UnknownNameError,
+    choices,
+)
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
@@ -54,7 +60,7 @@ class Mechanism:
     def __init__(self, description: Description, read: textfile.ReadFile | None = None) -> None:
         self.description = description
         try:
-            self.model = motion.model_of(description)
+            self.model = _started(motion.model_of(description))
         except MechanismError as error:
             if read is None:
                 raise
@@ -122,9 +128,11 @@ class Mechanism:
         ----------
         configuration : str, optional
             The one of this name in ``configurations(at)``, or on this branch of ``circuits()``,
-            whatever the guess; the arguments about Newton-Raphson then mean nothing.
+            whatever the guess is near to.
         """
         if configuration is not None:
+            if from_guess or with_steps:
+                raise InputError("a configuration has no steps from the guess: ask for one of both")
             return motion.solve_configuration(self.model, at, configuration, throw=throw)
         return motion.solve(
             self.model,
@@ -171,6 +179,7 @@ class Mechanism:
         asked = self.model
         if not (start is None and stop is None and step is None):
             asked = motion.model_of(self.description.with_range(start, stop, step))
+            asked = asked.from_start_of(self.model)
         if configuration is not None:
             asked = motion.started_in(asked, configuration)
         return motion.sweep(
@@ -206,6 +215,18 @@ class Mechanism:
     def save(self, path: str | Path) -> None:
         """Write the mechanism as a TOML file."""
         textfile.save(self.description, Path(path))
+
+
+def _started(model: motion.Model) -> motion.Model:
+    """The model, started from the configuration that its description names, if it names one."""
+    name = model.description.configuration
+    if not name:
+        return model
+    try:
+        return motion.started_in(model, name)
+    except InputError as error:
+        problem = Problem(key=("configuration",), message=str(error))
+        raise MechanismError([problem], f'mechanism "{model.description.name}"') from None
 
 
 def load(path: str | Path) -> Mechanism:

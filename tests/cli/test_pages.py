@@ -15,7 +15,14 @@ from linkwork.everyday import examples, load
 from tests.cli.conftest import FILES, Run
 
 COMMANDS = tuple(linkwork.list_commands(click.Context(linkwork)))
-PAGES = (("check",), ("solve",), ("solve", "--show-steps"), ("sweep",), ("equations",))
+PAGES = (
+    ("check",),
+    ("solve",),
+    ("solve", "--show-steps"),
+    ("sweep",),
+    ("configurations",),
+    ("equations",),
+)
 
 SOLVED = """\
 Slider-crank
@@ -151,7 +158,16 @@ def test_without_a_command_help_starts_with_the_way_to_a_first_result(run: Run) 
 def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
     listed = run("--help").stdout.partition("Commands:\n")[2].splitlines()
     names = [line.split()[0] for line in listed]
-    assert names == ["check", "equations", "solve", "sweep", "draw", "examples", "schema"]
+    assert names == [
+        "check",
+        "equations",
+        "solve",
+        "sweep",
+        "configurations",
+        "draw",
+        "examples",
+        "schema",
+    ]
 
 
 def test_solve_prints_values_derivatives_points_and_evidence(run: Run) -> None:

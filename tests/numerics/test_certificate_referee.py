@@ -423,6 +423,7 @@ def test_every_reason_for_a_missing_certificate_is_reached() -> None:
     reasons += [
         formula.sweep().certification[0],
         lw.example("four-bar").sweep(certify=False).certification[0],
+        lw.example("four-bar").configurations()[0].certificate.certification,
     ]
     assert [(reason.name, reason.value) for reason in reasons] == [
         (
@@ -445,5 +446,9 @@ def test_every_reason_for_a_missing_certificate_is_reached() -> None:
             "plain equations have no known bound of their curvature, so nothing is proved",
         ),
         ("NOT_ASKED", "certificates were switched off"),
+        (
+            "CONFIGURATION_CERTIFIED",
+            "a true position is proved to lie within the radius, and no other near it",
+        ),
     ]
     assert set(reasons) == set(Certification)

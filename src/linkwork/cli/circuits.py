@@ -6,9 +6,11 @@ from collections.abc import Iterator
 
 import click
 
+from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.motion_page import limit_text
 from linkwork.cli.options import debug_option, file_argument, json_option, set_option
+from linkwork.cli.output_file import check_outputs
 from linkwork.cli.terminal import (
     bad,
     fields,
@@ -20,6 +22,7 @@ from linkwork.cli.terminal import (
     title_lines,
 )
 from linkwork.cli.text_table import Column, short, table_lines
+from linkwork.drawing.chart import circuit_chart
 from linkwork.results.circuits import Circuit, Circuits
 
 __all__ = ["circuits", "circuits_lines"]
@@ -27,6 +30,14 @@ __all__ = ["circuits", "circuits_lines"]
 
 @click.command
 @file_argument
+@click.option("--draw", metavar="PATH", help="Draw all circuits: .png, .svg or .pdf.")
+@click.option(
+    "--of",
+    "names",
+    metavar="NAME",
+    multiple=True,
+    help="Draw NAME over the input; repeatable. Left out: the unknowns.",
+)
 @click.option("--no-certificates", is_flag=True, help="Prove nothing: faster.")
 @set_option
 @json_option
@@ -35,6 +46,8 @@ __all__ = ["circuits", "circuits_lines"]
 def circuits(
     context: click.Context,
     file: str,
+    draw: str | None,
+    names: tuple[str, ...],
     no_certificates: bool,
     changes: tuple[str, ...],
     as_json: bool,
@@ -46,16 +59,22 @@ def circuits(
     to solve and sweep.
 
     \b
-      linkwork circuits rapier.toml
+      linkwork circuits rapier.toml --draw circuits.png --of s16
       linkwork sweep rapier.toml --configuration "circuit 3 branch 1"
     """
+    if draw is not None:
+        picture.check_picture(draw)
+    check_outputs(file, draw)
     mechanism = read_mechanism(file, changes)
     with progress("following circuits") as tell:
         found = mechanism.circuits(certify=not no_certificates, progress=tell)
+    if draw is not None:
+        picture.write(circuit_chart(found, names), draw)
     if as_json:
         print_json(found.as_dict())
     else:
-        print_lines(circuits_lines(found))
+        written = [] if draw is None else ["", f"Wrote {draw}."]
+        print_lines([*circuits_lines(found), *written])
     if not len(found):
         context.exit(1)
 

@@ -147,7 +147,7 @@ def _certified(motion: Motion) -> Iterator[tuple[str, str]]:
 
 def _worst(motion: Motion, values: Array, measure: str) -> str:
     name, inputs = _lead(motion)
-    row = int(np.nanargmax(values))
+    row = int(np.nanargmax(np.where(np.isfinite(values), values, np.nan)))  # ∞ at limits
     size = f"{values[row]:.2g}{measure}"
     return f"{size}, at {name} = {short(inputs[row])} {motion.input_units[name]}".rstrip()
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
+    from linkwork.drawing.chart import Chart, circuit_chart
     from linkwork.drawing.matplotlib_writer import figure, render, write
     from linkwork.drawing.mechanism_scene import SceneOptions, reach_of, scene_of
     from linkwork.drawing.scene import Arc, Box, Disc, Hatch, Polygon, Polyline, Role, Scene, Text
@@ -15,6 +16,7 @@ else:
     __getattr__ = loader(
         __name__,
         {
+            "chart": ("Chart", "circuit_chart"),
             "matplotlib_writer": ("figure", "render", "write"),
             "mechanism_scene": ("SceneOptions", "reach_of", "scene_of"),
             "scene": (
@@ -36,6 +38,7 @@ __all__ = [
     "LIGHT",
     "Arc",
     "Box",
+    "Chart",
     "Disc",
     "Hatch",
     "Polygon",
@@ -46,6 +49,7 @@ __all__ = [
     "Style",
     "Text",
     "Theme",
+    "circuit_chart",
     "figure",
     "reach_of",
     "render",

@@ -1,7 +1,7 @@
 """Scenes as PNG, SVG and PDF, and as Matplotlib figures for notebooks.
 
-The only module that needs Matplotlib, and only when it draws. The object-oriented interface is
-used throughout: no window, no global figure.
+Matplotlib is needed only here and for charts, and only when something is drawn. The
+object-oriented interface is used throughout: no window, no global figure.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
+from linkwork.drawing.chart import Chart
+from linkwork.drawing.matplotlib_chart import chart_figure
 from linkwork.drawing.scene import (
     XY,
     Arc,
@@ -51,8 +53,10 @@ _DATELESS: dict[str, dict[str, str | None]] = {
 }
 
 
-def write(scene: Scene, path: str | Path, *, dpi: float = 200.0, theme: Theme = LIGHT) -> Path:
-    """Write a scene to a file; the suffix of ``path`` chooses the format.
+def write(
+    scene: Scene | Chart, path: str | Path, *, dpi: float = 200.0, theme: Theme = LIGHT
+) -> Path:
+    """Write a scene or a chart to a file; the suffix of ``path`` chooses the format.
 
     The file appears whole or not at all, and the same scene gives the same bytes.
 
@@ -80,13 +84,16 @@ def write(scene: Scene, path: str | Path, *, dpi: float = 200.0, theme: Theme = 
     return target
 
 
-def render(scene: Scene, kind: str, *, dpi: float = 200.0, theme: Theme = LIGHT) -> bytes:
-    """A scene as the content of a file of one of :data:`FORMATS`."""
+def render(scene: Scene | Chart, kind: str, *, dpi: float = 200.0, theme: Theme = LIGHT) -> bytes:
+    """A scene or a chart as the content of a file of one of :data:`FORMATS`."""
     if kind not in FORMATS:
         raise InputError(f'there is no format "{kind}" (formats: {", ".join(FORMATS)})')
     buffer = io.BytesIO()
     with _house_settings():
-        figure(scene, theme=theme).savefig(buffer, format=kind, dpi=dpi, metadata=_DATELESS[kind])
+        page = (
+            chart_figure(scene, theme) if isinstance(scene, Chart) else figure(scene, theme=theme)
+        )
+        page.savefig(buffer, format=kind, dpi=dpi, metadata=_DATELESS[kind])
     return buffer.getvalue()
 
 

@@ -1,9 +1,9 @@
 """Blocks of loop equations as bilinear systems: unknown directions e^{iθ} instead of angles.
 
-Every term c s e^{i(Σ w θ + known)} of a block must stand along one unknown direction, or none. Linear
-rows between angles are solved first; then the sums of angles that occur in the terms become the
-unknown directions themselves, which works as long as there are as many of them as angles left and
-angles follow from them without fractions. Otherwise the block leaves this form, and says why.
+Every term c s e^{i(Σ w θ + known)} of a block must stand along one unknown direction, or none.
+Linear rows between angles are solved first; then the sums of angles that occur in the terms become
+the unknown directions themselves, which works as long as there are as many of them as angles left
+and angles follow from them without fractions. Otherwise the block leaves this form, and says why.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ from linkwork.numerics.bilinear import BilinearSystem
 __all__ = ["DirectionForm", "NoDirectionForm", "direction_form"]
 
 _UNIT = np.finfo(float).eps / 2
+_MOST_LOOPS = 6  # C(12, 6) = 924 paths to a random system
+_DEPENDENT = 1e-12  # smallest singular value of a closure matrix, relative to the largest
 _WHOLE = 1e-12  # how far a weight may be from a whole number
 
 
@@ -55,7 +57,7 @@ class DirectionForm:
     @property
     def directions(self) -> int:
         """D, the number of unknown directions."""
-        return self.angles.shape[1]
+        return int(self.angles.shape[1])
 
     @property
     def turning(self) -> IndexArray:
@@ -88,7 +90,8 @@ class DirectionForm:
         weights = np.zeros((table.variables, len(loops.row)))
         np.add.at(weights, (loops.phase_variable, loops.phase_term), loops.phase_weight)
         phase = v @ weights
-        slack = off @ np.abs(weights) + 4.0 * _UNIT * (4.0 + np.abs(v) @ np.abs(weights))
+        turned = np.abs(v) @ np.abs(weights)
+        slack = off @ np.abs(weights) + _UNIT * (4.0 * turned + 16.0 + len(loops.row))
         length = np.ones(phase.shape)
         length_off = np.zeros(phase.shape)
         for t, j in enumerate(loops.length):
@@ -100,12 +103,22 @@ class DirectionForm:
         error = np.abs(loops.coefficient) / size * (np.abs(length) * slack + length_off)
         left = np.zeros((len(known), loops.rows, self.rows.shape[1] + 1), dtype=complex)
         away = np.zeros(left.shape)
-        np.add.at(left, (slice(None), loops.row, self.column), term)
-        np.add.at(away, (slice(None), loops.row, self.column), error)
+        for t, (row, column) in enumerate(zip(loops.row, self.column, strict=True)):
+            left[:, row, column] += term[:, t]
+            away[:, row, column] += error[:, t]
         return left, away
 
     def system(self, left: ComplexArray) -> BilinearSystem:
-        """The bilinear system of one closure matrix (L, M + 1)."""
+        """The bilinear system of one closure matrix (L, M + 1).
+
+        Raises
+        ------
+        NoDirectionForm
+            If the loops say the same twice.
+        """
+        sizes = np.linalg.svd(left, compute_uv=False)
+        if sizes[-1] <= _DEPENDENT * sizes[0]:
+            raise NoDirectionForm("do not say different things: one follows from the others")
         return BilinearSystem(left=left, right=left.conj(), rows=self.rows)
 
     def unknowns(self, x: ComplexArray, known: Array, near: Array) -> Array:
@@ -149,6 +162,10 @@ def direction_form(table: LoopTable) -> DirectionForm:
     directions, number = _directions(sums)
     angles = reduce @ _inverse(directions, reduce.shape[1])
     along = _along(table, number, sliding)
+    if loops.rows > _MOST_LOOPS:
+        raise NoDirectionForm(
+            f"are {loops.rows} coupled loops, more than the {_MOST_LOOPS} whose paths are followed"
+        )
     size = len(directions) + len(sliding)
     if size != 2 * loops.rows:
         raise NoDirectionForm("do not have two unknown directions or lengths for every loop")
@@ -230,7 +247,7 @@ def _inverse(directions: list[tuple[float, ...]], angles: int) -> Array:
     if angles and abs(abs(float(np.linalg.det(matrix))) - 1.0) > 1e-9:
         raise NoDirectionForm("contain angles with ratios other than 1, as gears do")
     inverse = np.linalg.inv(matrix)
-    whole: Array = np.round(inverse)
+    whole = np.asarray(np.round(inverse), dtype=float)
     if (
         np.abs(inverse - whole).max(initial=0.0) > 1e-9
         or np.abs(matrix - np.round(matrix)).max(initial=0.0) > _WHOLE

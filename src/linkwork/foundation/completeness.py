@@ -19,8 +19,8 @@ class Completeness(Enum):
         "all solution paths from a random start are accounted for"
     )
     MULTIPLE = (
-        "not proved: some configurations coincide, the mechanism is at a dead point or change "
-        "point; ask for an input value beside it"
+        "not proved: some solutions coincide, as they do at a dead point or change point; "
+        "ask for an input value beside it"
     )
     NOT_PROVED = (
         "not proved: solution paths were lost, so configurations may be missing; "

@@ -70,6 +70,8 @@ class Description:
         Named formulas of unknowns, dimensions and point coordinates (``A.x``).
     source : str
         Where the mechanism comes from.
+    configuration : str
+        The name of the configuration or branch to start from instead of the guess.
 
     Raises
     ------
@@ -85,6 +87,7 @@ class Description:
     trace: tuple[str, ...] = ()
     outputs: Mapping[str, str] = FrozenDict()
     source: str = ""
+    configuration: str = ""
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__

@@ -212,6 +212,7 @@ def _branches(leads: Leads, up: Traced, down: Traced | None, fine: int) -> list[
     joined = replace(
         first,
         v=np.concatenate([first_back.v[:0:-1], first.v]),
+        limits=(*first_back.limits[:0:-1], *first.limits),
         begin=first_back.end,
         anchor=best.anchor,
         leader=best.leader,

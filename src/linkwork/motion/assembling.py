@@ -11,10 +11,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.equations.directions import DirectionForm, NoDirectionForm, direction_form
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, CountArray, IndexArray
+from linkwork.foundation.arrays import (
+    Array,
+    BoolArray,
+    ComplexArray,
+    CountArray,
+    IndexArray,
+)
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.status import Status
 from linkwork.kernels.loop_table import LoopTable
+from linkwork.motion.configuration_names import combined_name, ordered
 from linkwork.motion.model import Model
 from linkwork.motion.turned_slides import TurnedSlide, turned_slides
 from linkwork.numerics.bilinear import Roots, proved_roots
@@ -32,8 +39,8 @@ _ALMOST_REAL = 1e-6  # an unproved root this near to its mirror image is tried a
 _ALMOST_DOUBLE = 1e-3  # and a multiple one
 _MOVED = 1e-5  # weighted: how far Newton's method may carry a root to its position,
 _MOVED_DOUBLE = 1e-2  # and a multiple one
+_SAME = 1e-10  # weighted: two positions of a block are one
 _CLOSED = 1e-12  # scaled residual at which a multiple root is a position
-_ROUND = 1e-9  # rad: angles are ordered from 0 to a full turn, this much below counts as 0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -101,7 +108,7 @@ class _Assembly:
             try:
                 self._add(block)
             except NoDirectionForm as reason:
-                self._give_up(f"the equations of {self._names(block)} {reason}")
+                self._give_up(f"the equations of {', '.join(self._names(block))} {reason}")
                 break
             if len(self.v) > _LARGEST:
                 self._give_up(f"there are more than {_LARGEST} of them")
@@ -111,14 +118,14 @@ class _Assembly:
             v=self.v,
             proof=self.proof,
             iterations=self.iterations,
-            names=tuple(_combined(labels, k + 1) for k, labels in enumerate(self.labels)),
+            names=tuple(combined_name(labels, k + 1) for k, labels in enumerate(self.labels)),
             completeness=self.completeness,
             message="; ".join(notes),
             paths=tuple(self.paths),
         )
 
-    def _names(self, block: Block) -> str:
-        return ", ".join(self.model.equations.unknowns[int(k)].name for k in block.unknowns)
+    def _names(self, block: Block) -> tuple[str, ...]:
+        return tuple(self.model.equations.unknowns[int(k)].name for k in block.unknowns)
 
     def _give_up(self, why: str) -> None:
         self.completeness = Completeness.NOT_LISTED
@@ -133,18 +140,18 @@ class _Assembly:
         form = direction_form(table)
         found = _block_configurations(self.model, block, form, self.v, self.proof.each)
         self.completeness = self.completeness.and_then(found.completeness)
-        self.paths.append(replace(found.paths, unknowns=tuple(self._names(block).split(", "))))
-        v, rows = found.v, found.rows
-        keep = np.arange(len(v))
-        for slide in self.slides:
-            if slide.angle in block.unknowns:
-                v, keep = _folded(slide, v, rows, keep)
-                if len(keep) < len(rows):
-                    self.notes.append(self._fold_note(slide))
-        v, rows, double = v[keep], rows[keep], found.multiple[keep]
-        folded = any(slide.angle in block.unknowns for slide in self.slides)
+        self.paths.append(replace(found.paths, unknowns=self._names(block)))
+        slides = [slide for slide in self.slides if slide.angle in block.unknowns]
+        v = found.v
+        for slide in slides:
+            v = _folded(slide, v)
+        keep = np.ones(len(v), dtype=bool)
+        if slides:
+            keep = _different(self.model, v, found.rows)
+            self.notes += [self._fold_note(slide) for slide in slides if not keep.all()]
+        v, rows, double = v[keep], found.rows[keep], found.multiple[keep]
         part = linearised(block, v)
-        order, labels = _ordered(block, form, v, rows, part.sign, double, folded)
+        order, labels = ordered(block, form, v, rows, part.sign, double, bool(slides))
         before = _rows_of(self.proof, rows)
         radii = prove_block(block, part, v, before.each)
         each = before.each
@@ -180,61 +187,63 @@ class _BlockFound:
 def _block_configurations(
     model: Model, block: Block, form: DirectionForm, v: Array, each: Array
 ) -> _BlockFound:
-    n = len(block.unknowns)
-    known, spread = v[:, block.variables[n:]], each[:, block.variables[n:]]
+    """A block solved for every row of v (R, N), known within ``each`` (R, N)."""
+    known = v[:, block.variables[len(block.unknowns) :]]
     near = model.equations.start[block.unknowns]
-    count = PathCount(unknowns=(), solved=0)
-    grade = Completeness.PROVED
-    starts: list[Array] = []
-    rows: list[int] = []
-    multiple: list[bool] = []
-    left, off = (None, None) if not form.table.loops.rows else form.closures(known, spread)
-    for row in range(len(v)):
-        if left is None or off is None:  # angles that follow from others without a loop
-            x, double = np.zeros((1, 0), dtype=complex), np.zeros(1, dtype=bool)
-            count = count.plus(PathCount(unknowns=(), paths=0, finite=1, real=1, expected=1))
-        else:
-            solved = _solved(form, left[row], off[row])
-            grade = grade.and_then(solved.grade)
-            x, double = solved.x, solved.multiple
-            count = count.plus(solved.paths)
-        own = form.unknowns(x, np.repeat(known[row : row + 1], len(x), axis=0), near)
-        starts += list(own)
-        rows += [row] * len(x)
-        multiple += double.tolist()
-    place = np.array(rows, dtype=np.intp)
-    doubles = np.array(multiple, dtype=bool)
-    whole = v[place]
-    if not len(place):
-        return _BlockFound(
-            v=whole,
-            rows=place,
-            multiple=doubles,
-            iterations=np.zeros(0, dtype=np.int64),
-            completeness=grade,
-            paths=count,
-        )
-    whole[:, block.unknowns] = np.array(starts)
-    done = newton(block.system, whole[:, block.variables], model.compiled.solver.options)
-    weights = block.system.variable_scale[:n]
-    moved = np.abs(done.v[:, :n] - whole[:, block.unknowns]) / weights
-    far = moved.max(axis=1, initial=0.0)
-    size = 1.0 + np.abs(whole[:, block.unknowns] / weights * ~block.system.turns[:n]).max(axis=1)
-    good = (done.status == Status.CONVERGED.code) & (far <= _MOVED * size)
-    good |= doubles & (done.residual <= _CLOSED) & (far <= _MOVED_DOUBLE * size)
-    whole[:, block.unknowns] = done.v[:, :n]
-    lost = int((~good & ~doubles).sum())
-    if lost:
+    if form.table.loops.rows:
+        spread = each[:, block.variables[len(block.unknowns) :]]
+        closures = zip(*form.closures(known, spread), strict=True)
+        solved = [_solved(form, left, off) for left, off in closures]
+    else:  # angles that follow from others without a loop
+        solved = [_FOLLOWS] * len(v)
+    rows = np.repeat(np.arange(len(v)), [len(part.x) for part in solved])
+    x = np.concatenate([part.x for part in solved])
+    multiple = np.concatenate([part.multiple for part in solved])
+    start = v[rows]
+    start[:, block.unknowns] = form.unknowns(x, known[rows], near)
+    end, good, iterations = _settled(model, block, start, multiple)
+    good[good] = _different(model, end[good], rows[good])
+    grade, count = solved[0].grade, solved[0].paths
+    for part in solved[1:]:
+        grade, count = grade.and_then(part.grade), count.plus(part.paths)
+    if (~good & ~multiple).any():  # proved as directions, but not as angles and lengths
         grade = grade.and_then(Completeness.NOT_PROVED)
-        count = replace(count, failed=count.failed + lost, real=count.real - lost)
     return _BlockFound(
-        v=whole[good],
-        rows=place[good],
-        multiple=doubles[good],
-        iterations=done.iterations[good],
+        v=end[good],
+        rows=rows[good],
+        multiple=multiple[good],
+        iterations=iterations[good],
         completeness=grade,
-        paths=count,
+        paths=replace(count, real=int(good.sum())),
     )
+
+
+def _settled(
+    model: Model, block: Block, start: Array, multiple: BoolArray
+) -> tuple[Array, BoolArray, CountArray]:
+    """Newton's method in angles and lengths from (R, N); which stayed at their root; iterations."""
+    done = newton(block.system, start[:, block.variables], model.compiled.solver.options)
+    n = len(block.unknowns)
+    weights = block.system.variable_scale[:n]
+    here = start[:, block.unknowns] / weights
+    far = np.abs(done.v[:, :n] / weights - here).max(axis=1, initial=0.0)
+    far /= 1.0 + np.abs(here[:, ~block.system.turns[:n]]).max(axis=1, initial=0.0)
+    good = (done.status == Status.CONVERGED.code) & (far <= _MOVED)
+    good |= multiple & (done.residual <= _CLOSED) & (far <= _MOVED_DOUBLE)
+    end = start.copy()
+    end[:, block.unknowns] = done.v[:, :n]
+    return end, good, done.iterations
+
+
+def _different(model: Model, v: Array, rows: IndexArray) -> BoolArray:
+    """Which positions (R, N) are no repetition of an earlier one of the same row (ascending)."""
+    size, turns = model.compiled.solver.variable_scale, model.compiled.table.turns
+    fresh = np.ones(len(v), dtype=bool)
+    for k, begin in enumerate(np.searchsorted(rows, rows)):
+        gap = np.abs(v[begin:k] - v[k])
+        gap = np.where(turns, np.minimum(gap, np.abs(gap - 2.0 * np.pi)), gap)
+        fresh[k] = not ((gap <= _SAME * size).all(axis=1) & fresh[begin:k]).any()
+    return fresh
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -245,6 +254,15 @@ class _Solved:
     multiple: BoolArray
     grade: Completeness
     paths: PathCount
+
+
+#: A block without loops: its only solution has no directions.
+_FOLLOWS = _Solved(
+    x=np.zeros((1, 0), dtype=complex),
+    multiple=np.zeros(1, dtype=bool),
+    grade=Completeness.PROVED,
+    paths=PathCount(unknowns=(), finite=1, real=1, expected=1),
+)
 
 
 def _solved(form: DirectionForm, left: ComplexArray, off: Array) -> _Solved:
@@ -258,7 +276,11 @@ def _solved(form: DirectionForm, left: ComplexArray, off: Array) -> _Solved:
     doubles = roots.multiple[_mirror_gap(roots.multiple, m) < _ALMOST_DOUBLE]
     if roots.continuum:
         grade = Completeness.CONTINUUM
-    elif roots.failed or roots.paths != len(roots.x) + roots.at_infinity + roots.singular:
+    elif (
+        not roots.sure
+        or roots.failed
+        or roots.paths != len(roots.x) + roots.at_infinity + roots.singular
+    ):
         grade = Completeness.NOT_PROVED
     elif roots.singular or unproved.any():
         grade = Completeness.MULTIPLE
@@ -306,78 +328,10 @@ def _rows_of(proof: Proof, rows: IndexArray) -> Proof:
     )
 
 
-def _folded(
-    slide: TurnedSlide, v: Array, rows: IndexArray, keep: IndexArray
-) -> tuple[Array, IndexArray]:
-    """Positions with a negative length turned around; the first of each pair that then agrees."""
+def _folded(slide: TurnedSlide, v: Array) -> Array:
+    """Positions (R, N) with negative lengths turned around."""
     v = v.copy()
     negative = v[:, slide.lengths[0]] < 0.0
-    v[np.ix_(negative, slide.lengths)] *= -1.0
+    v[np.ix_(negative, np.array(slide.lengths))] *= -1.0
     v[negative, slide.angle] += np.where(v[negative, slide.angle] > 0.0, -np.pi, np.pi)
-    size = np.maximum(np.abs(v).max(axis=0), 1.0)
-    stay: list[int] = []
-    for k in keep.tolist():
-        gap = [np.abs(v[k] - v[other]) for other in stay if rows[other] == rows[k]]
-        turned = [np.minimum(g, np.abs(g - 2.0 * np.pi)) for g in gap]
-        if not any(bool((g <= 1e-7 * size).all()) for g in turned):
-            stay.append(k)
-    return v, np.array(stay, dtype=np.intp)
-
-
-def _ordered(
-    block: Block,
-    form: DirectionForm,
-    v: Array,
-    rows: IndexArray,
-    sign: Array,
-    double: BoolArray,
-    folded: bool,
-) -> tuple[list[int], dict[int, str]]:
-    """The documented order of a block's configurations, and what each is called."""
-    dyad = form.table.loops.rows == 1
-    single = len(form.turning) == 0 or form.rows.shape[1] == 0 or (dyad and folded)
-    turns = block.system.turns[: len(block.unknowns)]
-    keys: list[tuple[float, ...]] = []
-    names = []
-    for k in range(len(v)):
-        own = v[k, block.unknowns]
-        angle = np.mod(own + _ROUND, 2.0 * np.pi)
-        values = np.round(np.where(turns, angle, own) / _ROUND).tolist()
-        name = "" if single else "number"
-        rank = 0.0
-        if dyad and not single:
-            name = "double" if double[k] else "open" if _is_open(form, sign[k]) else "crossed"
-            rank = float(("open", "crossed", "double").index(name))
-        names.append(name)
-        keys.append((float(rows[k]), rank, *values))
-    order = sorted(range(len(v)), key=keys.__getitem__)
-    labels: dict[int, str] = {}
-    number = {int(row): 0 for row in rows}
-    for k in order:
-        number[int(rows[k])] += 1
-        labels[k] = str(number[int(rows[k])]) if names[k] == "number" else names[k]
-    return order, labels
-
-
-def _is_open(form: DirectionForm, sign: float) -> bool:
-    """Which of two configurations of a dyad is called open; ``sign`` is that of det J.
-
-    Two links: the turn from the first one to the second, head to tail, is clockwise. A link and a
-    length along a known direction: the link points towards larger lengths. A length along the
-    turning link: the side of larger lengths.
-    """
-    length_first = len(form.sliding) > 0 and form.sliding[0] < form.turning[0]
-    turned = -sign if length_first else sign
-    if len(form.sliding) and form.along[0] < 0:
-        return turned > 0
-    return turned < 0
-
-
-def _combined(labels: tuple[str, ...], number: int) -> str:
-    """The name of a configuration: ``open``, ``open-crossed``, ``configuration 3``."""
-    parts = [label for label in labels if label]
-    if not parts:
-        return f"configuration {number}"
-    if len(parts) == 1 and parts[0].isdigit():
-        return f"configuration {parts[0]}"
-    return "-".join(parts)
+    return v

@@ -14,6 +14,7 @@ from linkwork.numerics.curve import Curve, CurveOptions, Leads, Led, Leg, trace
 from linkwork.numerics.proven_curve import ProvenCurve, prove_curve, same_solution
 from linkwork.numerics.track import Track, TrackOptions, rows_on_track
 from linkwork.numerics.turning_point import TurningPoint, turning_points
+from linkwork.results.motion import LimitKind
 
 __all__ = ["CurveBranch", "Traced", "branches_of", "traced"]
 
@@ -55,6 +56,8 @@ def traced(leads: Leads, start: Array, heading: float | Array, certify: bool) ->
 class CurveBranch:
     """A piece of a curve along which the parameter goes one way.
 
+    ``limits`` (K,): ``dead point``, ``change point`` or "" for each position.
+
     ``side``: +1 if it grows in the direction of travel. ``v`` (K, N): positions along it, the dead
     points at its ends among them. ``anchor`` (N,): where the parameter leads best, ``leader`` of
     the curve there, ``ratio`` of the parameter's speed to the fastest there. ``begin``, ``end``:
@@ -63,6 +66,7 @@ class CurveBranch:
 
     side: float
     v: Array
+    limits: tuple[str, ...]
     anchor: Array
     leader: Led
     ratio: float
@@ -86,6 +90,7 @@ class _Sample:
     v: Array
     ratio: float  # of the parameter's speed to the fastest
     leader: Led
+    limit: str = ""
 
 
 def branches_of(leads: Leads, found: Traced, fine: int = 1) -> list[CurveBranch]:
@@ -106,12 +111,17 @@ def branches_of(leads: Leads, found: Traced, fine: int = 1) -> list[CurveBranch]
         for k in range(len(t)):
             while waiting and waiting[0].leg == number and sign * (waiting[0].node.t - t[k]) < 0.0:
                 turn = waiting.pop(0)
-                at = _Sample(v=turn.v, ratio=0.0, leader=leg.led)
+                at = _Sample(v=turn.v, ratio=0.0, leader=leg.led, limit=LimitKind.DEAD_POINT.word)
                 pieces[-1].append(at)
                 ends.append(turn)
                 pieces.append([at])
                 proved.append(found.certified)
             pieces[-1].append(_Sample(v=v[k], ratio=float(ratio[k]), leader=leg.led))
+    crossing = found.curve.crossing
+    if crossing is not None and found.curve.legs:
+        led = found.curve.legs[-1].led
+        word = LimitKind.CHANGE_POINT.word
+        pieces[-1].append(_Sample(v=led.whole(crossing.v), ratio=0.0, leader=led, limit=word))
     begins: list[TurningPoint | None] = [None, *ends]
     finishes: list[TurningPoint | None] = [*ends, None]
     branches = [
@@ -122,7 +132,10 @@ def branches_of(leads: Leads, found: Traced, fine: int = 1) -> list[CurveBranch]
         first, last = branches[0], branches.pop()
         shift = first.v[0] - last.v[-1]  # whole turns
         branches[0] = replace(
-            first, v=np.concatenate([last.v[:-1] + shift, first.v]), begin=last.begin
+            first,
+            v=np.concatenate([last.v[:-1] + shift, first.v]),
+            limits=(*last.limits[:-1], *first.limits),
+            begin=last.begin,
         )
     return branches
 
@@ -160,6 +173,7 @@ def _branch(
     return CurveBranch(
         side=float(np.sign(v[-1, parameter] - v[0, parameter])) or 1.0,
         v=v,
+        limits=tuple(sample.limit for sample in samples),
         anchor=best.v,
         leader=best.leader,
         ratio=best.ratio,

@@ -201,7 +201,7 @@ class _Circuits:
             name=name,
             end=end,
             certified=all(arc.certified for arc in group.arcs),
-            input_range=(float(ranges[:, 0].min()), float(ranges[:, 1].max())),
+            input_range=(_tidy(float(ranges[:, 0].min())), _tidy(float(ranges[:, 1].max()))),
             turns=self._turns(around),
             turning={} if around is None else self._turning(around),
             branches=branches,
@@ -220,7 +220,7 @@ class _Circuits:
         scale = float(self.model.input_scale[self.lead])
         return Branch(
             name=name,
-            input_range=(low / scale, high / scale),
+            input_range=(_tidy(low / scale), _tidy(high / scale)),
             configuration=self._configuration_on(branch),
             certified=arc.certified,
         )
@@ -294,7 +294,7 @@ class _Circuits:
         for branch, named in zip(pieces, names, strict=True):
             here = slice(begin, begin + len(branch.v))
             begin += len(branch.v)
-            rows.branch[here] = named.name
+            rows.branch[here], rows.limit[here] = named.name, branch.limits
             code = Certification.CERTIFIED if named.certified else Certification.MOTION_NOT_PROVED
             rows.certification[here] = (code if self.certify else Certification.NOT_ASKED).code
         return motion_of_rows(model, rows, "", added=np.zeros(len(v), dtype=bool), circuit=None)
@@ -309,6 +309,12 @@ def _end_of(group: _Group) -> CircuitEnd:
     ):
         return CircuitEnd.CHANGE_POINT
     return max(ends, key=list(CircuitEnd).index)
+
+
+def _tidy(value: float) -> float:
+    """The value to nine decimals where that is the same number to rounding."""
+    short = round(value, 9)
+    return short + 0.0 if abs(short - value) <= 1e-13 * max(1.0, abs(value)) else value
 
 
 def is_branch_name(name: str) -> bool:

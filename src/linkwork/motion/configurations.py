@@ -30,7 +30,7 @@ from linkwork.results.position import Certificate, Position
 
 __all__ = ["configurations", "solve_configuration", "started_in"]
 
-_NONE = "there is no configuration at this input: the loops cannot be closed there"
+_NONE = "there is no configuration at this input: the loops cannot be closed"
 
 
 def configurations(model: Model, at: float | Mapping[str, float] | None = None) -> Configurations:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -37,6 +37,11 @@ class Model:
     compiled: Compiled
     skeleton: Skeleton
     branch: str = "circuit 1 branch 1"
+
+    def from_start_of(self, other: Model) -> Model:
+        """The model with the guess of another one of the same equations."""
+        equations = replace(self.equations, start=other.equations.start)
+        return replace(self, equations=equations, branch=other.branch)
 
     @property
     def circuit(self) -> str:

@@ -5,10 +5,10 @@ Unknowns U and V, M = 2L complex numbers each, satisfy L linear equations each a
     left · (U, 1) = 0,     right · (V, 1) = 0,     U_p V_q = U_p' V_q'     (index M stands for 1).
 
 With U = e^{iθ} and V = e^{-iθ}: U_k V_k = 1 for an angle, U_z = V_z for a length along a fixed
-direction, U_z V_a = U_a V_z for one along a turning direction (Wampler 2001,
-doi:10.1115/1.1372192). The system of a real mechanism has right = conj(left), and its real
-solutions have V = conj(U). On the two null spaces the M products are bilinear equations in P^L × P^L
-with at most C(2L, L) isolated solutions (Morgan & Sommese 1987, doi:10.1016/0096-3003(87)90063-4).
+direction, U_z V_a = U_a V_z for one along a turning direction (Wampler 2001, J. Mech. Des. 123,
+382). The system of a real mechanism has right = conj(left), and its real solutions have
+V = conj(U). On the two null spaces the M products are bilinear equations in P^L × P^L with at most
+C(2L, L) isolated solutions (Morgan & Sommese 1987, Appl. Math. Comput. 24, 101).
 """
 
 from __future__ import annotations
@@ -46,12 +46,12 @@ class BilinearSystem:
     @property
     def loops(self) -> int:
         """L."""
-        return self.left.shape[0]
+        return len(self.left)
 
     @property
     def size(self) -> int:
         """M = 2L, the unknowns in U and in V."""
-        return self.left.shape[1] - 1
+        return 2 * len(self.left)
 
     @property
     def bound(self) -> int:
@@ -107,6 +107,8 @@ class Roots:
         Paths tracked; those that ran to infinity, ended at a singular solution, were lost.
     expected : int
         How many solutions random systems of this structure have.
+    sure : bool
+        Whether that number was confirmed.
     continuum : bool
         Whether a singular end belongs to a curve of solutions.
     """
@@ -118,6 +120,7 @@ class Roots:
     singular: int
     failed: int
     expected: int
+    sure: bool
     continuum: bool
 
 
@@ -194,7 +197,7 @@ def proved_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prov
     count, m = len(x), system.size
     f, j = system.residual_and_jacobian(x)
     a = solved(j, np.broadcast_to(np.eye(2 * m, dtype=complex), j.shape))
-    good = np.isfinite(a).all(axis=(1, 2))
+    good: BoolArray = np.asarray(np.isfinite(a).all(axis=(1, 2)))
     a = np.where(good[:, None, None], a, 0.0)
     size = np.abs(a)
     u, v = np.abs(_with_one(x[:, :m])), np.abs(_with_one(x[:, m:]))
@@ -207,7 +210,7 @@ def proved_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prov
     blur = np.zeros((2 * m, 2 * m))
     blur[: system.loops, :m] = slip[:, :m]
     blur[system.loops : m, m:] = slip_right[:, :m]
-    y = np.abs(_apply(a, f)) + _apply(size, error + weight * np.abs(f))
+    y = np.abs((a @ f[:, :, None])[:, :, 0]) + _apply(size, error + weight * np.abs(f))
     z = np.abs(np.eye(2 * m) - a @ j) + size @ (blur + weight * np.abs(j))
     y_max, z_max = _SLACK * y.max(axis=1), _SLACK * z.sum(axis=2).max(axis=1)
     omega = _SLACK * (size[:, :, m:] @ system._curvature).max(axis=1)
@@ -232,6 +235,6 @@ def proved_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prov
     )
 
 
-def _apply(matrix: ComplexArray | Array, vector: ComplexArray | Array) -> Array:
+def _apply(matrix: Array, vector: Array) -> Array:
     product: Array = (matrix @ vector[:, :, None])[:, :, 0]
     return product

@@ -174,15 +174,15 @@ class ParameterHomotopy(_Patched):
             wide = signs * (rows @ vectors)[taken]
             sides.append((null, base, wide, kernel @ patches[k], pole))
             signs[goal.size :] = -1.0
-        null, base, wide, kernel, pole = zip(*sides, strict=True)
+        parts = [np.stack(part) for part in zip(*sides, strict=True)]
         return cls(
             rows=goal.rows,
             patches=patches,
-            spaces=(null[0], null[1]),
-            base=np.stack(base),
-            wide=np.stack(wide),
-            kernel=np.stack(kernel),
-            pole=np.stack(pole),
+            spaces=(parts[0][0], parts[0][1]),
+            base=parts[1],
+            wide=parts[2],
+            kernel=parts[3],
+            pole=parts[4],
         )
 
     def starts(self, x: ComplexArray) -> ComplexArray:

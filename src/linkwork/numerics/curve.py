@@ -250,12 +250,13 @@ class _Tracer:
                 return True
             return bool(speed.max() > opt.fast * speed[-1])
 
-        goal = node.t + sign * 8.0 * weights[-1]
+        size = float(weights[-1])
+        if not self.leads.turns[led.lead]:  # a length that runs away is followed in growing steps
+            size = max(size, abs(node.t))
+        goal = node.t + sign * 8.0 * size
         if own:
             goal = self._next_plane(node.t, sign)
-        nodes, end = follow(
-            led.solver, led.path, node, goal, float(weights[-1]), opt.track, until=done
-        )
+        nodes, end = follow(led.solver, led.path, node, goal, size, opt.track, until=done)
         chain = [node, *nodes]
         if passed:
             crossing = self._crossing(led, chain[-2], chain[-1], passed[0])

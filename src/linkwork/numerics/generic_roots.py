@@ -2,18 +2,17 @@
 
 Systems with the same zeros and the same sums within the columns of their closure matrices (a link
 with three joints enters three loops with a, b and a + b) form a family. Almost every member of a
-family has the same number of isolated solutions, and a straight path from a random complex member to
-any other one leads to all isolated solutions of the latter (Morgan & Sommese 1989,
-doi:10.1016/0096-3003(89)90099-4; Sommese & Wampler 2005, ch. 7). The random member is solved once
-per process from C(2L, L) products of linear forms, and its set of solutions is completed until
-closed paths of systems lead to no new one.
+family has the same number of isolated solutions, and a straight path from a random complex member
+to any other one leads to all isolated solutions of the latter (Morgan & Sommese 1989, Appl. Math.
+Comput. 29, 123; Sommese & Wampler 2005, ch. 7). The random member is solved once per process from
+C(2L, L) products of linear forms, and its set of solutions is completed until closed paths of
+systems lead to no new one.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -71,12 +70,11 @@ class Structure:
             both.append(np.stack(parts, axis=1))
         return BilinearSystem(left=both[0], right=both[1], rows=np.array(self.rows))
 
-    @cached_property
-    def seed(self) -> np.random.SeedSequence:
-        """A seed of its own that does not depend on what was solved before."""
+    def generator(self, purpose: int) -> np.random.Generator:
+        """Random numbers of the family's own, the same in every run and in any order of calls."""
         flat = [k for row in self.rows for k in row]
         flat += [w + 1 for column in self.columns for entry in column for w in (*entry, 2)]
-        return np.random.SeedSequence([SEED, *flat])
+        return np.random.default_rng([SEED, purpose, *flat])
 
 
 def structure_of(system: BilinearSystem) -> Structure:
@@ -117,10 +115,11 @@ class _Ends:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Generic:
-    """A random member of a family with all its solutions."""
+    """A random member of a family with its solutions; ``sure`` that these are all."""
 
     system: BilinearSystem
     x: ComplexArray
+    sure: bool = False
 
 
 _KNOWN: dict[Structure, _Generic] = {}
@@ -135,7 +134,7 @@ def isolated_roots(system: BilinearSystem) -> Roots:
     """
     structure = structure_of(system)
     generic = _generic(structure)
-    rng = np.random.default_rng(structure.seed.spawn(2)[1])
+    rng = structure.generator(1)
     expected = len(generic.x)
     best: _Ends | None = None
     for attempt in range(_ATTEMPTS):
@@ -147,7 +146,7 @@ def isolated_roots(system: BilinearSystem) -> Roots:
             if ends.regular.all() or (agreed and not ends.failed.any()):
                 break
     assert best is not None
-    return _roots(system, best, expected)
+    return _roots(system, best, generic)
 
 
 def _quality(ends: _Ends) -> tuple[int, int]:
@@ -163,7 +162,7 @@ def _agree(system: BilinearSystem, a: _Ends, b: _Ends) -> bool:
 def _generic(structure: Structure) -> _Generic:
     """The stored random member; solved when it is first wanted."""
     if structure not in _KNOWN:
-        rng = np.random.default_rng(structure.seed.spawn(1)[0])
+        rng = structure.generator(0)
         system = structure.random(rng)
         x = np.zeros((0, 2 * system.size), dtype=complex)
         for _ in range(_ATTEMPTS):
@@ -190,7 +189,8 @@ def _closed(structure: Structure, known: _Generic, rng: np.random.Generator) -> 
         quiet = quiet + 1 if whole else 0
         tries += 1
         known = _Generic(system=known.system, x=x)
-    return known
+    sure = quiet == _LOOPS or len(known.x) == known.system.bound
+    return replace(known, sure=sure)
 
 
 def _followed(
@@ -294,17 +294,18 @@ def _distinct(x: ComplexArray, same: float = _SAME) -> ComplexArray:
     return x[kept]
 
 
-def _roots(system: BilinearSystem, ends: _Ends, expected: int) -> Roots:
+def _roots(system: BilinearSystem, ends: _Ends, generic: _Generic) -> Roots:
     multiple = _distinct(ends.x[ends.singular], 1e-2)
     continuum = [_on_a_curve(system, x) for x in multiple]
     return Roots(
         x=ends.x[ends.regular],
         multiple=multiple[~np.array(continuum, dtype=bool)] if continuum else multiple,
-        paths=expected,
+        paths=len(generic.x),
         at_infinity=int(ends.infinite.sum()),
         singular=int(ends.singular.sum()),
         failed=int(ends.failed.sum()),
-        expected=expected,
+        expected=len(generic.x),
+        sure=generic.sure,
         continuum=any(continuum),
     )
 

@@ -97,5 +97,6 @@ def _found(
         singular=2 if curve else count if double else 0,
         failed=0,
         expected=system.bound,
+        sure=True,
         continuum=curve,
     )

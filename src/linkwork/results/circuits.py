@@ -94,7 +94,7 @@ class Circuit:
         return self.motion[name]
 
     def range(self, name: str) -> tuple[float, float]:
-        """Smallest and largest value of a quantity among the positions along the circuit."""
+        """Smallest and largest value among the positions along the circuit, some degrees apart."""
         values = self.motion[name]
         return float(np.nanmin(values)), float(np.nanmax(values))
 

@@ -49,7 +49,9 @@ def configurations_summary(found: Configurations) -> str:
         certified = "certified" if position.certificate.certified else "not certified"
         rows.append((position.configuration, f"{values}  {certified}"))
     rows.append(("completeness", found.message))
-    paths = [f"{count.real} real of {count.finite} solutions" for count in found.paths]
+    paths = [
+        f"{count.real} real of {count.finite + count.multiple} solutions" for count in found.paths
+    ]
     rows.append(("paths", "; ".join(paths)))
     return "\n".join([head, *_aligned(rows)])
 

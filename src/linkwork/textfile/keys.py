@@ -130,6 +130,12 @@ _HEAD = (
     Key("length", Text(), "Unit of every length in this file; nothing is converted"),
     Key("angle", Text(("deg", "rad")), "Unit of every angle in this file"),
     Key("source", Text(), "Where the mechanism comes from: book, page, drawing"),
+    Key(
+        "configuration",
+        Text(),
+        'The configuration or branch to start from instead of the guess: "crossed", '
+        '"circuit 1 branch 2"',
+    ),
 )
 _DIMENSIONS = Key(
     "dimensions", Named(Number()), "Named numbers and formulas, usable wherever a number is"

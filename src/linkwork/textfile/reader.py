@@ -19,7 +19,7 @@ from linkwork.textfile.toml_text import bytes_of, data_of, text_of
 __all__ = ["ReadFile", "read_bytes", "read_file", "read_text"]
 
 #: Tables and keys on which the meaning of no other table depends.
-_LEAVES = frozenset({"name", "length", "source", "input", "trace", "outputs"})
+_LEAVES = frozenset({"name", "length", "source", "configuration", "input", "trace", "outputs"})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,7 +115,15 @@ def _description(content: dict[str, Any], form: Form) -> Linkage | Loops | Plain
     """The mechanism described by the checked content of a file."""
     fields: dict[str, Any] = {
         key: content[key]
-        for key in ("name", "length", "angle", "source", "dimensions", "outputs")
+        for key in (
+            "name",
+            "length",
+            "angle",
+            "source",
+            "configuration",
+            "dimensions",
+            "outputs",
+        )
         if key in content
     }
     fields["inputs"] = tuple(map(_input, content.get("input", ())))

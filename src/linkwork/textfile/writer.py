@@ -82,6 +82,8 @@ def _head(description: Description) -> dict[str, Any]:
     }
     if description.source:
         found["source"] = description.source
+    if description.configuration:
+        found["configuration"] = description.configuration
     if isinstance(description, Linkage) and description.sketch:
         found["sketch"] = True
     return found

@@ -1,0 +1,191 @@
+"""Circuits and branches: what theory says of four-bars, the rapier drive, change points."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from tests.oracles.four_bar import FourBar
+
+LINKS = {
+    "ground": ("O2", "O4"),
+    "crank": ("O2", "A"),
+    "coupler": ("A", "B"),
+    "rocker": ("O4", "B"),
+}
+
+
+def four_bar(bar: FourBar, theta: float, side: int = 1) -> lw.Mechanism:
+    return lw.linkage(points=bar.points(theta, side), links=LINKS, inputs=lw.Input(link="crank"))
+
+
+def random_four_bars(count: int, seed: int) -> list[tuple[FourBar, float]]:
+    """Any lengths that can be assembled, away from change points, with a crank angle in reach."""
+    rng = np.random.default_rng(seed)
+    found: list[tuple[FourBar, float]] = []
+    while len(found) < count:
+        bar = FourBar(*rng.uniform(0.3, 3.0, 4).tolist())
+        lengths = sorted((bar.r1, bar.r2, bar.r3, bar.r4))
+        excess = lengths[0] + lengths[3] - lengths[1] - lengths[2]
+        if 1.98 * lengths[3] > sum(lengths) or abs(excess) < 0.02 * sum(lengths):
+            continue
+        theta = float(rng.uniform(0.0, 2.0 * math.pi))
+        if np.isfinite(bar.coupler_end(np.array(theta), 1)):
+            found.append((bar, theta))
+    return found
+
+
+def grashof(bar: FourBar) -> bool:
+    lengths = sorted((bar.r1, bar.r2, bar.r3, bar.r4))
+    return lengths[0] + lengths[3] < lengths[1] + lengths[2]
+
+
+@pytest.mark.parametrize(
+    ("bar", "theta"), random_four_bars(40, 11), ids=lambda part: f"{part}"[:40]
+)
+def test_circuits_of_four_bars_are_those_of_grashof(bar: FourBar, theta: float) -> None:
+    circuits = four_bar(bar, theta).circuits()
+    assert len(circuits) == (2 if grashof(bar) else 1)
+    lengths = {"ground": bar.r1, "crank": bar.r2, "coupler": bar.r3, "rocker": bar.r4}
+    shortest = min(lengths, key=lengths.__getitem__)
+    for circuit in circuits:
+        assert circuit.closed
+        assert circuit.certified
+        turning = {link for link, turns in circuit.turning.items() if turns}
+        if not grashof(bar):
+            assert turning == set()
+        elif shortest == "ground":
+            assert turning == {"crank", "coupler", "rocker"}
+        else:
+            assert turning == {shortest}
+        full = grashof(bar) and shortest in ("ground", "crank")
+        assert circuit.turns == (1 if full else 0)
+        assert len(circuit.branches) == (1 if full else 2)
+        assert len(circuit.dead_points) == (0 if full else 2)
+        for dead in circuit.dead_points:
+            off = [abs(math.cos(math.radians(dead.input)) - math.cos(d)) for d in bar.dead_points()]
+            assert min(off) < 1e-12
+            assert dead.located
+            assert dead.in_line == ("coupler", "rocker")
+
+
+def test_every_position_along_a_circuit_closes_and_is_near_the_next() -> None:
+    for bar, theta in random_four_bars(6, 12):
+        for circuit in four_bar(bar, theta).circuits():
+            motion = circuit.motion
+            a, b = motion.trace("A"), motion.trace("B")
+            assert np.abs(np.abs(b - a) - bar.r3).max() < 1e-12 * bar.r3
+            assert np.abs(np.abs(b - bar.r1) - bar.r4).max() < 1e-12 * bar.r4
+            for branch in circuit.branches:
+                mine = [k for k, name in enumerate(motion.branch) if name == branch.name]
+                for j, k in pairwise(mine):
+                    assert k == j + 1
+                    assert abs(b[k] - b[j]) < 0.3 * max(bar.r3, bar.r4)
+
+
+def test_full_turn_rapier_has_three_circuits_one_of_them_with_dead_points() -> None:
+    circuits = lw.example("rapier-drive").circuits()
+    assert [circuit.turns for circuit in circuits] == [1, 1, 0]
+    assert all(circuit.closed and circuit.certified for circuit in circuits)
+    low, high = sorted(limit.input for limit in circuits[2].dead_points)
+    assert low == pytest.approx(0.302876213349, abs=1e-11)
+    assert high == pytest.approx(155.227836297534, abs=1e-11)
+    assert [branch.input_range for branch in circuits[2].branches] == [
+        (pytest.approx(low), pytest.approx(high))
+    ] * 2
+    # circuit 1 holds the guess; its positions are a few degrees apart
+    assert circuits[0].range("s16") == pytest.approx((-54.69985, 304.25187), abs=0.3)
+
+
+def test_limited_rapier_has_one_circuit_with_two_branches() -> None:
+    (circuit,) = lw.example("rapier-drive-limited").circuits()
+    assert (circuit.closed, circuit.certified, circuit.turns) == (True, True, 0)
+    inputs = sorted(limit.input for limit in circuit.dead_points)
+    assert inputs == pytest.approx([-158.679899604109, 149.617278637485], abs=1e-11)
+    assert len(circuit.branches) == 2
+    assert circuit.smallest_singular_value == 0.0
+
+
+@pytest.mark.parametrize(
+    ("lengths", "change_points", "branches"),
+    [((2.0, 1.0, 2.0, 1.0), [0.0, 180.0], 4), ((4.0, 1.0, 3.0, 2.0), [180.0], 2)],
+)
+def test_change_points_join_branches_to_one_circuit(
+    lengths: tuple[float, ...], change_points: list[float], branches: int
+) -> None:
+    (circuit,) = four_bar(FourBar(*lengths), 1.0).circuits()
+    assert circuit.end is lw.CircuitEnd.CHANGE_POINT
+    found = sorted(round(limit.input % 360.0, 9) % 360.0 for limit in circuit.change_points)
+    assert found == change_points
+    assert len(circuit.branches) == branches
+    assert circuit.certified
+    assert circuit.smallest_singular_value == 0.0
+
+
+def test_a_kite_moves_while_its_crank_stands_still() -> None:
+    """Galloway's mechanism: at 0 degrees coupler and rocker turn as one about the ground pivot."""
+    (circuit,) = four_bar(FourBar(1.0, 1.0, 2.0, 2.0), 1.0).circuits()
+    assert circuit.end is lw.CircuitEnd.CHANGE_POINT
+    spans = [high - low for low, high in (branch.input_range for branch in circuit.branches)]
+    assert sorted(np.round(spans, 6).tolist()) == [0.0, 0.0, 360.0, 360.0]
+
+
+def test_a_length_that_grows_without_bound_ends_a_circuit() -> None:
+    """A pin on a line runs to infinity where the line and its arm become parallel."""
+    mechanism = lw.loops(
+        name="ray and line",
+        loops={"O P": "r*e^(i*θ) = 1 + i*s"},
+        guess={"θ": 0.3, "r": 1.05, "s": 0.3},
+        angle="rad",
+        inputs=lw.Input(variable="θ", start=0, stop=6, step=0.1),
+    )
+    ends = {circuit.end for circuit in mechanism.circuits()}
+    assert ends == {lw.CircuitEnd.RUNS_TO_INFINITY}
+
+
+def test_branches_are_chosen_by_name_to_solve_and_to_sweep() -> None:
+    mechanism = lw.example("rapier-drive")
+    circuits = mechanism.circuits()
+    for circuit in circuits:
+        for branch in circuit.branches:
+            low, high = branch.input_range
+            at = 0.3 * low + 0.7 * high
+            position = mechanism.solve(at, configuration=branch.name)
+            assert position.certificate.certified
+            motion = circuit.motion
+            mine = [k for k, name in enumerate(motion.branch) if name == branch.name]
+            here = np.interp(
+                at,
+                *(
+                    values[mine][np.argsort(motion["θ12"][mine])]
+                    for values in (motion["θ12"], motion["s16"])
+                ),
+            )
+            assert position["s16"] == pytest.approx(here, abs=2.0)
+            swept = mechanism.sweep(configuration=branch.name)
+            assert set(swept.branch) <= {branch.name, ""}
+            assert swept.certified[swept.found].all()
+
+
+def test_a_name_that_does_not_exist_is_told_with_those_that_do() -> None:
+    mechanism = lw.example("rapier-drive-limited")
+    with pytest.raises(lw.UnknownNameError) as caught:
+        mechanism.solve(60, configuration="circuit 2 branch 1")
+    assert str(caught.value) == (
+        'there is no "circuit 2 branch 1" of Rapier drive of a loom, limited crank '
+        "(branches: circuit 1 branch 1, circuit 1 branch 2)"
+    )
+
+
+def test_a_file_names_the_branch_to_start_from() -> None:
+    text = lw.example_text("rapier-drive")
+    mechanism = lw.loads(f'configuration = "circuit 3 branch 1"\n{text}')
+    assert mechanism.solve()["s16"] == pytest.approx(-1172.005855, abs=1e-5)
+    assert set(mechanism.sweep().branch) == {"circuit 3 branch 1", ""}
+    with pytest.raises(lw.MechanismFileError) as caught:
+        lw.loads(f'configuration = "circuit 9"\n{text}', "loom.toml")
+    assert "line 1  configuration  there is no" in str(caught.value)
