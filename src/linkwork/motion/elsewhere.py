@@ -30,11 +30,12 @@ _REACH = 2.0  # lengths are looked for within so many times the longest link aro
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Elsewhere:
     """All variables of every position found, (K, N); ``complete``: whether there are no others;
-    ``names``: of the configurations, if they have any.
+    ``likely``: that only with probability one. ``names``: of the configurations, if they have any.
     """
 
     v: Array
     complete: bool
+    likely: bool = False
     names: tuple[str, ...] = ()
 
 
@@ -53,7 +54,9 @@ def positions_elsewhere(model: Model, inputs: Array) -> Elsewhere | None:
     if max((len(block.equations) for block in solver.blocks), default=0) <= _MOST_LOOPS:
         listed = positions_at(model, inputs)
         if listed.completeness is not Completeness.NOT_LISTED:
-            return Elsewhere(v=listed.v, complete=listed.completeness.complete, names=listed.names)
+            grade = listed.completeness
+            likely = grade is Completeness.WITH_PROBABILITY_ONE
+            return Elsewhere(v=listed.v, complete=grade.complete, likely=likely, names=listed.names)
     return _searched(model, inputs)
 
 

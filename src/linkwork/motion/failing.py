@@ -268,6 +268,7 @@ def _failure(model: Model, inputs: Array, reach: Reach | None = None, **parts: o
         configurations=tuple(dict(zip(names, map(float, row), strict=True)) for row in x),
         configuration_names=() if found is None else found.names,
         complete=None if found is None else found.complete,
+        complete_likely=found is not None and found.likely,
         units=model.units,
         kinds={u.name: Kind(u.kind) for u in model.equations.variables},
         **towards,  # type: ignore[arg-type]

@@ -83,6 +83,8 @@ class Failure:
         What they are called, where configurations can be listed.
     complete : bool, optional
         Whether these are all; ``None`` if none were looked for.
+    complete_likely : bool
+        Whether that is so with probability one, not proved.
     """
 
     what: str
@@ -99,6 +101,7 @@ class Failure:
     configurations: tuple[Mapping[str, float], ...] = ()
     configuration_names: tuple[str, ...] = ()
     complete: bool | None = None
+    complete_likely: bool = False
     meant: Mapping[str, float] = FrozenDict()
     units: Units
     kinds: Mapping[str, Kind] = FrozenDict()
@@ -149,7 +152,8 @@ class Failure:
     def _configurations_text(self) -> str:
         if not self.configurations:
             if self.complete:
-                return "no configuration exists there"
+                sure = " (with probability one)" if self.complete_likely else ""
+                return f"no configuration exists there{sure}"
             return "no position was found there from other guesses either"
         shown = [self._values(c, _MOST_VALUES) for c in self.configurations[:_MOST_CONFIGURATIONS]]
         names = self.configuration_names
@@ -197,4 +201,5 @@ class Failure:
             "configurations": [dict(c) for c in self.configurations],
             "configuration_names": list(self.configuration_names),
             "configurations_complete": self.complete,
+            "configurations_complete_with_probability_one": self.complete_likely,
         }

@@ -1,0 +1,33 @@
+"""Results find a name however it is written: θ13, theta13, ϑ₁₃."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+
+
+@pytest.mark.parametrize("name", ["θ13", "theta13", "ϑ13", "θ₁₃"])
+def test_a_greek_name_is_found_in_every_spelling(name: str) -> None:
+    rapier = lw.example("rapier-drive")
+    position, motion = rapier.solve(), rapier.sweep(stop=3)
+    assert position[name] == position.unknowns["θ13"]
+    np.testing.assert_array_equal(motion[name], motion.unknowns["θ13"].value)
+    assert motion.series(name) is motion.unknowns["θ13"]
+
+
+def test_inputs_and_points_too() -> None:
+    rapier = lw.example("rapier-drive")
+    position, motion = rapier.solve(), rapier.sweep(stop=3)
+    assert position["theta12"] == 60
+    np.testing.assert_array_equal(motion["theta12"], [0, 1, 2, 3])
+    crank = lw.linkage(
+        points={"O": (0, 0), "Ω": (40, 0), "B": (120, 60), "Q": (100, 0)},
+        links={"ground": ["O", "Q"], "a": ["O", "Ω"], "b": ["Ω", "B"], "c": ["Q", "B"]},
+        inputs=lw.Input(link="a"),
+    )
+    assert crank.solve()["Omega.x"] == crank.solve()["Ω.x"] == pytest.approx(40)
+    turned = crank.sweep(stop=3)
+    np.testing.assert_array_equal(turned["Omega.y"], turned["Ω.y"])
+    np.testing.assert_array_equal(turned.trace("Omega"), turned.trace("Ω"))
