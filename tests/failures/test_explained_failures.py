@@ -181,8 +181,8 @@ def test_a_length_of_an_earlier_loop_can_close_a_later_one() -> None:
 def test_dimensions_that_are_angles_are_no_lengths() -> None:
     mechanism = lw.loops(
         name="bent",
-        loops={"L": "a*e^(i*φ) + b*e^(i*(θ3 + α)) = d + c*e^(i*θ4)"},
-        dimensions={"a": 40, "b": 20, "c": 30, "d": 100, "α": 30},
+        loops={"L": "a*e^(i*φ) + b*e^(i*θ3) = d*e^(i*α) + c*e^(i*θ4)"},
+        dimensions={"a": 40, "b": 20, "c": 45, "d": 100, "α": 30},
         guess={"φ": 90, "θ3": 0, "θ4": 90},
         inputs=lw.Input(variable="φ"),
     )

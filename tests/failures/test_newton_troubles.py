@@ -103,6 +103,12 @@ def test_too_few_steps_are_no_reason_of_the_equations() -> None:
     )
 
 
+def test_an_inflection_towards_which_the_steps_shrink_is_no_reason() -> None:
+    mechanism = lw.plain_equations(name="odd", equations={"f": "atan(x) = 0"}, guess={"x": 1.3})
+    position = mechanism.solve(options=lw.NewtonOptions(max_steps=3))
+    assert (position.status, trouble(position)) == (Status.STEP_LIMIT, None)
+
+
 @pytest.mark.parametrize("turn", [0.0, 0.4, 2.0])
 def test_an_inflection_is_recognised_whatever_the_coordinates(turn: float) -> None:
     # atan along one direction, linear across it, turned in the plane

@@ -10,7 +10,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.motion.dyads import dyad_of
-from linkwork.motion.elsewhere import positions_elsewhere
+from linkwork.motion.elsewhere import block_positions, positions_elsewhere
 from tests.oracles.four_bar import FourBar
 
 KINDS = {
@@ -51,6 +51,12 @@ def test_a_dyad_has_the_positions_that_newton_finds_from_everywhere(
     assert found is not None
     assert found.complete
     assert len(found.v) == (0 if dyad.gap else 1 if kind == "PP" else 2)
+    own, all_of_them = block_positions(block, model.equations.start)
+    assert all_of_them
+    assert len(own) == len(dyad.roots) == len(found.v)
+    for x in own:
+        away = [np.abs(np.exp(1j * (x - v[:2])) - 1).max() for v in found.v]
+        assert min(away) < 1e-9
     residual = block.system.residual(found.v[:, block.variables])
     np.testing.assert_allclose(residual, 0, rtol=0, atol=1e-12)
     # from random guesses Newton finds these and no others
