@@ -71,7 +71,7 @@ def circuits(
     if draw is not None:
         picture.write(circuit_chart(found, names), draw)
     if as_json:
-        print_json(found.as_dict())
+        print_json(found.to_dict())
     else:
         written = [] if draw is None else ["", f"Wrote {draw}."]
         print_lines([*circuits_lines(found), *written])

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import click
 
+from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.options import (
     at_option,
@@ -15,9 +16,11 @@ from linkwork.cli.options import (
     json_option,
     set_option,
 )
+from linkwork.cli.output_file import check_outputs
 from linkwork.cli.position_page import Row, inputs_text, value_cells
 from linkwork.cli.terminal import bad, fields, good, print_json, print_lines, sentence, title_lines
 from linkwork.cli.text_table import Column, table_lines
+from linkwork.drawing.sheet import configuration_sheet
 from linkwork.everyday import Mechanism
 from linkwork.results.configurations import Configurations, PathCount
 from linkwork.results.quantity import Kind
@@ -28,6 +31,7 @@ __all__ = ["configurations", "configurations_lines"]
 @click.command
 @file_argument
 @at_option
+@click.option("--draw", metavar="PATH", help="Draw all of them: .png, .svg or .pdf.")
 @set_option
 @json_option
 @debug_option
@@ -36,6 +40,7 @@ def configurations(
     context: click.Context,
     file: str,
     at: tuple[str, ...],
+    draw: str | None,
     changes: tuple[str, ...],
     as_json: bool,
 ) -> None:
@@ -45,17 +50,28 @@ def configurations(
     given to solve and sweep.
 
     \b
-      linkwork configurations rapier.toml --at 60
+      linkwork configurations rapier.toml --at 60 --draw ways.png
       linkwork solve fourbar.toml --at 60 --configuration crossed
     """
+    if draw is not None:
+        picture.check_picture(draw)
+    check_outputs(file, draw)
     mechanism = read_mechanism(file, changes)
     found = mechanism.configurations(input_values(mechanism, at))
+    if draw is not None and len(found):
+        picture.write(configuration_sheet(found), draw)
     if as_json:
         print_json(found.to_dict())
     else:
-        print_lines(configurations_lines(mechanism, found))
+        print_lines([*configurations_lines(mechanism, found), *_written(draw, len(found))])
     if not (found.completeness.complete and len(found)):
         context.exit(1)
+
+
+def _written(draw: str | None, count: int) -> list[str]:
+    if draw is None:
+        return []
+    return ["", f"Wrote {draw}." if count else f"Did not write {draw}: there is nothing to draw."]
 
 
 def configurations_lines(mechanism: Mechanism, found: Configurations) -> list[str]:

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from linkwork.drawing.matplotlib_writer import figure, render, write
     from linkwork.drawing.mechanism_scene import SceneOptions, reach_of, scene_of
     from linkwork.drawing.scene import Arc, Box, Disc, Hatch, Polygon, Polyline, Role, Scene, Text
+    from linkwork.drawing.sheet import Sheet, configuration_sheet
     from linkwork.drawing.theme import LIGHT, Style, Theme
 else:
     __getattr__ = loader(
@@ -30,6 +31,7 @@ else:
                 "Scene",
                 "Text",
             ),
+            "sheet": ("Sheet", "configuration_sheet"),
             "theme": ("LIGHT", "Style", "Theme"),
         },
     )
@@ -46,10 +48,12 @@ __all__ = [
     "Role",
     "Scene",
     "SceneOptions",
+    "Sheet",
     "Style",
     "Text",
     "Theme",
     "circuit_chart",
+    "configuration_sheet",
     "figure",
     "reach_of",
     "render",

@@ -29,6 +29,7 @@ from linkwork.drawing.scene import (
     Scene,
     Text,
 )
+from linkwork.drawing.sheet import Sheet
 from linkwork.drawing.theme import LIGHT, Theme
 from linkwork.foundation.errors import InputError, MissingPackageError
 
@@ -46,6 +47,7 @@ _SHORT_SIDE = 1.5  # at least, so that ticks and the title have room
 _LEFT, _RIGHT, _BELOW, _LINE = 0.75, 0.2, 0.6, 0.19  # around the drawing, and a title line
 _TITLE, _SMALL = 11.0, 9.0  # font sizes in points
 _TICK_EVERY = 1.0  # inch, about
+_SHEET_WIDTH, _SMALLEST_CELL = 7.5, 2.2  # of pictures side by side, in inches
 _DATELESS: dict[str, dict[str, str | None]] = {
     "png": {"Software": "Linkwork"},
     "svg": {"Date": None, "Creator": "Linkwork"},
@@ -54,9 +56,9 @@ _DATELESS: dict[str, dict[str, str | None]] = {
 
 
 def write(
-    scene: Scene | Chart, path: str | Path, *, dpi: float = 200.0, theme: Theme = LIGHT
+    scene: Scene | Chart | Sheet, path: str | Path, *, dpi: float = 200.0, theme: Theme = LIGHT
 ) -> Path:
-    """Write a scene or a chart to a file; the suffix of ``path`` chooses the format.
+    """Write a scene, a chart or a sheet to a file; the suffix of ``path`` chooses the format.
 
     The file appears whole or not at all, and the same scene gives the same bytes.
 
@@ -84,15 +86,21 @@ def write(
     return target
 
 
-def render(scene: Scene | Chart, kind: str, *, dpi: float = 200.0, theme: Theme = LIGHT) -> bytes:
-    """A scene or a chart as the content of a file of one of :data:`FORMATS`."""
+def render(
+    scene: Scene | Chart | Sheet, kind: str, *, dpi: float = 200.0, theme: Theme = LIGHT
+) -> bytes:
+    """A scene, chart or sheet as the content of a file of one of :data:`FORMATS`."""
     if kind not in FORMATS:
         raise InputError(f'there is no format "{kind}" (formats: {", ".join(FORMATS)})')
     buffer = io.BytesIO()
     with _house_settings():
-        page = (
-            chart_figure(scene, theme) if isinstance(scene, Chart) else figure(scene, theme=theme)
-        )
+        match scene:
+            case Chart():
+                page = chart_figure(scene, theme)
+            case Sheet():
+                page = _sheet_figure(scene, theme)
+            case Scene():
+                page = figure(scene, theme=theme)
         page.savefig(buffer, format=kind, dpi=dpi, metadata=_DATELESS[kind])
     return buffer.getvalue()
 
@@ -118,6 +126,41 @@ def figure(scene: Scene, ax: Axes | None = None, *, theme: Theme = LIGHT) -> Fig
         found = ax.get_figure(root=True)
     assert found is not None
     return found
+
+
+def _sheet_figure(sheet: Sheet, theme: Theme) -> Figure:
+    """Scenes side by side without axes, all of one scale."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    columns = sheet.columns
+    rows = max(1, math.ceil(len(sheet.scenes) / columns))
+    size = max(scene.measures.size for scene in sheet.scenes)
+    view = sheet.view.grown(0.03 * size)
+    cell = max(_SMALLEST_CELL, _SHEET_WIDTH / columns)
+    wide = 0.97 * cell
+    tall = min(max(wide * view.height / view.width, 0.6 * wide), 1.6 * wide)
+    scale = max(view.width / wide, view.height / tall)
+    (x, y), half, rise = view.centre, 0.5 * scale * wide, 0.5 * scale * tall
+    view = Box(x - half, y - rise, x + half, y + rise)
+    head = 0.35 + 2 * _LINE
+    width, height = columns * cell + 0.3, rows * (tall + 0.3) + head
+    page = Figure(figsize=(width, height), facecolor=theme.background)
+    FigureCanvasAgg(page)
+    for k, (line, ink) in enumerate(((sheet.title, theme.ink), (sheet.caption, theme.faint))):
+        place = (0.15 / width, 1 - (0.26 + k * _LINE) / height)
+        page.text(*place, line, fontsize=(_TITLE, _SMALL)[k], color=ink, parse_math=False)
+    for k, scene in enumerate(sheet.scenes):
+        row, column = divmod(k, columns)
+        corner = (0.15 + column * cell, height - head - (row + 1) * (tall + 0.3))
+        ax = page.add_axes((corner[0] / width, corner[1] / height, wide / width, tall / height))
+        _dress(ax, scene, theme, view)
+        ax.set_axis_off()
+        ax.set_title(scene.title, fontsize=_SMALL, color=theme.ink, parse_math=False)
+        brush = _Brush(ax, scene, theme)
+        for primitive in scene.primitives:
+            brush.draw(primitive)
+    return page
 
 
 @contextmanager

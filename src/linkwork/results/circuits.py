@@ -155,7 +155,7 @@ class Circuits:
     def __repr__(self) -> str:
         return circuits_summary(self)
 
-    def as_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """Plain data, as in the command line's JSON."""
         return {
             "mechanism": self.mechanism,
