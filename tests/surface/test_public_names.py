@@ -30,6 +30,17 @@ def test_an_unknown_name_is_an_attribute_error() -> None:
     )
 
 
+def test_functions_named_like_their_module_stay_callable() -> None:
+    code = (
+        "import linkwork as lw\n"
+        "bar = lw.example('four-bar')\n"
+        "bar.solve(configuration='open')\n"
+        "print(len(bar.configurations()), len(bar.circuits()))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "2 2"
+
+
 def test_import_loads_nothing_heavy() -> None:
     code = (
         "import sys, linkwork as lw\n"

@@ -25,7 +25,12 @@ def loader(package: str, homes: Mapping[str, tuple[str, ...]]) -> Callable[[str]
         if name not in home:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         value: object = getattr(import_module(f"{package}.{home[name]}"), name)
-        setattr(sys.modules[package], name, value)
+        # importing a module puts it into its package under its own name, over a name it provides
+        for module, names in homes.items():
+            loaded = sys.modules.get(f"{package}.{module}")
+            for own in names:
+                if hasattr(loaded, own):
+                    setattr(sys.modules[package], own, getattr(loaded, own))
         return value
 
     return load
