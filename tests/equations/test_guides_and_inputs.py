@@ -232,7 +232,9 @@ def test_rapier_drive_by_loops_and_by_links_have_equal_numbers(kind: str) -> Non
     loops, links = lw.example(kind).sweep(), lw.example(f"{kind}-links").sweep()
     assert loops.status == links.status
     found = loops.found
-    assert found.sum() == (361 if kind == "rapier-drive" else 309)
+    assert (found & loops.asked).sum() == (361 if kind == "rapier-drive" else 309)
+    assert loops.limit == links.limit
+    assert loops.added.sum() == len(loops.limits) == (0 if kind == "rapier-drive" else 2)
     for point in ("A", "B", "C", "D", "E"):
         np.testing.assert_allclose(
             links.trace(point)[found], loops.trace(point)[found], rtol=0, atol=1e-9

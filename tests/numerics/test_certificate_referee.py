@@ -230,8 +230,8 @@ def test_errors_of_blocks_before_are_carried_to_those_behind(name: str) -> None:
     assert len(solver.blocks) > 1
     motion = mechanism.sweep()
     rng = np.random.default_rng(14)
-    rows = rng.choice(np.flatnonzero(motion.certified), 8)
-    v = np.concatenate([motion.q, mechanism.model.rows], axis=1)[rows]
+    rows = rng.choice(np.flatnonzero(motion.certified[motion.asked]), 8)
+    v = np.concatenate([motion.q[motion.asked], mechanism.model.rows], axis=1)[rows]
     balls = BallTable(compiled.table)
     for size in (0.0, 1e-9, 1e-4):
         # blocks that start from where the blocks before have only nearly arrived
@@ -420,9 +420,15 @@ def test_every_reason_for_a_missing_certificate_is_reached() -> None:
         guess={"x": 1.9, "y": 0.5, "t": 0.5},
         inputs=lw.Input(variable="t", start=0, stop=1, step=0.5),
     )
+    parallelogram = lw.loops(
+        loops={"1": "e^(i*t) + 2*e^(i*p) = 2 + e^(i*q)"},
+        guess={"t": 60, "p": 0, "q": 60},
+        inputs=lw.Input(variable="t", start=60, stop=210, step=30),
+    ).sweep(change_points="straight")
     reasons += [
         formula.sweep().certification[0],
         lw.example("four-bar").sweep(certify=False).certification[0],
+        parallelogram.certification[-1],
     ]
     assert [(reason.name, reason.value) for reason in reasons] == [
         (
@@ -445,5 +451,10 @@ def test_every_reason_for_a_missing_certificate_is_reached() -> None:
             "plain equations have no known bound of their curvature, so nothing is proved",
         ),
         ("NOT_ASKED", "certificates were switched off"),
+        (
+            "BRANCH_CHOSEN",
+            "the position is proved; at a change point before it nothing but the chosen way of "
+            "going on decides the branch",
+        ),
     ]
     assert set(reasons) == set(Certification)
