@@ -338,6 +338,7 @@ def test_a_coarse_table_is_proved_by_halving_its_steps(step: int, side: int) -> 
     assert not at_once.any()
     found = prove_path(solver, PATH, beads_of(solver, v))
     assert found.linked.all()
+    assert found.pieces.max() > 1
     assert found.connected_to(2).all()
     wrong = v.copy()
     _, other = four_bar_at(ROCKER, fine, -side)
@@ -362,7 +363,7 @@ def test_a_position_is_connected_through_proved_steps_only() -> None:
     nothing = np.zeros((7, 1))
     position = Proof(holds=holds, exists=nothing, unique=nothing, each=nothing)
     linked = np.array([True, False, True, True, True, True])
-    path = ProvenPath(position=position, linked=linked)
+    path = ProvenPath(position=position, linked=linked, pieces=np.ones(6, dtype=np.int64))
     for anchor, expected in (
         (0, [1, 1, 0, 0, 0, 0, 0]),
         (1, [1, 1, 0, 0, 0, 0, 0]),

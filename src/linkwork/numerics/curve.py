@@ -35,6 +35,8 @@ __all__ = [
 
 _CONVERGED = Status.CONVERGED.code
 _SAME = 1e-6  # weighted distance below which two positions at one input can be the same
+_ON_PLANE = 1e-11  # a value of the parameter this near, relative, is reached
+_LEG = 8.0  # natural sizes of the leader, after which a leg ends if nothing else ends it
 _UNIT = np.finfo(float).eps
 
 
@@ -235,15 +237,16 @@ class _Tracer:
                 return True
             return bool(speed.max() > opt.fast * speed[-1])
 
-        goal = node.t + sign * 8.0 * weights[-1]
+        size = float(weights[-1])
+        if not self.leads.turns[led.lead]:  # a length on its way to infinity doubles in one leg
+            size = max(size, abs(node.t) / _LEG)
+        goal = node.t + sign * _LEG * size
         if own:
             goal = self._next_plane(node.t, sign)
-        nodes, end = follow(
-            led.solver, led.path, node, goal, float(weights[-1]), opt.track, until=done
-        )
+        nodes, end = follow(led.solver, led.path, node, goal, size, opt.track, until=done)
         chain = [node, *nodes]
         if passed:
-            crossing = self._crossing(led, chain[-2], chain[-1], passed[0])
+            crossing = self._crossing(led, chain[-2], chain[-1], passed[0][0])
             if crossing is not None:
                 chain[-1] = crossing
                 self.passes.append((len(self.legs), led.whole(crossing.v)))
@@ -289,30 +292,57 @@ class _Tracer:
                 return [(float(following), s0, s1)]
         return []
 
-    def _crossing(
-        self, led: Led, before: Node, after: Node, plane: tuple[float, float, float]
-    ) -> Node | None:
-        """The position in a piece of a step at which the parameter has a given value."""
-        ends = [led.whole(part) for part in (before.v, before.first, after.v, after.first)]
-        p, h = self.leads.parameter, after.t - before.t
-        value, s0, s1 = plane
-        rising = hermite(s1, h, *ends)[p] > hermite(s0, h, *ends)[p]
+    def _crossing(self, led: Led, before: Node, after: Node, value: float) -> Node | None:
+        """The first position in a step at which the parameter has a given value.
+
+        The step is narrowed down at true positions: close to a dead point the value is passed
+        twice, and interpolation over a long step would not tell which time is the first.
+        """
+        place = led.place(self.leads.parameter)
+        low, high = before, after
+        for _ in range(60):
+            passed = self._planes(place, low, high)
+            if not passed or passed[0][0] != value:
+                return None
+            guess = self._passing(place, low, high, passed[0])
+            found = led.solver.solve(guess[None, :])
+            if found.status[0] != _CONVERGED:
+                return None
+            here = node_at(led.solver, led.path, float(guess[-1]), found.v[0])
+            if abs(here.v[place] - value) <= _ON_PLANE * max(1.0, abs(value)):
+                return self._polished(led, here, value)
+            if self._planes(place, low, here):
+                high = here
+            else:
+                low = here
+        return None
+
+    @staticmethod
+    def _passing(place: int, low: Node, high: Node, passed: tuple[float, float, float]) -> Array:
+        """Where the cubic through a step passes a value in a piece of it."""
+        ends, h = (low.v, low.first, high.v, high.first), high.t - low.t
+        value, s0, s1 = passed
+        rising = hermite(s1, h, *ends)[place] > hermite(s0, h, *ends)[place]
         for _ in range(60):
             s = 0.5 * (s0 + s1)
-            if (hermite(s, h, *ends)[p] < value) == rising:
+            if (hermite(s, h, *ends)[place] < value) == rising:
                 s0 = s
             else:
                 s1 = s
-        guess = hermite(0.5 * (s0 + s1), h, *ends)
-        guess[p] = value
+        s = 0.5 * (s0 + s1)
+        guess = hermite(s, h, *ends)
+        guess[-1] = low.t + s * h
+        return guess
+
+    def _polished(self, led: Led, here: Node, value: float) -> Node:
+        """The position with exactly the value, if the parameter determines it well enough."""
         own = self.own
-        found = own.solver.solve(guess[own.order][None, :])
-        if found.status[0] != _CONVERGED:
-            return None
+        near = led.whole(here.v)
+        near[self.leads.parameter] = value
+        found = own.solver.solve(near[own.order][None, :])
         v = own.whole(found.v[0])
-        if np.abs((v - guess) / self.leads.scale).max() > 0.2:
-            return None
-        return led.node(v)
+        same = np.abs((v - near) / self.leads.scale).max() < _SAME
+        return led.node(v) if found.status[0] == _CONVERGED and same else here
 
     def _ending(self) -> CircuitEnd | None:
         v, scale = self.here, self.leads.scale

@@ -164,7 +164,8 @@ def _refined(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, in
     v = led.whole(here.v)
     direction = led.whole(here.first)
     # t is quadratic in the leader here, so the leader's last step counts squared
-    error = abs(here.second[place]) * step * step + 4.0 * _UNIT * max(1.0, abs(float(v[p])))
+    rounding = 4.0 * _UNIT * max(1.0, here.condition) * max(1.0, abs(float(v[p])))
+    error = abs(here.second[place]) * step * step + rounding
     return TurningPoint(
         t=float(v[p]),
         bracket=(float(v[p] - error), float(v[p] + error)),
