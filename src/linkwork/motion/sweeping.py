@@ -94,7 +94,7 @@ def sweep(
     work = _Sweep(model, path, lead, certify, Report(progress, entry[0].t, *_span(asked.t)))
     work.run(*entry, asked, policy)
     if through:
-        work.go_around(entry[0], asked)
+        work.go_around(asked)
     for name in limits_of:
         work.locate_extremes(name)
     return work.motion(start.message)
@@ -209,8 +209,12 @@ class _Sweep:
             table.put_end(end, _BEYOND)
         return [*told, end.limit]
 
-    def go_around(self, anchor: Node, asked: Asked) -> None:
+    def go_around(self, asked: Asked) -> None:
         """The further branches of the circuit, in the direction of travel."""
+        track = self.branches[0].found.track
+        anchor = track.nodes[track.start]
+        if self.branches[0].found.proved_to_ends or not self.certify:  # the start may lie close to a dead point
+            anchor = min(track.nodes, key=lambda node: node.condition)
         around = further_branches(
             self.model, self.path, self.lead, anchor.v, asked, self.report, self.certify
         )
