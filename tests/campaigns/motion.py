@@ -77,24 +77,49 @@ def _judge(case: Case, tally: Tally, where: str, step: int, near: float | None) 
     counts["rows found"] += int(motion.found.sum())
     for reason in motion.certification:
         counts[f"row {reason.name}"] += 1
-    theta = np.radians(motion["t"])
-    values = {name: motion[name] for name in motion.unknowns}
-    joints = case.joints(values, theta)
+    limit = np.array(motion.limit) != ""
+    counts["limit rows"] += int(limit.sum())
+    far = _off_at_limits(case, motion, limit)
+    if far:
+        tally.wrong.append(f"{where}{far} limit rows are no limits")
+    asked, found, certified = motion.asked, motion.found[motion.asked], motion.certified
+    theta = np.radians(motion["t"][asked])
+    joints = _joints(case, motion, asked)
     finer = joints if case.exact else _finer(case, step, motion)
-    changed = _changed(case, theta, joints, finer)
-    certified = motion.certified
-    counts["branch changes"] += int((changed & motion.found).sum())
-    if (changed & certified).any():
-        tally.wrong.append(f"{where}{int((changed & certified).sum())} certified on another branch")
-    elif (changed & motion.found).any():
+    changed = _changed(case, theta, joints, finer) & ~limit[asked]
+    counts["branch changes"] += int((changed & found).sum())
+    if (changed & certified[asked]).any():
+        wrong = int((changed & certified[asked]).sum())
+        tally.wrong.append(f"{where}{wrong} certified on another branch")
+    elif (changed & found).any():
         tally.wrong.append(f"{where}{int(changed.sum())} rows on another branch, not certified")
-    if case.turns and not motion.found.all():
-        counts["rows lost that can be reached"] += int((~motion.found).sum())
+    if case.turns and not found.all():
+        counts["rows lost that can be reached"] += int((~found).sum())
         if near is None:
-            tally.wrong.append(f"{where}{int((~motion.found).sum())} reachable rows are lost")
+            tally.wrong.append(f"{where}{int((~found).sum())} reachable rows are lost")
     plain = _plain_newton(case, theta)
-    jumped = _changed(case, theta, case.joints(*plain), finer) & motion.found
+    jumped = _changed(case, theta, case.joints(*plain), finer) & found
     counts["plain Newton: mechanisms that change branch"] += bool(jumped.any())
+
+
+def _joints(case: Case, motion: lw.Motion, rows: npt.NDArray[np.bool_]) -> Complex:
+    values = {name: motion[name][rows] for name in motion.unknowns}
+    return case.joints(values, np.radians(motion["t"][rows]))
+
+
+_STEP_INSIDE = 1e-10  # rad: the branch is its square root away, times a curvature
+
+
+def _off_at_limits(case: Case, motion: lw.Motion, limit: npt.NDArray[np.bool_]) -> int:
+    """How many limit rows are not where the own branch is, just before it ends or crosses."""
+    if case.exact is None or not limit.any():
+        return 0
+    joints, theta = _joints(case, motion, limit), np.radians(motion["t"][limit])
+    off = [
+        np.abs(joints - case.exact(theta + inside, case.signs)).max(axis=1)
+        for inside in (-_STEP_INSIDE, _STEP_INSIDE)
+    ]
+    return int((~(np.fmin(*off) < 1e-3)).sum())
 
 
 def _changed(case: Case, theta: Array, joints: Complex, finer: Complex) -> npt.NDArray[np.bool_]:
@@ -122,13 +147,13 @@ def _finer(case: Case, step: int, motion: lw.Motion) -> Complex:
     the rows of three turns are given, (3, rows, joints).
     """
     fine_step = min(step, 10) / 4
-    certified = np.flatnonzero(motion.certified)
+    certified = np.flatnonzero(motion.certified & motion.asked)
     k = int(certified[len(certified) // 3])
     guess = {name: float(motion[name][k]) for name in motion.unknowns}
     other = case.mechanism.changed(guess=guess | {"t": float(motion["t"][k])})
     fine = other.sweep(start=-360, stop=720, step=fine_step)
-    joints = case.joints({name: fine[name] for name in fine.unknowns}, np.radians(fine["t"]))
-    joints[~fine.certified] = np.nan
+    joints = _joints(case, fine, fine.asked)
+    joints[~fine.certified[fine.asked]] = np.nan
     every, turn = round(step / fine_step), round(360 / fine_step)
     return np.stack([joints[k * turn : (k + 1) * turn + 1 : every] for k in range(3)])
 

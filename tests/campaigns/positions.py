@@ -185,7 +185,8 @@ def _library() -> tuple[tuple[str, LoopTable, Array], ...]:
         solver = mechanism.model.compiled.solver
         if not all(block.system.bends_boundedly for block in solver.blocks):
             continue
-        v = np.concatenate([motion.q, mechanism.model.rows], axis=1)[motion.found]
+        v = np.concatenate([motion.q[motion.asked], mechanism.model.rows], axis=1)
+        v = v[motion.found[motion.asked]]
         found += [(name, block.system, v[:, block.variables]) for block in solver.blocks]
     return tuple(found)
 

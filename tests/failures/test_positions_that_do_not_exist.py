@@ -118,8 +118,10 @@ def test_a_folding_linkage_has_one_change_point_and_it_is_at_180_degrees() -> No
     motion = four_bar(1, 3, 2, 4, at=60).sweep()
     assert {limit.kind for limit in motion.limits} == {lw.LimitKind.CHANGE_POINT}
     assert [limit.input for limit in motion.limits] == [-180.0, 180.0]
-    lost = motion["crank"][~motion.found]
-    np.testing.assert_array_equal(lost, [180.0])
+    assert motion.found.all()
+    assert not motion.added.any()
+    np.testing.assert_array_equal(motion["crank"][np.array(motion.limit) != ""], [180.0])
+    assert motion.limit[180] == "change point"
 
 
 def test_throw_turns_the_status_into_an_error() -> None:

@@ -145,8 +145,8 @@ SLOPE = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -
 
 
 def inner_rows(motion: lw.Motion, seed: int) -> list[int]:
-    """Five rows, each with five found neighbours at both sides."""
-    found = motion.found
+    """Five rows of the table, each with five found neighbours of the table at both sides."""
+    found = motion.found & motion.asked
     inner = [k for k in range(5, len(motion) - 5) if found[k - 5 : k + 6].all()]
     rng = np.random.default_rng(seed)
     return [int(k) for k in rng.choice(inner, size=5, replace=False)]

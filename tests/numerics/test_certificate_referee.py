@@ -230,8 +230,8 @@ def test_errors_of_blocks_before_are_carried_to_those_behind(name: str) -> None:
     assert len(solver.blocks) > 1
     motion = mechanism.sweep()
     rng = np.random.default_rng(14)
-    rows = rng.choice(np.flatnonzero(motion.certified), 8)
-    v = np.concatenate([motion.q, mechanism.model.rows], axis=1)[rows]
+    rows = rng.choice(np.flatnonzero(motion.certified[motion.asked]), 8)
+    v = np.concatenate([motion.q[motion.asked], mechanism.model.rows], axis=1)[rows]
     balls = BallTable(compiled.table)
     for size in (0.0, 1e-9, 1e-4):
         # blocks that start from where the blocks before have only nearly arrived
@@ -338,6 +338,7 @@ def test_a_coarse_table_is_proved_by_halving_its_steps(step: int, side: int) -> 
     assert not at_once.any()
     found = prove_path(solver, PATH, beads_of(solver, v))
     assert found.linked.all()
+    assert found.pieces.max() > 1
     assert found.connected_to(2).all()
     wrong = v.copy()
     _, other = four_bar_at(ROCKER, fine, -side)
@@ -362,7 +363,7 @@ def test_a_position_is_connected_through_proved_steps_only() -> None:
     nothing = np.zeros((7, 1))
     position = Proof(holds=holds, exists=nothing, unique=nothing, each=nothing)
     linked = np.array([True, False, True, True, True, True])
-    path = ProvenPath(position=position, linked=linked)
+    path = ProvenPath(position=position, linked=linked, pieces=np.ones(6, dtype=np.int64))
     for anchor, expected in (
         (0, [1, 1, 0, 0, 0, 0, 0]),
         (1, [1, 1, 0, 0, 0, 0, 0]),
@@ -420,9 +421,15 @@ def test_every_reason_for_a_missing_certificate_is_reached() -> None:
         guess={"x": 1.9, "y": 0.5, "t": 0.5},
         inputs=lw.Input(variable="t", start=0, stop=1, step=0.5),
     )
+    parallelogram = lw.loops(
+        loops={"1": "e^(i*t) + 2*e^(i*p) = 2 + e^(i*q)"},
+        guess={"t": 60, "p": 0, "q": 60},
+        inputs=lw.Input(variable="t", start=60, stop=210, step=30),
+    ).sweep(change_points="straight")
     reasons += [
         formula.sweep().certification[0],
         lw.example("four-bar").sweep(certify=False).certification[0],
+        parallelogram.certification[-1],
         lw.example("four-bar").configurations()[0].certificate.certification,
     ]
     assert [(reason.name, reason.value) for reason in reasons] == [
@@ -446,6 +453,11 @@ def test_every_reason_for_a_missing_certificate_is_reached() -> None:
             "plain equations have no known bound of their curvature, so nothing is proved",
         ),
         ("NOT_ASKED", "certificates were switched off"),
+        (
+            "BRANCH_CHOSEN",
+            "the position is proved; at a change point before it nothing but the chosen way of "
+            "going on decides the branch",
+        ),
         (
             "CONFIGURATION_CERTIFIED",
             "a true position is proved to lie within the radius, and no other near it",

@@ -127,7 +127,9 @@ def _unit_of(motion: Motion, name: str) -> str:
 def _evidence(motion: Motion, measure: str) -> Iterator[tuple[str, str]]:
     yield from _certified(motion)
     yield "worst residual", _worst(motion, motion.residual, measure)
-    yield "worst condition", _worst(motion, motion.condition, "")
+    regular = np.where(np.isfinite(motion.condition), motion.condition, np.nan)
+    if not np.isnan(regular).all():  # at dead points it is infinite
+        yield "worst condition", _worst(motion, regular, "")
 
 
 def _certified(motion: Motion) -> Iterator[tuple[str, str]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,7 +17,6 @@ from linkwork.motion.limits import BranchEnd, end_at_dead_point
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.track import InputPath, node_at
-from linkwork.results.motion import Limit
 
 __all__ = ["Around", "FurtherBranch", "further_branches"]
 
@@ -27,13 +27,15 @@ _FULL_TURN = 2.0 * np.pi
 class FurtherBranch:
     """A branch beyond a dead point: what was asked on it, its rows, its ends, its name.
 
-    ``window``: smallest and largest value of t on it.
+    ``window``: smallest and largest value of t on it. ``standing``: what rows that are proved on
+    it say.
     """
 
     asked: Asked
     window: tuple[float, float]
     found: BranchRows
     ends: tuple[BranchEnd, ...]
+    standing: Certification
     name: str
 
 
@@ -42,7 +44,7 @@ class Around:
     """The further branches of the start's circuit, its dead points, and how it ends."""
 
     branches: tuple[FurtherBranch, ...]
-    dead_points: tuple[Limit, ...]
+    dead_points: tuple[BranchEnd, ...]
     end: CircuitEnd
 
 
@@ -72,13 +74,14 @@ def further_branches(
         rows = _rows(model, path, lead, leads, (walk, branch), asked, report, certify)
         if rows is not None:
             found.append(replace(rows, name=_branch_name(model, number)))
-    turns = [turn for walk in walks for turn in walk.turns]
     return Around(
         branches=tuple(found),
         dead_points=tuple(
-            end_at_dead_point(model, turn, None, lead, False).limit for turn in turns
+            end_at_dead_point(model, turn, walk.curve.legs[turn.leg].led, lead, certify)
+            for walk in walks
+            for turn in walk.turns
         ),
-        end=walks[-1].curve.end,
+        end=_how_it_ends(walks),
     )
 
 
@@ -87,6 +90,11 @@ def _branch_name(model: Model, number: int) -> str:
     if model.branch == f"{model.circuit} branch 1":
         return f"{model.circuit} branch {number}"
     return f"{model.circuit}, branch {number} from there"
+
+
+def _how_it_ends(walks: Sequence[Traced]) -> CircuitEnd:
+    """How the circuit ends: of its two ends the one that leaves most open."""
+    return max((walk.curve.end for walk in walks), key=list(CircuitEnd).index)
 
 
 def _rows(
@@ -107,6 +115,7 @@ def _rows(
         return None
     found = rows_of_branch(model, path, lead, node, mine, report, certify)
     joined = branch.is_joined(leads)
+    standing = Certification.CERTIFIED if joined else Certification.MOTION_NOT_PROVED
     if certify and not joined:
         code = found.rows.certification
         code[code == Certification.CERTIFIED.code] = Certification.MOTION_NOT_PROVED.code
@@ -116,7 +125,12 @@ def _rows(
         if turn is not None
     )
     return FurtherBranch(
-        asked=mine, window=branch.range(leads.parameter), found=found, ends=ends, name=""
+        asked=mine,
+        window=branch.range(leads.parameter),
+        found=found,
+        ends=ends,
+        standing=standing,
+        name="",
     )
 
 

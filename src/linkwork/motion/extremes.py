@@ -53,12 +53,11 @@ def output_limits(
     model: Model,
     path: InputPath,
     track: Track,
-    window: tuple[float, float],
     lead: int,
     scale: float,
     name: str,
 ) -> list[tuple[float, OutputLimit]]:
-    """Where a quantity is largest or smallest along a track, between two values of t.
+    """Where a quantity is largest or smallest along a track.
 
     The quantity's derivative changes sign between two nodes; Newton-Raphson on it, kept inside the
     sign change, finds the place.
@@ -67,9 +66,7 @@ def output_limits(
     -------
     list of (t, limit)
     """
-    nodes = [node for node in track.nodes if window[0] <= node.t <= window[1]]
-    edges = [t for t in window if track.first_t <= t <= track.last_t]
-    t = np.unique([*(node.t for node in nodes), *edges])
+    t = np.unique([node.t for node in track.nodes])
     # between the nodes of a bold track a quantity may turn twice
     t = np.unique(np.concatenate([t, *(t[:-1] + s * np.diff(t) for s in (0.25, 0.5, 0.75))]))
     if len(t) < 2:
@@ -79,7 +76,11 @@ def output_limits(
     found = []
     for k in np.flatnonzero(rate[:-1] * rate[1:] < 0.0):
         here, error = search.between(float(t[k]), float(t[k + 1]), float(rate[k]))
-        value, _, second = (float(part[0]) for part in search.at(np.array([here])))
+        value, _, second, condition = (float(part[0]) for part in search.at(np.array([here])))
+        # the derivative is known to its rounding only
+        size = max(abs(float(rate[k])), abs(float(rate[k + 1])), abs(second))
+        noise = 8.0 * _UNIT * condition * size
+        error = max(error, noise / abs(second)) if second else np.inf
         unit = model.input_scale[lead]
         limit = OutputLimit(
             name=name,
@@ -94,7 +95,9 @@ def output_limits(
 
 
 class _Search:
-    """A quantity along a track: value, first and second derivative by the leading input."""
+    """A quantity along a track: value, first and second derivative by the leading input, and the
+    condition of the positions.
+    """
 
     def __init__(
         self, model: Model, path: InputPath, track: Track, scale: float, name: str
@@ -102,32 +105,34 @@ class _Search:
         self.model, self.path, self.track = model, path, track
         self.scale, self.name = scale, name
 
-    def at(self, t: Array) -> tuple[Array, Array, Array]:
+    def at(self, t: Array) -> tuple[Array, Array, Array, Array]:
         """At the values t (B,)."""
         rows = rows_on_track(self.model.compiled.solver, self.path, self.track, t, self.scale)
         inputs = np.zeros((len(t), len(self.model.equations.inputs)))
         good = rows.status == Status.CONVERGED.code
         named = named_series(self.model, rows.v, rows.rates.first, rows.rates.second, inputs, good)
         series = _series(named, self.name)
-        return series.value, series.first, series.second
+        return series.value, series.first, series.second, rows.rates.condition
 
     def between(self, low: float, high: float, rate: float) -> tuple[float, float]:
-        """Where the derivative is zero, and the last change of t."""
-        here, error = 0.5 * (low + high), high - low
+        """Where the derivative is zero, and how far from it that may be."""
+        here = best = 0.5 * (low + high)
+        least, error = np.inf, high - low
         for _ in range(60):
-            _, first, second = (float(part[0]) for part in self.at(np.array([here])))
-            if first == 0.0 or not np.isfinite(first):
+            _, first, second, _ = (float(part[0]) for part in self.at(np.array([here])))
+            if not np.isfinite(first):
+                break
+            step = -first / second if second else np.inf
+            tiny = 4.0 * _UNIT * max(1.0, abs(here))
+            if abs(first) < least:
+                best, least, error = here, abs(first), abs(step)
+            elif abs(step) < 1e-9:
+                break  # to rounding
+            if abs(step) <= tiny:
                 break
             if first * rate > 0.0:
                 low = here
             else:
                 high = here
-            following = here - first / second if second else np.inf
-            if not low < following < high:
-                following = 0.5 * (low + high)
-            last, error = error, abs(following - here)
-            here = following
-            tiny = 4.0 * _UNIT * max(1.0, abs(here))
-            if error <= tiny or (error >= last and last < 1e-10):
-                break
-        return here, max(error, 4.0 * _UNIT * max(1.0, abs(here)))
+            here = here + step if low < here + step < high else 0.5 * (low + high)
+        return best, max(error, 4.0 * _UNIT * max(1.0, abs(best)))

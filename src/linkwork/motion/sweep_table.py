@@ -23,6 +23,8 @@ class SweepTable:
 
     Parameters
     ----------
+    lead : int
+        The input that t is.
     window : (float, float)
         Smallest and largest value of t that has a place in the table.
     free : bool
@@ -33,12 +35,14 @@ class SweepTable:
         self,
         model: Model,
         path: InputPath,
+        lead: int,
         asked: Asked,
         rows: SolvedRows,
         window: tuple[float, float],
         free: bool,
     ) -> None:
-        self.model, self.path, self.asked, self.rows = model, path, asked, rows
+        self.model, self.path, self.lead = model, path, lead
+        self.asked, self.rows = asked, rows
         self.window, self.free = window, free
         self._extra: list[SolvedRows] = []
         self._extra_t: list[float] = []
@@ -59,7 +63,7 @@ class SweepTable:
         if here is None or end.v is None or end.first is None:
             return
         solver = self.model.compiled.solver
-        row = SolvedRows.blank(self._inputs(end.t, here), solver.variables, Status.CONVERGED)
+        row = SolvedRows.blank(self._inputs(end, here), solver.variables, Status.CONVERGED)
         row.v[0], row.first[0] = end.v, end.first
         row.residual[0] = float(solver.residual(end.v[None, :])[0])
         row.condition[0] = np.inf
@@ -91,11 +95,22 @@ class SweepTable:
         order = np.argsort(-t if backwards else t, kind="stable")
         return SolvedRows.joined([self.rows, *self._extra]).take(order), added[order]
 
-    def _inputs(self, t: float, here: float) -> Array:
-        """Everyday inputs at t, shifted by the whole turns to ``here``, (1, p)."""
+    def is_among(self, here: float, own: BoolArray) -> bool:
+        """Whether one of the rows beside a value of t is among some rows (B,)."""
+        order = np.argsort(self.asked.t, kind="stable")
+        t = self.asked.t[order]
+        slack = self._slack(abs(here))
+        left = int(np.searchsorted(t, here + slack, side="right")) - 1
+        right = int(np.searchsorted(t, here - slack, side="left"))
+        beside = [order[k] for k in (left, right) if 0 <= k < len(t)]
+        return bool(own[beside].any())
+
+    def _inputs(self, end: BranchEnd, here: float) -> Array:
+        """Everyday inputs at an end, shifted by the whole turns to ``here``, (1, p)."""
         scale = self.model.input_scale
-        everyday = np.array([_short(x) for x in self.path.at(t) / scale])
-        turns = round((here - t) / _FULL_TURN)
+        everyday = np.array([_short(x) for x in self.path.at(end.t) / scale])
+        everyday[self.lead] = end.limit.input
+        turns = round((here - end.t) / _FULL_TURN)
         return (everyday + turns * self.path.rate * (_FULL_TURN / scale))[None, :]
 
     @staticmethod

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.policy import ChangePointPolicy
@@ -24,10 +24,10 @@ from linkwork.motion.proving import way_is_proved
 from linkwork.motion.rows import SolvedRows
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.sweep_table import SweepTable
-from linkwork.motion.tracking import leading_scale, turns_freely
+from linkwork.motion.tracking import leading_scale, track_to, turns_freely
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.track import InputPath, Node, follow, node_at
-from linkwork.results.motion import Limit, LimitKind, Motion, OutputLimit
+from linkwork.numerics.track import InputPath, Node, Track, follow, node_at
+from linkwork.results.motion import Limit, Motion, OutputLimit
 
 __all__ = ["sweep"]
 
@@ -35,6 +35,7 @@ _ENTRIES = (
     24  # rows, from the nearest on, at which a table of several inputs is tried to be entered
 )
 _MOST_CROSSINGS = 64
+_SAME = 1e-6  # weighted distance below which two dead points are one
 
 
 def sweep(
@@ -91,7 +92,7 @@ def sweep(
     work = _Sweep(model, path, lead, certify, Report(progress, entry[0].t, *_span(asked.t)))
     work.run(*entry, asked, policy)
     if through:
-        work.go_around(entry[0], asked)
+        work.go_around(asked)
     for name in limits_of:
         work.locate_extremes(name)
     return work.motion(start.message)
@@ -99,6 +100,20 @@ def sweep(
 
 def _span(t: Array) -> tuple[float, float]:
     return float(t.min()), float(t.max())
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Branch:
+    """A branch in its table: which of the table's rows are its own, and what its proofs are worth.
+
+    ``standing``: what rows that are proved on it say.
+    """
+
+    table: SweepTable
+    found: BranchRows
+    name: str
+    standing: Certification
+    own: BoolArray
 
 
 class _Sweep:
@@ -111,29 +126,31 @@ class _Sweep:
         self.certify, self.report = certify, report
         self.scale = leading_scale(model, lead)
         self.tables: list[SweepTable] = []
-        self.branches: list[tuple[SweepTable, BranchRows, str]] = []
+        self.branches: list[_Branch] = []
+        self.ends: list[BranchEnd] = []
         self.limits: list[Limit] = []
         self.output_limits: list[OutputLimit] = []
         self.circuit: CircuitEnd | None = None
 
     def run(self, anchor: Node, entered: bool, asked: Asked, policy: ChangePointPolicy) -> None:
         """The table of the start's branch, and of those beyond change points if asked."""
-        first = self._branch(anchor, asked)
-        proved = Certification.CERTIFIED.code
-        if not entered:
-            code = first.rows.certification
-            code[code == proved] = Certification.MOTION_NOT_PROVED.code
+        standing = Certification.CERTIFIED if entered else Certification.MOTION_NOT_PROVED
+        found = self._branch(anchor, asked)
+        _demote(found.rows, standing)
         free = turns_freely(self.model)
-        table = SweepTable(self.model, self.path, asked, first.rows, _span(asked.t), free)
+        table = SweepTable(
+            self.model, self.path, self.lead, asked, found.rows, _span(asked.t), free
+        )
         self.tables.append(table)
-        self._name(first, self.model.branch)
-        self.branches.append((table, first, self.model.branch))
+        first = self._told(table, found, self.model.branch, standing, found.here)
         below: list[Limit] = []
         above: list[Limit] = []
-        for end in first.ends:
-            passed = self._cross(table, end, policy)
+        for end in found.ends:
+            told = _demoted(end, standing)
+            self.ends.append(told)
+            table.put_end(told, self.model.branch)
+            passed = self._cross(first, told, policy)
             (below if end.side < 0 else above).extend(passed)
-            table.put_end(end, self.model.branch)
         self.limits = [*below[::-1], *above]
 
     def _branch(self, anchor: Node, asked: Asked) -> BranchRows:
@@ -141,19 +158,30 @@ class _Sweep:
             self.model, self.path, self.lead, anchor, asked, self.report, self.certify
         )
 
-    @staticmethod
-    def _name(found: BranchRows, branch: str) -> None:
-        good = found.here & (found.rows.status == Status.CONVERGED.code)
-        found.rows.branch[good] = branch
+    def _told(
+        self,
+        table: SweepTable,
+        found: BranchRows,
+        name: str,
+        standing: Certification,
+        own: BoolArray,
+    ) -> _Branch:
+        """Keep a branch, its rows named."""
+        found.rows.branch[found.here & (found.rows.status == Status.CONVERGED.code)] = name
+        branch = _Branch(table=table, found=found, name=name, standing=standing, own=own.copy())
+        self.branches.append(branch)
+        return branch
 
-    def _cross(self, table: SweepTable, end: BranchEnd, policy: ChangePointPolicy) -> list[Limit]:
-        """Rows beyond the change points on one side, as far as the policy leads; their limits."""
-        told = []
+    def _cross(self, first: _Branch, end: BranchEnd, policy: ChangePointPolicy) -> list[Limit]:
+        """Rows beyond the change points on one side, as far as the policy leads; their limits.
+
+        A chosen way goes before the way around through a whole turn.
+        """
+        table, told = first.table, []
+        around = first.own & (first.found.placed != table.asked.t)
+        missing = (table.rows.status != Status.CONVERGED.code) | around
         for _ in range(_MOST_CROSSINGS):
-            beyond = np.flatnonzero(
-                (table.rows.status != Status.CONVERGED.code)
-                & (end.side * (table.asked.t - end.t) > 0.0)
-            )
+            beyond = np.flatnonzero(missing & (end.side * (table.asked.t - end.t) > 0.0))
             if policy is ChangePointPolicy.STOP or end.crossing is None or not len(beyond):
                 break
             node = beyond_change_point(
@@ -163,67 +191,95 @@ class _Sweep:
                 break
             told.append(replace(end.limit, passed=policy.value))
             found = self._branch(node, table.asked.take(beyond))
-            code = found.rows.certification
-            code[code == Certification.CERTIFIED.code] = Certification.BRANCH_CHOSEN.code
-            self._name(found, self.model.circuit)
-            table.rows.put(beyond, found.rows)
-            self.branches.append((table, found, self.model.circuit))
+            _demote(found.rows, Certification.BRANCH_CHOSEN)
+            good = found.here & (found.rows.status == Status.CONVERGED.code)
+            mine = np.zeros(len(missing), dtype=bool)
+            mine[beyond[good]] = True
+            self._told(table, found, self.model.circuit, Certification.BRANCH_CHOSEN, mine)
+            put = np.flatnonzero(good | ~around[beyond])
+            table.rows.put(beyond[put], found.rows.take(put))
+            first.own[mine] = False
+            missing &= ~mine
             ahead = [other for other in found.ends if other.side == end.side]
             if not ahead:
                 return told
-            end = _after_choice(ahead[0])
+            end = _demoted(ahead[0], Certification.BRANCH_CHOSEN)
             table.put_end(end, self.model.circuit)
         return [*told, end.limit]
 
-    def go_around(self, anchor: Node, asked: Asked) -> None:
+    def go_around(self, asked: Asked) -> None:
         """The further branches of the circuit, in the direction of travel."""
+        track = self.branches[0].found.track
+        anchor = track.nodes[track.start]
+        # the start may lie close to a dead point
+        if self.branches[0].found.proved_to_ends or not self.certify:
+            anchor = min(track.nodes, key=lambda node: node.condition)
         around = further_branches(
             self.model, self.path, self.lead, anchor.v, asked, self.report, self.certify
         )
         self.circuit = around.end
         for branch in around.branches:
             rows = branch.found.rows
-            table = SweepTable(self.model, self.path, branch.asked, rows, branch.window, False)
+            table = SweepTable(
+                self.model, self.path, self.lead, branch.asked, rows, branch.window, False
+            )
             self.tables.append(table)
-            self._name(branch.found, branch.name)
-            self.branches.append((table, branch.found, branch.name))
+            self._told(table, branch.found, branch.name, branch.standing, branch.found.here)
             for end in branch.ends:
                 table.put_end(end, branch.name)
-        known = {(limit.kind, round(limit.input, 9)) for limit in self.limits}
+        known = [end.v for end in self.ends if end.v is not None]
         self.limits += [
-            limit
-            for limit in around.dead_points
-            if not any(_is_same(self.model, limit, other) for other in self.limits)
-            and (limit.kind, round(limit.input, 9)) not in known
+            end.limit
+            for end in around.dead_points
+            if end.v is not None and not any(self._same(end.v, v) for v in known)
         ]
+
+    def _same(self, a: Array, b: Array) -> bool:
+        """Whether two positions (N,) are one, whole turns aside."""
+        table = self.model.compiled.table
+        gap = np.where(table.turns, np.remainder(b - a + np.pi, 2.0 * np.pi) - np.pi, b - a)
+        return bool(np.abs(gap / table.variable_scale).max() < _SAME)
 
     def locate_extremes(self, name: str) -> None:
         """Rows at which a quantity is largest or smallest, on every branch."""
-        for table, found, branch in self.branches:
-            placed = found.placed[found.here]
-            if not len(placed):
+        for branch in self.branches:
+            if not branch.own.any():
                 continue
-            window = _span(placed)
-            places = output_limits(
-                self.model, self.path, found.track, window, self.lead, self.scale, name
-            )
-            for t, limit in places:
+            table = branch.table
+            places: list[float] = []
+            for t, limit in output_limits(
+                self.model, self.path, self._whole_track(branch), self.lead, self.scale, name
+            ):
                 here = table.place_of(t)
-                if here is None:
+                if here is None or not table.is_among(here, branch.own):
                     continue
+                if any(abs(here - other) < _SAME for other in places):
+                    continue  # a whole turn away
+                places.append(here)
                 self.output_limits.append(limit)
-                inputs = self.path.at(np.array([t]))
-                row = self._branch_row(found, t, inputs, here)
-                row.branch[0], row.limit[0] = branch, f"{limit.kind} of {name}"
+                row = self._branch_row(branch, t, here)
+                row.branch[0], row.limit[0] = branch.name, f"{limit.kind} of {name}"
                 table.put(row, here)
 
-    def _branch_row(self, found: BranchRows, t: float, inputs: Array, here: float) -> SolvedRows:
+    def _whole_track(self, branch: _Branch) -> Track:
+        """The branch's track, of a further branch of the circuit up to its dead points."""
+        found, table = branch.found, branch.table
+        if table is self.tables[0]:
+            return found.track
         anchor = found.track.nodes[found.track.start]
+        solver = self.model.compiled.solver
+        return track_to(solver, self.path, anchor, table.window, self.scale)
+
+    def _branch_row(self, branch: _Branch, t: float, here: float) -> SolvedRows:
+        """The row of a branch at a value of t, named by its place in the table."""
+        track, inputs = branch.found.track, self.path.at(np.array([t]))
         everyday = inputs / self.model.input_scale
         turns = round((here - t) / (2.0 * np.pi))
         everyday = everyday + turns * self.path.rate * (2.0 * np.pi / self.model.input_scale)
         asked = Asked(t=np.array([t]), inputs=inputs, everyday=everyday)
-        return self._branch(anchor, asked).rows
+        rows = self._branch(track.nodes[track.start], asked).rows
+        _demote(rows, branch.standing)
+        return rows
 
     def motion(self, message: str) -> Motion:
         """Everything in one result."""
@@ -240,20 +296,15 @@ class _Sweep:
         )
 
 
-def _after_choice(end: BranchEnd) -> BranchEnd:
-    """The end of a branch that was chosen at a change point."""
+def _demote(rows: SolvedRows, standing: Certification) -> None:
+    """Rows that are proved on a branch say what the way to the branch is worth."""
+    rows.certification[rows.certification == Certification.CERTIFIED.code] = standing.code
+
+
+def _demoted(end: BranchEnd, standing: Certification) -> BranchEnd:
     if end.certification is not Certification.CERTIFIED:
         return end
-    return replace(end, certification=Certification.BRANCH_CHOSEN)
-
-
-def _is_same(model: Model, one: Limit, other: Limit) -> bool:
-    """Whether two limits are one position, whole turns of the input aside."""
-    gap = one.input - other.input
-    if turns_freely(model):
-        turn = 2.0 * np.pi / float(model.input_scale[0])
-        gap -= turn * round(gap / turn)
-    return one.kind is other.kind is LimitKind.DEAD_POINT and abs(gap) < 1e-9
+    return replace(end, certification=standing)
 
 
 def _onto_path(
@@ -295,6 +346,4 @@ def _led_to(
 
 def _without_start(model: Model, start: Start) -> Motion:
     rows = SolvedRows.blank(model.everyday_rows, model.compiled.solver.variables, Status.NO_START)
-    nothing_added = np.zeros(len(rows), dtype=bool)
-    motion = motion_of_rows(model, rows, start.message, added=nothing_added)
-    return replace(motion, failure=start.failure)
+    return motion_of_rows(model, rows, start.message, added=np.zeros(len(rows), dtype=bool))

@@ -8,6 +8,7 @@ the same means as a sweep; only a crossing of curves stops it.
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -36,6 +37,8 @@ __all__ = [
 
 _CONVERGED = Status.CONVERGED.code
 _SAME = 1e-6  # weighted distance below which two positions at one input can be the same
+_ON_PLANE = 1e-11  # a value of the parameter this near, relative, is reached
+_LEG = 8.0  # natural sizes of the leader, after which a leg ends if nothing else ends it
 _UNIT = np.finfo(float).eps
 
 
@@ -162,6 +165,15 @@ def trace(
     return _Tracer(leads, start, heading, options or CurveOptions()).run()
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Pass:
+    """A piece of a step in which the parameter goes one way and comes by a value."""
+
+    value: float
+    low: Node
+    high: Node
+
+
 class _Tracer:
     """The state of one trace: the position reached and the direction of travel."""
 
@@ -238,12 +250,12 @@ class _Tracer:
         sign = math.copysign(1.0, self.heading[led.lead])
         weights = scale[led.order]
         own = led.lead == parameter
-        passed: list[tuple[float, float, float]] = []
+        passed: list[_Pass] = []
 
         def done(before: Node, after: Node) -> bool:
             speed = np.abs(after.first) / weights
             if not own:
-                passed.extend(self._planes(place, before, after))
+                passed.extend(self._passes(led, before, after))
                 if passed or speed[place] * opt.slow >= speed.max():
                     return True
             if bool((np.abs(after.v / weights)[~self.leads.turns[led.order]] > opt.far).any()):
@@ -251,15 +263,15 @@ class _Tracer:
             return bool(speed.max() > opt.fast * speed[-1])
 
         size = float(weights[-1])
-        if not self.leads.turns[led.lead]:  # a length that runs away is followed in growing steps
-            size = max(size, abs(node.t))
-        goal = node.t + sign * 8.0 * size
+        if not self.leads.turns[led.lead]:  # a length on its way to infinity doubles in one leg
+            size = max(size, abs(node.t) / _LEG)
+        goal = node.t + sign * _LEG * size
         if own:
             goal = self._next_plane(node.t, sign)
         nodes, end = follow(led.solver, led.path, node, goal, size, opt.track, until=done)
         chain = [node, *nodes]
         if passed:
-            crossing = self._crossing(led, chain[-2], chain[-1], passed[0])
+            crossing = self._crossing(led, passed[0])
             if crossing is not None:
                 chain[-1] = crossing
                 self.passes.append((len(self.legs), led.whole(crossing.v)))
@@ -285,50 +297,50 @@ class _Tracer:
         following = math.floor(turns) + 1 if sign > 0 else math.ceil(turns) - 1
         return home + following * period
 
-    def _planes(self, place: int, before: Node, after: Node) -> list[tuple[float, float, float]]:
-        """The first pass of the starting value (whole turns aside) between two nodes, if any.
-
-        The value, and the piece of the step (as fractions) in which it is passed: where the
-        parameter turns back within the step, it may pass on the way there or on the way back.
-        """
-        ends = (before.v[place], before.first[place], after.v[place], after.first[place])
-        h = after.t - before.t
-        cuts = [0.0, 1.0]
-        if ends[1] * ends[3] < 0.0:
-            cuts.insert(1, ends[1] / (ends[1] - ends[3]))
-        values = [hermite(s, h, *ends) for s in cuts]
-        for s0, s1, t0, t1 in zip(cuts, cuts[1:], values, values[1:], strict=False):
-            if t0 == t1:
-                continue
-            following = self._next_plane(float(t0), math.copysign(1.0, t1 - t0))
-            if (following - t0) * (following - t1) <= 0.0:
-                return [(float(following), s0, s1)]
+    def _passes(self, led: Led, before: Node, after: Node) -> list[_Pass]:
+        """The first pass of the starting value (whole turns aside) between two nodes, if any."""
+        place = led.place(self.leads.parameter)
+        for low, high in itertools.pairwise(_one_way(led, place, before, after)):
+            value = self._plane_between(float(low.v[place]), float(high.v[place]))
+            if value is not None:
+                return [_Pass(value=value, low=low, high=high)]
         return []
 
-    def _crossing(
-        self, led: Led, before: Node, after: Node, plane: tuple[float, float, float]
-    ) -> Node | None:
-        """The position in a piece of a step at which the parameter has a given value."""
-        ends = [led.whole(part) for part in (before.v, before.first, after.v, after.first)]
-        p, h = self.leads.parameter, after.t - before.t
-        value, s0, s1 = plane
-        rising = hermite(s1, h, *ends)[p] > hermite(s0, h, *ends)[p]
+    def _plane_between(self, t0: float, t1: float) -> float | None:
+        if t0 == t1:
+            return None
+        following = self._next_plane(t0, math.copysign(1.0, t1 - t0))
+        return following if (following - t0) * (following - t1) <= 0.0 else None
+
+    def _crossing(self, led: Led, passed: _Pass) -> Node | None:
+        """The position in a piece of a step at which the parameter has the value.
+
+        The piece is narrowed down at true positions: over a long step interpolation is not good
+        enough close to a dead point, where the value is passed twice.
+        """
+        place = led.place(self.leads.parameter)
+        value, low, high = passed.value, passed.low, passed.high
         for _ in range(60):
-            s = 0.5 * (s0 + s1)
-            if (hermite(s, h, *ends)[p] < value) == rising:
-                s0 = s
+            here = _node_between(led, low, high, _where(place, low, high, value))
+            if here is None:
+                return None
+            if abs(here.v[place] - value) <= _ON_PLANE * max(1.0, abs(value)):
+                return self._polished(led, here, value)
+            if (here.v[place] < value) == (low.v[place] < value):
+                low = here
             else:
-                s1 = s
-        guess = hermite(0.5 * (s0 + s1), h, *ends)
-        guess[p] = value
+                high = here
+        return None
+
+    def _polished(self, led: Led, here: Node, value: float) -> Node:
+        """The position with exactly the value, if the parameter determines it well enough."""
         own = self.own
-        found = own.solver.solve(guess[own.order][None, :])
-        if found.status[0] != _CONVERGED:
-            return None
+        near = led.whole(here.v)
+        near[self.leads.parameter] = value
+        found = own.solver.solve(near[own.order][None, :])
         v = own.whole(found.v[0])
-        if np.abs((v - guess) / self.leads.scale).max() > 0.2:
-            return None
-        return led.node(v)
+        same = np.abs((v - near) / self.leads.scale).max() < _SAME
+        return led.node(v) if found.status[0] == _CONVERGED and same else here
 
     def _ending(self) -> CircuitEnd | None:
         v, scale = self.here, self.leads.scale
@@ -365,6 +377,52 @@ def fastest_leader(
             if np.isfinite(node.second).all():
                 return led, node
     return None
+
+
+def _node_between(led: Led, low: Node, high: Node, s: float) -> Node | None:
+    """The node at the fraction s of a step; ``None`` if Newton-Raphson does not find it."""
+    h = high.t - low.t
+    guess = hermite(s, h, low.v, low.first, high.v, high.first)
+    guess[-1] = low.t + s * h
+    found = led.solver.solve(guess[None, :])
+    if found.status[0] != _CONVERGED:
+        return None
+    return node_at(led.solver, led.path, float(guess[-1]), found.v[0])
+
+
+def _where(place: int, low: Node, high: Node, value: float) -> float:
+    """The fraction of a step at which the cubic through a variable has a value."""
+    h = high.t - low.t
+    ends = (low.v[place], low.first[place], high.v[place], high.first[place])
+    rising = ends[2] > ends[0]
+    s0, s1 = 0.0, 1.0
+    for _ in range(60):
+        s = 0.5 * (s0 + s1)
+        if (hermite(s, h, *ends) < value) == rising:
+            s0 = s
+        else:
+            s1 = s
+    return 0.5 * (s0 + s1)
+
+
+def _one_way(led: Led, place: int, before: Node, after: Node) -> list[Node]:
+    """A step, divided where a variable turns back within it."""
+    low, high = before, after
+    if low.first[place] * high.first[place] >= 0.0:
+        return [before, after]
+    for _ in range(60):
+        reach = min(abs(low.first[place]), abs(high.first[place])) * abs(high.t - low.t)
+        if reach <= _UNIT:
+            break
+        s = float(low.first[place] / (low.first[place] - high.first[place]))
+        here = _node_between(led, low, high, min(max(s, 0.1), 0.9))
+        if here is None:
+            break
+        if here.first[place] * low.first[place] > 0.0:
+            low = here
+        else:
+            high = here
+    return [before, min(low, high, key=lambda node: abs(float(node.first[place]))), after]
 
 
 def hermite(s: float, h: float, v0: Array, d0: Array, v1: Array, d1: Array) -> Array:

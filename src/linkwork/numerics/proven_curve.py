@@ -9,22 +9,24 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.numerics.curve import Curve, Leads, Led, Leg, apart
 from linkwork.numerics.proof import prove
-from linkwork.numerics.proven_path import Beads, prove_path
+from linkwork.numerics.proven_path import Beads, ProvenPath, prove_path
 
 __all__ = ["ProvenCurve", "leg_is_proved", "prove_curve", "same_solution"]
 
 _UNIT = np.finfo(float).eps / 2
+_MOST_STEPS = 20_000  # of a proof: a length on its way to infinity takes steps without end
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProvenCurve:
     """``legs`` (L,): every step of the leg. ``joints`` (L-1,): from a leg to the next.
-    ``closed``: that the last position is the first one again.
+    ``closed``: that the last position is the first one again. ``steps``: how many were proved.
     """
 
     legs: BoolArray
     joints: BoolArray
     closed: bool
+    steps: int
 
     @property
     def whole(self) -> bool:
@@ -33,20 +35,28 @@ class ProvenCurve:
 
 
 def prove_curve(leads: Leads, curve: Curve) -> ProvenCurve:
-    """Prove every step of a curve, as far as it goes."""
+    """Prove every step of a curve, as far as it goes; with very many steps only its beginning."""
     legs = np.zeros(len(curve.legs), dtype=bool)
     joints = np.zeros(max(len(curve.legs) - 1, 0), dtype=bool)
+    steps = 0
     if all(_provable(leg.led) for leg in curve.legs):
-        legs[:] = [leg_is_proved(leg) for leg in curve.legs]
+        for k, leg in enumerate(curve.legs):
+            proof = _proof_of(leg)
+            legs[k] = proof.connected_to(0).all()
+            steps += int(proof.pieces.sum())
+            if steps > _MOST_STEPS:
+                break
         for k, (leg, following) in enumerate(zip(curve.legs, curve.legs[1:], strict=False)):
-            joints[k] = same_solution(leg.led, following.led, leg.v[-1])
+            last = leg.v[-1]
+            joints[k] = same_solution(leg.led, following.led, last)
+            joints[k] &= np.array_equal(last, following.v[0])
     own = leads.by(leads.parameter)
     closed = False
     if curve.end.closed and own is not None and _provable(own):
         last = curve.legs[-1]
         closed = same_solution(last.led, own, last.v[-1])
         closed = closed and _meets(leads, own, curve.legs[0].v[0], last.v[-1])
-    return ProvenCurve(legs=legs, joints=joints, closed=closed)
+    return ProvenCurve(legs=legs, joints=joints, closed=closed, steps=steps)
 
 
 def _provable(led: Led) -> bool:
@@ -55,6 +65,10 @@ def _provable(led: Led) -> bool:
 
 def leg_is_proved(leg: Leg) -> bool:
     """Whether every position and every step of a leg is proved."""
+    return bool(_proof_of(leg).connected_to(0).all())
+
+
+def _proof_of(leg: Leg) -> ProvenPath:
     nodes = leg.nodes
     sign = np.sign(nodes[-1].t - nodes[0].t) or 1.0
     beads = Beads(
@@ -66,7 +80,7 @@ def leg_is_proved(leg: Leg) -> bool:
     )
     path = leg.led.path
     backwards = type(path)(origin=path.origin, rate=sign * path.rate)
-    return bool(prove_path(leg.led.solver, backwards, beads).connected_to(0).all())
+    return prove_path(leg.led.solver, backwards, beads)
 
 
 def same_solution(one: Led, other: Led, v: Array) -> bool:

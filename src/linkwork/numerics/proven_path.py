@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.arrays import Array, BoolArray, CountArray, IndexArray
 from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import BlockSolver, Linearised, Rates
 from linkwork.numerics.proof import Proof, links_hold, prove, rounding_of_inputs
@@ -48,10 +48,13 @@ class Beads:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProvenPath:
-    """``position``: the proofs of K positions. ``linked`` (K-1,): which steps are proved."""
+    """``position``: the proofs of K positions. ``linked`` (K-1,): which steps are proved.
+    ``pieces`` (K-1,): into how many steps each was divided for that.
+    """
 
     position: Proof
     linked: BoolArray
+    pieces: CountArray
 
     def connected_to(self, anchor: int) -> BoolArray:
         """The positions joined to one of them by proved steps and proved themselves, (K,)."""
@@ -99,6 +102,7 @@ def prove_path(
             each=np.concatenate([p.each for p in proofs]),
         ),
         linked=np.concatenate([piece.linked for piece in pieces]),
+        pieces=np.concatenate([piece.pieces for piece in pieces]),
     )
 
 
@@ -111,7 +115,8 @@ def _piece(solver: BlockSolver, path: InputPath, beads: Beads) -> ProvenPath:
     position = prove(solver, beads.v, beads.spread, parts)
     count = len(beads.t)
     if count < 2:
-        return ProvenPath(position=position, linked=np.zeros(0, dtype=bool))
+        nothing = np.zeros(0, dtype=np.int64)
+        return ProvenPath(position=position, linked=nothing.astype(bool), pieces=nothing)
     left, right = beads.take(slice(None, -1)), beads.take(slice(1, None))
     linked = _steps(solver, left, right, position.exists[1:], _cut(parts, slice(None, -1)))
     linked &= position.holds[1:] & position.holds[:-1]
@@ -121,11 +126,12 @@ def _piece(solver: BlockSolver, path: InputPath, beads: Beads) -> ProvenPath:
         arrival = position.exists[open_]
         linked[open_] = _steps(solver, right.take(open_), left.take(open_), arrival, back)
         open_ = open_[~linked[open_]]
+    pieces = np.ones(count - 1, dtype=np.int64)
     if len(open_):
-        linked[open_] = _halved(
+        linked[open_], pieces[open_] = _halved(
             solver, path, left.take(open_), right.take(open_), position.exists[open_ + 1]
         )
-    return ProvenPath(position=position, linked=linked)
+    return ProvenPath(position=position, linked=linked, pieces=pieces)
 
 
 def _cut(parts: Sequence[Linearised], index: IndexArray | slice) -> list[Linearised]:
@@ -154,11 +160,13 @@ def _steps(
 
 def _halved(
     solver: BlockSolver, path: InputPath, left: Beads, right: Beads, arrival: Array
-) -> BoolArray:
-    """Which steps are proved after halving them as often as needed."""
+) -> tuple[BoolArray, CountArray]:
+    """Which steps are proved after halving them as often as needed, and in how many pieces."""
     owner = np.arange(len(left.t))
     proved = np.ones(len(left.t), dtype=bool)
+    pieces = np.ones(len(left.t), dtype=np.int64)
     for _ in range(_ROUNDS):
+        np.add.at(pieces, owner, 1)
         middle, found = _between(solver, path, left, right)
         proof = prove(solver, middle.v, middle.spread)
         good = found & proof.holds
@@ -167,7 +175,7 @@ def _halved(
         left, right, middle = left.take(keep), right.take(keep), middle.take(keep)
         halfway, arrival, owner = proof.exists[keep], arrival[keep], owner[keep]
         if not len(keep):
-            return proved
+            return proved, pieces
         first = _steps(solver, left, middle, halfway)
         second = _steps(solver, middle, right, arrival)
         left = _joined(left.take(np.flatnonzero(~first)), middle.take(np.flatnonzero(~second)))
@@ -175,11 +183,11 @@ def _halved(
         arrival = np.concatenate([halfway[~first], arrival[~second]])
         owner = np.concatenate([owner[~first], owner[~second]])
         if not len(owner):
-            return proved
+            return proved, pieces
         if len(owner) > _MOST:
             break
     proved[owner] = False
-    return proved
+    return proved, pieces
 
 
 def _joined(a: Beads, b: Beads) -> Beads:

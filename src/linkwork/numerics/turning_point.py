@@ -137,37 +137,40 @@ def _divided(led: Led, a: Node, b: Node, place: int) -> list[Node]:
 
 def _refined(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, int]) -> TurningPoint:
     place, p = led.place(leads.parameter), leads.parameter
-    here = low if abs(low.first[place]) < abs(high.first[place]) else high
+    best = here = low if abs(low.first[place]) < abs(high.first[place]) else high
     sharp = replace(led.solver.options, equation_tolerance=_UNIT)
     located, step = False, np.inf
     for _ in range(60):
         step = -here.first[place] / here.second[place] if here.second[place] else np.inf
+        if abs(step) <= 4.0 * _UNIT * max(1.0, abs(here.t)):
+            located = True
+            break
         s = here.t + step
         edges = sorted((low.t, high.t))
         if not edges[0] < s < edges[1]:
             s = 0.5 * (low.t + high.t)
             step = s - here.t
-        if abs(step) <= 4.0 * _UNIT * max(1.0, abs(s)):
-            located = True
-            break
         guess = here.v + step * here.first + 0.5 * step * step * here.second
         guess[-1] = s
         found = led.solver.solve(guess[None, :], sharp)
         if found.status[0] != _CONVERGED:
             break
-        last = abs(here.first[place])
         here = node_at(led.solver, led.path, s, found.v[0])
         if here.first[place] * low.first[place] > 0.0:
             low = here
         else:
             high = here
-        if here.first[place] == 0.0 or (abs(here.first[place]) >= last and abs(step) < 1e-9):
+        if abs(here.first[place]) < abs(best.first[place]):
+            best = here
+        elif abs(step) < 1e-9:
             located = True  # to rounding
             break
+    here = best
     v = led.whole(here.v)
     direction = led.whole(here.first)
     # t is quadratic in the leader here, so the leader's last step counts squared
-    error = abs(here.second[place]) * step * step + 4.0 * _UNIT * max(1.0, abs(float(v[p])))
+    rounding = 4.0 * _UNIT * max(1.0, here.condition) * max(1.0, abs(float(v[p])))
+    error = abs(here.second[place]) * step * step + rounding
     return TurningPoint(
         t=float(v[p]),
         bracket=(float(v[p] - error), float(v[p] + error)),

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 if TYPE_CHECKING:
     from linkwork.results.circuits import Circuits
     from linkwork.results.configurations import Configurations
@@ -89,7 +91,9 @@ def motion_summary(motion: Motion) -> str:
     if found.any():
         rows.append(("certified", f"{int(motion.certified.sum())} of {int(found.sum())}"))
         rows.append(("worst residual", f"{motion.worst:.1e} of the longest link"))
-        rows.append(("worst condition", f"{motion.condition[found].max():.3g}"))
+        regular = motion.condition[np.isfinite(motion.condition)]  # not so at dead points
+        if len(regular):
+            rows.append(("worst condition", f"{regular.max():.3g}"))
         for unknown, series in motion.unknowns.items():
             reached = series.value[found]
             rows.append((unknown, f"{reached.min():.8g} … {reached.max():.8g}"))
