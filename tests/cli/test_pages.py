@@ -165,6 +165,7 @@ def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
         "solve",
         "sweep",
         "configurations",
+        "circuits",
         "draw",
         "examples",
         "schema",

@@ -311,7 +311,7 @@ def test_a_slider_that_runs_away_is_told() -> None:
 
 def test_a_parallelogram_is_followed_to_its_change_point_only() -> None:
     leads, found = around(FourBar(2.0, 1.0, 2.0, 1.0), 1.0, 1)
-    assert found.curve.end is CircuitEnd.SINGULAR
+    assert found.curve.end is CircuitEnd.CHANGE_POINT
     last = found.curve.legs[-1].v[-1]
     assert last[leads.parameter] == pytest.approx(math.pi, abs=1e-4)
     assert last[leads.parameter] < math.pi

@@ -346,4 +346,6 @@ def _led_to(
 
 def _without_start(model: Model, start: Start) -> Motion:
     rows = SolvedRows.blank(model.everyday_rows, model.compiled.solver.variables, Status.NO_START)
-    return motion_of_rows(model, rows, start.message, added=np.zeros(len(rows), dtype=bool))
+    nothing_added = np.zeros(len(rows), dtype=bool)
+    motion = motion_of_rows(model, rows, start.message, added=nothing_added)
+    return replace(motion, failure=start.failure)
