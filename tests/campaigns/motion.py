@@ -417,4 +417,5 @@ def _triad(rng: np.random.Generator, near: float | None, step: int) -> Case | No
         return np.stack([_cis(values[name]) for name in names], axis=1)
 
     case = Case(mechanism, joints, None, (), False)
-    return case if mechanism.sweep().certified.any() else None
+    motion = mechanism.sweep()
+    return case if (motion.certified & motion.asked).any() else None
