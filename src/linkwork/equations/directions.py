@@ -30,7 +30,7 @@ class NoDirectionForm(Exception):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DirectionForm:
-    """A block over M = 2L unknown directions and lengths, for any values of what it takes as known.
+    """A block over M unknown directions and lengths, for any values of what it takes as known.
 
     Parameters
     ----------
@@ -140,8 +140,8 @@ class DirectionForm:
         return found
 
 
-def direction_form(table: LoopTable) -> DirectionForm:
-    """The form of a block.
+def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
+    """The form of a block, or of several with ``free`` unknowns more than their loops determine.
 
     Raises
     ------
@@ -167,7 +167,7 @@ def direction_form(table: LoopTable) -> DirectionForm:
             f"are {loops.rows} coupled loops, more than the {_MOST_LOOPS} whose paths are followed"
         )
     size = len(directions) + len(sliding)
-    if size != 2 * loops.rows:
+    if size != 2 * loops.rows + free:
         raise NoDirectionForm("do not have two unknown directions or lengths for every loop")
     place = {int(j): len(directions) + k for k, j in enumerate(sliding)}
     column = np.where(number < 0, size, number)

@@ -78,7 +78,7 @@ class _Straight:
         """H, ∂H/∂w and ∂H/∂σ."""
         count, size = w.shape
         (k0, k1), (t0, t1) = self.linear, self.slopes
-        s0, s1 = ((w @ t).reshape(count, -1, size) for t in (t0, t1))
+        s0, s1 = ((w @ t).reshape(count, t.shape[1] // size, size) for t in (t0, t1))
         f0, f1 = (
             np.concatenate([w @ k.T, 0.5 * (s @ w[:, :, None])[:, :, 0]], axis=1)
             for k, s in ((k0, s0), (k1, s1))
@@ -129,7 +129,7 @@ class _FromProducts(_Straight):
         )
 
     def starts(self) -> ComplexArray:
-        """2 own C(2L + 1, L) solutions: of the rates one row vanishes at U or V, the others at ρ."""
+        """2 own C(2L + 1, L): one row of the rates vanishes at U or V, the others at ρ."""
         goal = self.goal
         u, v, rates = goal.parts
         count, loops, own = goal.size, goal.loops, goal.own

@@ -1,7 +1,7 @@
 """Dead points as a system of polynomials: positions at which some loops can move alone.
 
-A block of ``own`` loops and the loops it depends on, L in all, have M = 2L + 1 unknown directions and
-lengths, the input among them:
+A block of ``own`` loops and the loops it depends on, L in all, have M = 2L + 1 unknown directions
+and lengths, the input among them:
 
     left · (U, 1) = 0,     right · (V, 1) = 0,     U_p V_q = U_p' V_q',
 
