@@ -75,6 +75,17 @@ class DeadPointInputs:
     bounded: bool
     counts: tuple[LockingCount, ...]
 
+    @property
+    def cover_all(self) -> bool:
+        """Whether the number of configurations is constant between any two neighbours."""
+        return self.completeness.complete and self.bounded
+
+    @property
+    def reason(self) -> str:
+        """Why it may not be."""
+        unbounded = "" if self.bounded else "a length can run to infinity at inputs between them"
+        return self.message if not self.completeness.complete else unbounded
+
 
 def dead_point_inputs(model: Model, path: InputPath, lead: int) -> DeadPointInputs:
     """All input values at which a block locks while those it depends on do not.
