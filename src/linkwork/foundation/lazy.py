@@ -25,7 +25,13 @@ def loader(package: str, homes: Mapping[str, tuple[str, ...]]) -> Callable[[str]
         if name not in home:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         value: object = getattr(import_module(f"{package}.{home[name]}"), name)
-        setattr(sys.modules[package], name, value)
+        # Python binds a module that was imported on the way to its own name in the package, which
+        # may be the name of a function too: every module that is there now provides its names
+        for module, names in homes.items():
+            loaded = sys.modules.get(f"{package}.{module}")
+            for one in names:
+                if hasattr(loaded, one):
+                    setattr(sys.modules[package], one, getattr(loaded, one))
         return value
 
     return load
