@@ -1,13 +1,14 @@
 """All dead points of a family of mechanisms: homotopies of :class:`LockingSystem`.
 
-Unknowns are the homogeneous X = ((U, 1), (V, 1), ρ), each of the three on a random patch, so all
-equations are at most quadratic in X and their coefficients run straight from start to goal.
+Unknowns are the homogeneous X = ((U, 1), (V, 1), ρ), each of the three on a random patch, or
+coordinates w in which X is linear. So all equations are at most quadratic, and their coefficients
+run straight from start to goal.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 
@@ -28,48 +29,30 @@ def _normal(rng: np.random.Generator, *shape: int) -> ComplexArray:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Straight:
-    """σ (K0 X, ½ XᵀT0X) + (1 - σ) (K1 X, ½ XᵀT1X) = 0 on ``patches`` (3, N) X = 1.
+    """σ (K0 w, ½ wᵀT0w) + (1 - σ) (K1 w, ½ wᵀT1w) = 0 on ``patches`` (3, n) w = 1.
 
-    ``linear`` (2, C, N): K0, K1. ``slopes`` (2, N, E N): T0, T1, as X -> XᵀT.
+    ``linear`` (2, C, n): K0, K1. ``slopes`` (2, n, E n): T0, T1, as w -> wᵀT. X = ``basis`` w with
+    parts of w of their own for each of the three projective spaces.
     """
 
     goal: LockingSystem
+    basis: ComplexArray
+    parts: tuple[slice, ...]
     patches: ComplexArray
     linear: ComplexArray
     slopes: ComplexArray
 
-    @classmethod
-    def of(
-        cls,
-        goal: LockingSystem,
-        rng: np.random.Generator,
-        linear: ComplexArray,
-        quadratic: ComplexArray,
-    ) -> _Straight:
-        """From a start with these closures and products."""
-        size = goal.parts[2].stop
-        patches = np.zeros((3, size), dtype=complex)
-        for k, part in enumerate(goal.parts):
-            patches[k, part] = _normal(rng, part.stop - part.start)
-        both = [t.transpose(1, 0, 2).reshape(size, -1) for t in (quadratic, goal.quadratic)]
-        return cls(
-            goal=goal,
-            patches=patches,
-            linear=np.stack([linear, goal.linear]),
-            slopes=np.stack(both),
-        )
-
     def points(self, w: ComplexArray) -> tuple[ComplexArray, Array]:
         """x (B, n), and the smaller homogenising coordinate of unit vectors, (B,)."""
-        x, last = self.goal.points(w)
+        x, last = self.goal.points(w @ self.basis.T)
         scale: Array = np.abs(last).min(axis=0)
         return x, scale
 
-    def on_patches(self, whole: ComplexArray) -> ComplexArray:
-        """X (B, N), each part on its patch."""
-        placed = whole.copy()
-        for patch, part in zip(self.patches, self.goal.parts, strict=True):
-            placed[:, part] /= (whole[:, part] @ patch[part])[:, None]
+    def on_patches(self, w: ComplexArray) -> ComplexArray:
+        """w (B, n) with each part on its patch."""
+        placed = w.copy()
+        for patch, part in zip(self.patches, self.parts, strict=True):
+            placed[:, part] /= (w[:, part] @ patch[part])[:, None]
         return placed
 
     def evaluate(
@@ -95,11 +78,23 @@ class _Straight:
         return value, jacobian, change
 
 
+def _patches(rng: np.random.Generator, parts: tuple[slice, ...]) -> ComplexArray:
+    patches = np.zeros((3, parts[-1].stop), dtype=complex)
+    for k, part in enumerate(parts):
+        patches[k, part] = _normal(rng, part.stop - part.start)
+    return patches
+
+
+def _as_slopes(quadratic: ComplexArray) -> ComplexArray:
+    """w -> wᵀT of symmetric T (E, n, n)."""
+    return quadratic.transpose(1, 0, 2).reshape(quadratic.shape[1], -1)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _FromProducts(_Straight):
-    """With products of linear forms instead of the quadratic equations.
+    """With products of linear forms for the quadratic equations, in the closures' null space.
 
-    ``forms`` (2, E, N): both factors; the first is one of (U, 1) or (V, 1), the second of (V, 1) or
+    ``forms`` (2, E, n): both factors; the first is one of (U, 1) or (V, 1), the second of (V, 1) or
     ρ.
     """
 
@@ -108,9 +103,14 @@ class _FromProducts(_Straight):
     @classmethod
     def to(cls, goal: LockingSystem, rng: np.random.Generator) -> _FromProducts:
         """A random start."""
-        u, v, rates = goal.parts
         own, count = goal.own, goal.size
-        forms = np.zeros((2, count + 2 * own, rates.stop), dtype=complex)
+        spaces = [null_space(goal.left)[0], null_space(goal.right)[0], np.eye(2 * own)]
+        ends = np.cumsum([0, *(space.shape[1] for space in spaces)]).tolist()
+        u, v, rates = parts = tuple(slice(a, b) for a, b in pairwise(ends))
+        basis = np.zeros((goal.parts[2].stop, ends[-1]), dtype=complex)
+        for space, there, here in zip(spaces, goal.parts, parts, strict=True):
+            basis[there, here] = space
+        forms = np.zeros((2, count + 2 * own, ends[-1]), dtype=complex)
         kinds = [(u, v)] * count + [(u, rates)] * own + [(v, rates)] * own
         for k, pair in enumerate(kinds):
             for side, part in enumerate(pair):
@@ -118,48 +118,58 @@ class _FromProducts(_Straight):
                 forms[side, k, part] = _normal(rng, width) / np.sqrt(width)
         turn = np.exp(2j * np.pi * rng.uniform())
         product = turn * forms[0][:, :, None] * forms[1][:, None, :]
-        quadratic = product + product.transpose(0, 2, 1)
-        straight = _Straight.of(goal, rng, goal.linear, quadratic)
+        start = product + product.transpose(0, 2, 1)
         return cls(
             goal=goal,
-            patches=straight.patches,
-            linear=straight.linear,
-            slopes=straight.slopes,
+            basis=basis,
+            parts=parts,
+            patches=_patches(rng, parts),
+            linear=np.zeros((2, 0, ends[-1]), dtype=complex),
+            slopes=np.stack([_as_slopes(t) for t in (start, basis.T @ goal.quadratic @ basis)]),
             forms=forms,
         )
 
     def starts(self) -> ComplexArray:
         """2 own C(2L + 1, L): one row of the rates vanishes at U or V, the others at ρ."""
-        goal = self.goal
-        u, v, rates = goal.parts
+        goal, (a, b) = self.goal, self.forms
+        u, v, rates = self.parts
         count, loops, own = goal.size, goal.loops, goal.own
-        a, b = self.forms
 
-        def point(part: slice, *rows: ComplexArray) -> ComplexArray:
-            return null_space(np.concatenate(rows)[:, part])[0][:, 0]
+        def point(part: slice, forms: ComplexArray) -> ComplexArray:
+            return null_space(forms[:, part])[0][:, 0]
 
-        directions = []
-        for row in range(2 * own):
-            others = [count + k for k in range(2 * own) if k != row]
-            directions.append(point(rates, b[others]))
         found = []
         for row in range(2 * own):
+            others = [count + k for k in range(2 * own) if k != row]
+            direction, mine = point(rates, b[others]), [count + row]
             on_u = row < own
             for some in combinations(range(count), loops if on_u else loops + 1):
                 rest = [k for k in range(count) if k not in some]
-                at_u = [*some, count + row] if on_u else list(some)
-                x = np.zeros(rates.stop, dtype=complex)
-                x[u] = point(u, self.linear[0, :loops], a[at_u])
-                on_v = [b[rest]] if on_u else [b[rest], a[[count + row]]]
-                x[v] = point(v, self.linear[0, loops:], *on_v)
-                x[rates] = directions[row]
-                found.append(x)
+                w = np.zeros(rates.stop, dtype=complex)
+                w[u] = point(u, a[[*some, *mine]] if on_u else a[list(some)])
+                w[v] = point(v, b[rest] if on_u else np.concatenate([b[rest], a[mine]]))
+                w[rates] = direction
+                found.append(w)
         return self.on_patches(np.array(found))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _FromRelative(_Straight):
-    """From another member of the family."""
+    """From another member of the family; the closures move, so w = X."""
+
+    @classmethod
+    def between(
+        cls, start: LockingSystem, goal: LockingSystem, rng: np.random.Generator
+    ) -> _FromRelative:
+        """With coefficients that run straight from one to the other."""
+        return cls(
+            goal=goal,
+            basis=np.eye(goal.parts[2].stop, dtype=complex),
+            parts=goal.parts,
+            patches=_patches(rng, goal.parts),
+            linear=np.stack([start.linear, goal.linear]),
+            slopes=np.stack([_as_slopes(system.quadratic) for system in (start, goal)]),
+        )
 
     def starts(self, x: ComplexArray) -> ComplexArray:
         """Solutions x (B, n) of the other member on the patches."""
@@ -217,13 +227,7 @@ class LockingFamily:
             pairs = ((start.left, goal.left), (start.right, goal.right))
             turns = np.array([np.exp(1j * np.angle(np.vdot(a, b))) for a, b in pairs])
         turned = replace(start, left=turns[0] * start.left, right=turns[1] * start.right)
-        straight = _Straight.of(goal, rng, turned.linear, turned.quadratic)
-        return _FromRelative(
-            goal=goal,
-            patches=straight.patches,
-            linear=straight.linear,
-            slopes=straight.slopes,
-        )
+        return _FromRelative.between(turned, goal, rng)
 
 
 def locking_roots(system: LockingSystem) -> Roots:
