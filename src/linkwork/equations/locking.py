@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import cmath
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,15 +33,16 @@ class LockingForm:
     system : LockingSystem
     variables : (n,) int
         The form's unknowns as variables of the whole.
-    bounded : bool
-        Whether no length can grow without bound while the input stays finite.
+    poles : tuple of float, optional
+        Directions e^{iφ} of the input, as angles φ, at which lengths of the block run to infinity
+        while those it depends on stay finite; ``None`` if that is not known.
     """
 
     form: DirectionForm
     system: LockingSystem
     variables: IndexArray
     known: Array
-    bounded: bool
+    poles: tuple[float, ...] | None
 
     def positions(self, x: ComplexArray, near: Array) -> Array:
         """The unknowns (R, n) at real solutions x; angles within half a turn of ``near`` (N,)."""
@@ -85,6 +88,7 @@ def locking_form(
     values = np.array([at[k - n] for k in known])
     left, _ = form.closures(values[None, :], np.zeros((1, len(known))))
     place = {u: k for k, u in enumerate(unknowns)}
+    mine = [place[int(u)] for u in own.unknowns]
     return LockingForm(
         form=form,
         system=LockingSystem(
@@ -92,11 +96,11 @@ def locking_form(
             right=left[0].conj(),
             rows=form.rows,
             own=table.loops.rows,
-            slots=_slots(form, [place[int(u)] for u in own.unknowns], table.loops.rows),
+            slots=_slots(form, mine, table.loops.rows),
         ),
         variables=np.array(unknowns, dtype=np.intp),
         known=values,
-        bounded=_bounded(form, left[0], len(unknowns) - 1),
+        poles=_poles(form, left[0][-table.loops.rows :], mine),
     )
 
 
@@ -146,19 +150,31 @@ def _null_space(rows: Array) -> Array:
     return basis
 
 
-def _bounded(form: DirectionForm, left: ComplexArray, lead: int) -> bool:
-    """Whether lengths far larger than all else would break a closure, whatever their directions."""
-    columns = []
-    for k, (j, a) in enumerate(zip(form.sliding.tolist(), form.along, strict=True)):
-        if j == lead:
-            continue
-        mine = left[:, form.directions + k]
-        columns.append(np.concatenate([mine.real, mine.imag]))
+def _poles(form: DirectionForm, closures: ComplexArray, own: list[int]) -> tuple[float, ...] | None:
+    """Where own lengths can outgrow all else in the own closures (l, M + 1)."""
+    lengths = [k for k, j in enumerate(form.sliding.tolist()) if j in own]
+    along = [form.along[k] for k in lengths]
+    columns = closures[:, [form.directions + k for k in lengths]]
+    if not lengths or _closed_by_nothing(columns, along):
+        return ()
+    if len(columns) == 1 and len(lengths) == 2 and form.directions == 1 and sum(along) == -1:
+        # one along the input, one along a line: they are parallel twice a turn
+        turning = along.index(0)
+        ratio = complex(columns[0, 1 - turning] / columns[0, turning])
+        angle = cmath.phase(ratio)
+        shift = float((form.angles @ np.array([angle]))[-1] + form.shift[-1, -1])
+        return (shift, shift + math.pi)
+    return None
+
+
+def _closed_by_nothing(columns: ComplexArray, along: list[int]) -> bool:
+    """Whether lengths far larger than all else would break a closure, whatever the directions."""
+    real = []
+    for column, a in zip(columns.T, along, strict=True):
+        real.append(np.concatenate([column.real, column.imag]))
         if a >= 0:
-            columns.append(np.concatenate([-mine.imag, mine.real]))
-    if not columns:
-        return True
-    if len(columns) > 2 * len(left):
+            real.append(np.concatenate([-column.imag, column.real]))
+    if len(real) > len(real[0]):
         return False
-    sizes = np.linalg.svd(np.array(columns), compute_uv=False)
+    sizes = np.linalg.svd(np.array(real), compute_uv=False)
     return bool(sizes[-1] > _DEPENDENT * sizes[0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,9 +62,10 @@ class DeadPointInputs:
         At which solutions coincide, as at change points.
     completeness, message : Completeness, str
         Whether no dead point is missing.
-    bounded : bool
-        Whether no length runs to infinity at a finite input; there, too, configurations begin and
-        end.
+    poles : (P,)
+        Inputs at which a length runs to infinity; there, too, configurations begin and end.
+    poles_known : bool
+        Whether these are all.
     counts : tuple of LockingCount
         One for each block that can lock.
     """
@@ -72,18 +74,24 @@ class DeadPointInputs:
     multiple: BoolArray
     completeness: Completeness
     message: str
-    bounded: bool
+    poles: Array
+    poles_known: bool
     counts: tuple[LockingCount, ...]
 
     @property
+    def cuts(self) -> Array:
+        """Dead points and poles, rising."""
+        return np.sort(np.concatenate([self.values, self.poles]))
+
+    @property
     def cover_all(self) -> bool:
-        """Whether the number of configurations is constant between any two neighbours."""
-        return self.completeness.complete and self.bounded
+        """Whether the number of configurations is constant between any two neighbouring cuts."""
+        return self.completeness.complete and self.poles_known
 
     @property
     def reason(self) -> str:
         """Why it may not be."""
-        unbounded = "" if self.bounded else "a length can run to infinity at inputs between them"
+        unbounded = "" if self.poles_known else "a length can run to infinity between them"
         return self.message if not self.completeness.complete else unbounded
 
 
@@ -109,7 +117,8 @@ class _Search:
         self.values: list[float] = []
         self.doubles: list[float] = []
         self.counts: list[LockingCount] = []
-        self.bounded = True
+        self.poles: list[float] = []
+        self.poles_known = True
 
     def run(self) -> DeadPointInputs:
         """Block by block."""
@@ -130,13 +139,17 @@ class _Search:
             multiple=multiple,
             completeness=self.grade,
             message=message,
-            bounded=self.bounded,
+            poles=np.array(self._wrapped(self.poles), dtype=float),
+            poles_known=self.poles_known,
             counts=tuple(self.counts),
         )
 
     def _add(self, form: LockingForm, names: tuple[str, ...]) -> None:
         system = form.system
-        self.bounded &= form.bounded
+        if form.poles is None:
+            self.poles_known = False
+        else:
+            self.poles += form.poles
         if system.bound > _MOST_PATHS:
             raise NoDirectionForm(
                 f"hang on {system.loops} loops; their dead points would take {system.bound} paths, "
@@ -156,10 +169,13 @@ class _Search:
         self.counts.append(_count(names, form, roots, len(real) + len(double)))
 
     def _inputs(self, form: LockingForm, x: ComplexArray) -> list[float]:
-        lead: Array = form.positions(x, self.model.equations.start)[:, -1]
-        if self.leads.turns[self.leads.parameter]:
-            lead = np.remainder(lead + np.pi, 2.0 * np.pi) - np.pi
-        return [float(value) for value in lead]
+        return self._wrapped(form.positions(x, self.model.equations.start)[:, -1].tolist())
+
+    def _wrapped(self, values: list[float]) -> list[float]:
+        """An angle's values from -π to π."""
+        if not self.leads.turns[self.leads.parameter]:
+            return values
+        return [math.remainder(value, 2.0 * math.pi) for value in values]
 
     def _sorted(self) -> tuple[Array, BoolArray]:
         """Values without repetitions; those of simple dead points come first."""

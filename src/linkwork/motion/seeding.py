@@ -66,7 +66,7 @@ class Seeding:
         assert self.dead is not None
         place = self.leads.parameter
         turns, scale = bool(self.leads.turns[place]), float(self.leads.scale[place])
-        cuts = self.dead.values
+        cuts = self.dead.cuts
         found = intervals_between(cuts, value if sure else None, scale, turns=turns)
         if not len(cuts) and not sure:
             found = [(value + 0.1 * scale, value - 0.17 * scale)]
@@ -104,6 +104,16 @@ class Seeding:
         # off the round numbers at which a table begins and ends
         return [low + (high - low) * (k + 0.5) / _LOOKED_AT for k in range(_LOOKED_AT)]
 
+    def _ends(self) -> str:
+        """What limits circuits."""
+        assert self.dead is not None
+        ends = ["all dead points"]
+        if self.dead.multiple.any():
+            ends.append("change points")
+        if len(self.dead.poles):
+            ends.append("inputs at which a length runs to infinity")
+        return " and ".join([", ".join(ends[:-1]), ends[-1]] if len(ends) > 1 else ends)
+
     def completeness(self) -> tuple[Completeness, str]:
         """Of the list of circuits."""
         if self.dead is None:
@@ -114,10 +124,10 @@ class Seeding:
         count = self.seeded
         if self.dead.cover_all and not self.unclear:
             where = "the guess's input: no dead point limits it"
-            if len(self.dead.values):
-                where = f"{count} input values, at least one between any two dead points"
+            if len(self.dead.cuts):
+                where = f"{count} input values, at least one between any two of them"
             return Completeness.WITH_PROBABILITY_ONE, (
-                "every circuit is listed, with probability one: all dead points were found, and "
+                f"every circuit is listed, with probability one: {self._ends()} were found, and "
                 f"all configurations at {where}"
             )
         what = "the circuits found at" if self.unclear else "every circuit that comes by one of"
