@@ -13,6 +13,7 @@ from linkwork.equations.locking import LockingForm, locking_form
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.motion.model import Model
+from linkwork.numerics.change_point import crossing_near
 from linkwork.numerics.generic_roots import nearest_solution
 from linkwork.numerics.locking_family import locking_roots
 from linkwork.numerics.polynomial_system import Roots
@@ -57,7 +58,8 @@ class DeadPointInputs:
     Parameters
     ----------
     values : (K,)
-        Of the leading input, rising; an angle from -π to π.
+        Of the leading input, rising; an angle from -π to π. A block can lock there; whether those
+        that depend on it can be closed there is not asked.
     multiple : (K,) bool
         At which solutions coincide, as at change points.
     completeness, message : Completeness, str
@@ -128,7 +130,7 @@ class _Search:
             try:
                 form = locking_form(self.leads, solver, self.path, number)
                 if form is not None:
-                    self._add(form, names)
+                    self._add(form, number, names)
             except NoDirectionForm as reason:
                 self.grade = self.grade.and_then(Completeness.NOT_LISTED)
                 self.reasons.append(f"the equations of {', '.join(names)} {reason}")
@@ -144,7 +146,7 @@ class _Search:
             counts=tuple(self.counts),
         )
 
-    def _add(self, form: LockingForm, names: tuple[str, ...]) -> None:
+    def _add(self, form: LockingForm, number: int, names: tuple[str, ...]) -> None:
         system = form.system
         if form.poles is None:
             self.poles_known = False
@@ -164,12 +166,21 @@ class _Search:
             self.grade = self.grade.and_then(Completeness.NOT_PROVED)
         real = _real(form, roots.x, _ALMOST_REAL)
         double = _real(form, _sharpened(form, roots.multiple), _ALMOST_DOUBLE)
-        self.values += self._inputs(form, real)
-        self.doubles += self._inputs(form, double)
+        start = self.model.equations.start
+        self.values += self._wrapped(form.positions(real, start)[:, -1].tolist())
+        self.doubles += self._wrapped(
+            [self._crossing(form, number, x) for x in form.positions(double, start)]
+        )
         self.counts.append(_count(names, form, roots, len(real) + len(double)))
 
-    def _inputs(self, form: LockingForm, x: ComplexArray) -> list[float]:
-        return self._wrapped(form.positions(x, self.model.equations.start)[:, -1].tolist())
+    def _crossing(self, form: LockingForm, number: int, x: Array) -> float:
+        """The input of a multiple solution x (n,): a change point's to rounding."""
+        v = self.model.equations.start.copy()
+        solver = self.model.compiled.solver
+        v[solver.unknowns :] = self.path.at(float(x[-1]))
+        v[form.variables] = x
+        found = crossing_near(solver, self.path, number, v)
+        return float(x[-1]) if found is None else found
 
     def _wrapped(self, values: list[float]) -> list[float]:
         """An angle's values from -π to π."""
