@@ -16,7 +16,7 @@ from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArra
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.numerics.bilinear import BilinearSystem
 
-__all__ = ["DirectionForm", "NoDirectionForm", "direction_form"]
+__all__ = ["DirectionForm", "NoDirectionForm", "check_independent", "direction_form"]
 
 _UNIT = np.finfo(float).eps / 2
 _MOST_LOOPS = 6  # C(12, 6) = 924 paths to a random system
@@ -116,9 +116,7 @@ class DirectionForm:
         NoDirectionForm
             If the loops say the same twice.
         """
-        sizes = np.linalg.svd(left, compute_uv=False)
-        if sizes[-1] <= _DEPENDENT * sizes[0]:
-            raise NoDirectionForm("do not say different things: one follows from the others")
+        check_independent(left)
         return BilinearSystem(left=left, right=left.conj(), rows=self.rows)
 
     def unknowns(self, x: ComplexArray, known: Array, near: Array) -> Array:
@@ -138,6 +136,19 @@ class DirectionForm:
             turned = z * np.exp(-1j * psi[:, a]) if a >= 0 else z
             found[:, j] = turned.real * self.table.variable_scale[j]
         return found
+
+
+def check_independent(left: ComplexArray) -> None:
+    """Refuse closures (L, M + 1) that are not independent.
+
+    Raises
+    ------
+    NoDirectionForm
+        If the loops say the same twice.
+    """
+    sizes = np.linalg.svd(left, compute_uv=False)
+    if sizes[-1] <= _DEPENDENT * sizes[0]:
+        raise NoDirectionForm("do not say different things: one follows from the others")
 
 
 def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:

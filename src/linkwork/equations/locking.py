@@ -8,7 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.equations.directions import DirectionForm, NoDirectionForm, direction_form
+from linkwork.equations.directions import (
+    DirectionForm,
+    NoDirectionForm,
+    check_independent,
+    direction_form,
+)
 from linkwork.equations.leading import LeadTable
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.kernels.loop_table import LoopTable, TableSplitter
@@ -63,15 +68,11 @@ def locking_form(
     members = closure_of(solver, number)
     blocks = [solver.blocks[k] for k in members]
     own = blocks[-1]
-    tables = [block.system for block in blocks]
-    if not all(isinstance(table, LoopTable) and not table.functions for table in tables):
-        raise NoDirectionForm("are plain equations, not loops")
     table = own.system
-    assert isinstance(table, LoopTable)
     used = {int(k) for block in blocks for k in block.variables[len(block.unknowns) :]}
     n = solver.unknowns
     inputs = [k - n for k in sorted(used) if k >= n and path.rate[k - n]]
-    if not table.loops.rows or not inputs:
+    if not isinstance(table, LoopTable) or not table.loops.rows or not inputs:
         return None
     lead = leads.parameter
     others = [n + j for j in inputs if n + j != lead]
@@ -87,6 +88,7 @@ def locking_form(
     at = path.at(0.0)
     values = np.array([at[k - n] for k in known])
     left, _ = form.closures(values[None, :], np.zeros((1, len(known))))
+    check_independent(left[0])
     place = {u: k for k, u in enumerate(unknowns)}
     mine = [place[int(u)] for u in own.unknowns]
     return LockingForm(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,6 +26,7 @@ _ALMOST_REAL = 1e-6  # a solution this near to its mirror image is a real one,
 _ALMOST_DOUBLE = 1e-3  # and a multiple one, whose path ends less precisely
 _SAME = 1e-9  # weighted: two inputs are one,
 _SAME_MULTIPLE = 1e-5  # and that of a multiple solution another one's
+_WHOLE = 1e-12  # how far a rate may be from a whole number
 _STEPS = 40  # towards a multiple solution
 _GRADES = {
     Completeness.WITH_PROBABILITY_ONE: (
@@ -112,8 +113,11 @@ def dead_point_inputs(model: Model, path: InputPath, lead: int) -> DeadPointInpu
 
 class _Search:
     def __init__(self, model: Model, path: InputPath, lead: int) -> None:
-        self.model, self.path = model, path
-        self.leads = LeadTable(model.compiled.table, path, lead)
+        # rates that are whole numbers but for the rounding of a table in degrees
+        whole = np.round(path.rate)
+        rate = np.where(np.abs(path.rate - whole) <= _WHOLE, whole, path.rate)
+        self.model, self.path = model, replace(path, rate=rate)
+        self.leads = LeadTable(model.compiled.table, self.path, lead)
         self.grade = Completeness.WITH_PROBABILITY_ONE
         self.reasons: list[str] = []
         self.values: list[float] = []
@@ -141,7 +145,7 @@ class _Search:
             multiple=multiple,
             completeness=self.grade,
             message=message,
-            poles=np.array(self._wrapped(self.poles), dtype=float),
+            poles=np.sort(np.array(self._wrapped(self.poles), dtype=float)),
             poles_known=self.poles_known,
             counts=tuple(self.counts),
         )
