@@ -43,6 +43,8 @@ class DirectionForm:
     angles : (A, D)
         Unknown angles = ``angles`` · directions + ``shift`` · (known variables, 1).
     shift : (A, p + 1)
+    tied : (A, D)
+        How the angles follow, by linear rows, when ``free`` (D,) ones of them turn.
     along : tuple of int
         The direction of each unknown length, -1 if it is known.
     """
@@ -52,6 +54,8 @@ class DirectionForm:
     rows: IndexArray
     angles: Array
     shift: Array
+    tied: Array
+    free: IndexArray
     along: tuple[int, ...]
 
     @property
@@ -122,15 +126,16 @@ class DirectionForm:
     def unknowns(self, x: ComplexArray, known: Array, near: Array) -> Array:
         """The block's unknowns (R, n) of real solutions (U, V) (R, 2M) for known values (R, p).
 
-        Angles are those within half a turn of ``near`` (n,).
+        Angles are those within half a turn of ``near`` (n,), unless a linear row forbids.
         """
         count, m = self.directions, self.rows.shape[1]
         psi = np.angle(x[:, :count] + x[:, m : m + count].conj())
         ones = np.ones((len(x), 1))
         angles = psi @ self.angles.T + np.concatenate([known, ones], axis=1) @ self.shift.T
-        home = near[self.turning]
+        away = angles[:, self.free] - near[self.turning][self.free]
+        turns = np.floor((away + np.pi) / (2.0 * np.pi))
         found = np.zeros((len(x), self.table.unknowns))
-        found[:, self.turning] = home + np.remainder(angles - home + np.pi, 2.0 * np.pi) - np.pi
+        found[:, self.turning] = angles - 2.0 * np.pi * (turns @ self.tied.T)
         for k, (j, a) in enumerate(zip(self.sliding, self.along, strict=True)):
             z = x[:, count + k]
             turned = z * np.exp(-1j * psi[:, a]) if a >= 0 else z
@@ -164,7 +169,7 @@ def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
     n, loops = table.unknowns, table.loops
     turning = np.flatnonzero(table.turns[:n])
     sliding = np.flatnonzero(~table.turns[:n])
-    reduce, shift = _solved_lines(table, turning, sliding)
+    reduce, shift, free_angles = _solved_lines(table, turning, sliding)
     phases = np.zeros((len(loops.row), table.variables))
     np.add.at(phases, (loops.phase_term, loops.phase_variable), loops.phase_weight)
     if np.abs(phases[:, sliding]).max(initial=0.0) > 0.0:
@@ -196,14 +201,16 @@ def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
         rows=np.array(products, dtype=np.intp).reshape(size, 4).T,
         angles=angles,
         shift=shift,
+        tied=reduce,
+        free=np.array(free_angles, dtype=np.intp),
         along=along,
     )
 
 
 def _solved_lines(
     table: LoopTable, turning: IndexArray, sliding: IndexArray
-) -> tuple[Array, Array]:
-    """Angles = first · (angles left) + second · (known, 1), from the linear rows."""
+) -> tuple[Array, Array, list[int]]:
+    """Angles = first · (angles left) + second · (known, 1), from linear rows; which are left."""
     n, lines = table.unknowns, table.linear
     rows = np.zeros((len(lines.constant), table.variables + 1))
     np.add.at(rows, (lines.row, lines.variable), lines.weight)
@@ -233,7 +240,7 @@ def _solved_lines(
     for k, j in enumerate(pivots):
         reduce[j] = -own[k, free]
         shift[j] = -rest[k]
-    return reduce, shift
+    return reduce, shift, free
 
 
 def _directions(sums: Array) -> tuple[list[tuple[float, ...]], IndexArray]:
