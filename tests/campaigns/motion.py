@@ -20,7 +20,7 @@ from linkwork.foundation.status import Status
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.quantity import Kind
 
-__all__ = ["FAMILIES", "Tally", "sweep_campaign"]
+__all__ = ["FAMILIES", "Tally", "random_mechanism", "sweep_campaign"]
 
 Array = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -66,6 +66,12 @@ def sweep_campaign(numbers: range) -> Tally:
         case = _case(rng, family, near, step)
         _judge(case, tally, f"{family}, {step} degrees, number {number}: ", step, near)
     return tally
+
+
+def random_mechanism(family: str, rng: np.random.Generator) -> lw.Mechanism:
+    """One of a family, a tenth of them close to a change point."""
+    near = 10 ** rng.uniform(-9, -3) if rng.random() < 0.12 and family != "triad" else None
+    return _case(rng, family, near, 10).mechanism
 
 
 def _judge(case: Case, tally: Tally, where: str, step: int, near: float | None) -> None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from time import perf_counter
 
 from tests.campaigns.certificates import judge
+from tests.campaigns.circuits import circuit_campaign
 from tests.campaigns.configurations import configuration_campaign
 from tests.campaigns.motion import sweep_campaign
 from tests.campaigns.positions import library_positions, random_position
@@ -49,12 +50,17 @@ def _configurations(part: int) -> tuple[Counter[str], list[str]]:
     return configuration_campaign(part, _PART)
 
 
+def _circuits(part: int) -> tuple[Counter[str], list[str]]:
+    return circuit_campaign(part, _PART)
+
+
 #: What one part does, and how many things the whole campaign looks at.
 CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {
     "certificates": (_certificates, 10_000),
     "steps": (_steps, 1_000),
     "motion": (_motion, 10_000),
     "configurations": (_configurations, 450),
+    "circuits": (_circuits, 500),
 }
 
 

@@ -345,6 +345,15 @@ def test_lists_read_like_sequences() -> None:
     assert lw.example("four-bar").configurations(at=60).seed == found.seed
 
 
+def test_angles_tied_to_an_input_keep_their_tie_far_from_the_guess() -> None:
+    """A relative angle as input: whole turns of one angle are whole turns of the other."""
+    mechanism = mechanism_of("joint as input")
+    for at in (60.0, -60.0, 300.0):
+        found = mechanism.configurations(at=at)
+        assert found.completeness is Completeness.PROVED
+        assert [p.certificate.certified for p in found] == [True, True]
+
+
 def test_solve_takes_a_configuration_by_name() -> None:
     bar = lw.example("four-bar")
     position = bar.solve(60, configuration="crossed")

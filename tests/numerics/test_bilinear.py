@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from linkwork.numerics import generic_roots
-from linkwork.numerics.bilinear import BilinearSystem, polished, proved_roots
+from linkwork.numerics.bilinear import BilinearSystem, proved_roots
+from linkwork.numerics.bilinear_family import bilinear_roots, structure_of
 from linkwork.numerics.bilinear_homotopy import ParameterHomotopy, StartHomotopy, null_space
-from linkwork.numerics.generic_roots import isolated_roots, structure_of
+from linkwork.numerics.polynomial_system import polished
 from linkwork.numerics.quadratic_roots import quadratic_roots
 from tests.numerics.bilinear_systems import (
     THETA_18,
@@ -75,7 +76,7 @@ def test_all_products_of_forms_are_starts() -> None:
 @pytest.mark.parametrize("seed", range(20))
 def test_triads_have_six_solutions_proved_and_apart_one_of_them_known(seed: int) -> None:
     system, t = random_triad(seed)
-    roots = isolated_roots(system)
+    roots = bilinear_roots(system)
     assert (len(roots.x), roots.paths, roots.expected, system.bound) == (6, 6, 6, 6)
     assert (roots.failed, roots.at_infinity, roots.singular, roots.continuum) == (0, 0, 0, False)
     proofs = proved_roots(system, roots.x, _exact(system))
@@ -87,7 +88,7 @@ def test_triads_have_six_solutions_proved_and_apart_one_of_them_known(seed: int)
 
 def test_eighteen_of_eighteen_are_real() -> None:
     system = angles_only(*TRUSS_18)
-    roots = isolated_roots(system)
+    roots = bilinear_roots(system)
     proofs = proved_roots(system, roots.x, _exact(system))
     assert (len(roots.x), roots.expected, int(proofs.real.sum())) == (18, 18, 18)
     theta = np.sort(np.mod(np.angle(roots.x[:, 0]), 2 * np.pi))
@@ -134,18 +135,18 @@ def test_sums_within_a_column_are_found_and_kept() -> None:
 
 def test_results_do_not_depend_on_what_was_solved_before(monkeypatch: pytest.MonkeyPatch) -> None:
     system, _ = random_triad(7)
-    first = isolated_roots(system).x
-    isolated_roots(angles_only(*TRUSS_18))
-    assert np.array_equal(isolated_roots(system).x, first)
+    first = bilinear_roots(system).x
+    bilinear_roots(angles_only(*TRUSS_18))
+    assert np.array_equal(bilinear_roots(system).x, first)
     monkeypatch.setattr(generic_roots, "_KNOWN", {})
-    assert np.array_equal(isolated_roots(system).x, first)
+    assert np.array_equal(bilinear_roots(system).x, first)
 
 
 def test_lost_paths_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     system, _ = random_triad(8)
-    isolated_roots(system)
+    bilinear_roots(system)
     monkeypatch.setattr("linkwork.numerics.homotopy._LARGEST_STEPS", 3)
-    roots = isolated_roots(system)
+    roots = bilinear_roots(system)
     assert (len(roots.x), roots.failed) == (0, 6)
 
 
@@ -160,9 +161,9 @@ def test_solutions_missing_at_first_are_looked_for_again(monkeypatch: pytest.Mon
             ends.regular[2], ends.infinite[2] = False, True
         return ends
 
-    isolated_roots(system)
+    bilinear_roots(system)
     monkeypatch.setattr(generic_roots, "_followed", careless)
-    roots = isolated_roots(system)
+    roots = bilinear_roots(system)
     assert (len(roots.x), roots.at_infinity, len(calls)) == (6, 0, 2)
     assert [options["nearest"] for options in calls] == [True, False]
 
@@ -173,7 +174,7 @@ def test_a_path_that_jumped_is_not_counted_twice(monkeypatch: pytest.MonkeyPatch
     twice = np.concatenate([known.x[:5], known.x[:1]])
     spoiled = generic_roots._Generic(system=known.system, x=twice)
     monkeypatch.setitem(generic_roots._KNOWN, structure_of(system), spoiled)
-    roots = isolated_roots(system)
+    roots = bilinear_roots(system)
     assert (len(roots.x), roots.failed) == (4, 2)
 
 
@@ -190,7 +191,7 @@ def test_closed_paths_find_solutions_that_were_missing() -> None:
 def test_a_congruent_platform_on_equal_legs_is_a_continuum(legs: tuple[float, ...]) -> None:
     base = np.array([0, 15.91, 3 + 10j])
     c = np.array([[legs[0], -legs[1], 0, base[1]], [legs[0], 0, -legs[2], base[2]]])
-    roots = isolated_roots(angles_only(c, base[0] - base[1:]))
+    roots = bilinear_roots(angles_only(c, base[0] - base[1:]))
     assert roots.continuum
     assert roots.failed == 0
     assert len(roots.x) + roots.at_infinity + roots.singular == 6
@@ -208,7 +209,7 @@ def test_three_legs_in_one_point_are_multiple_but_no_continuum() -> None:
             [legs[0], 0, -legs[2], ends[2] - ends[0]],
         ]
     )
-    roots = isolated_roots(angles_only(c, base[0] - base[1:]))
+    roots = bilinear_roots(angles_only(c, base[0] - base[1:]))
     assert not roots.continuum
     assert (roots.failed, roots.singular, len(roots.multiple)) == (0, 2, 1)
     assert len(roots.x) == 4

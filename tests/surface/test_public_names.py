@@ -50,3 +50,14 @@ def test_import_loads_nothing_heavy() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_methods_work_in_any_order_of_first_use() -> None:
+    """A function with the name of its module is not hidden by it."""
+    code = (
+        "import linkwork as lw; bar = lw.example('four-bar'); "
+        "bar.solve(60, configuration='open'); "
+        "print(len(bar.configurations(60)), len(bar.circuits(certify=False)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr) == ("2 2\n", "")

@@ -16,7 +16,7 @@ from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArra
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.numerics.bilinear import BilinearSystem
 
-__all__ = ["DirectionForm", "NoDirectionForm", "direction_form"]
+__all__ = ["DirectionForm", "NoDirectionForm", "check_independent", "direction_form"]
 
 _UNIT = np.finfo(float).eps / 2
 _MOST_LOOPS = 6  # C(12, 6) = 924 paths to a random system
@@ -30,7 +30,7 @@ class NoDirectionForm(Exception):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DirectionForm:
-    """A block over M = 2L unknown directions and lengths, for any values of what it takes as known.
+    """A block over M unknown directions and lengths, for any values of what it takes as known.
 
     Parameters
     ----------
@@ -43,6 +43,8 @@ class DirectionForm:
     angles : (A, D)
         Unknown angles = ``angles`` · directions + ``shift`` · (known variables, 1).
     shift : (A, p + 1)
+    tied : (A, D)
+        How the angles follow, by linear rows, when ``free`` (D,) ones of them turn.
     along : tuple of int
         The direction of each unknown length, -1 if it is known.
     """
@@ -52,6 +54,8 @@ class DirectionForm:
     rows: IndexArray
     angles: Array
     shift: Array
+    tied: Array
+    free: IndexArray
     along: tuple[int, ...]
 
     @property
@@ -116,23 +120,22 @@ class DirectionForm:
         NoDirectionForm
             If the loops say the same twice.
         """
-        sizes = np.linalg.svd(left, compute_uv=False)
-        if sizes[-1] <= _DEPENDENT * sizes[0]:
-            raise NoDirectionForm("do not say different things: one follows from the others")
+        check_independent(left)
         return BilinearSystem(left=left, right=left.conj(), rows=self.rows)
 
     def unknowns(self, x: ComplexArray, known: Array, near: Array) -> Array:
         """The block's unknowns (R, n) of real solutions (U, V) (R, 2M) for known values (R, p).
 
-        Angles are those within half a turn of ``near`` (n,).
+        Angles are those within half a turn of ``near`` (n,), unless a linear row forbids.
         """
         count, m = self.directions, self.rows.shape[1]
         psi = np.angle(x[:, :count] + x[:, m : m + count].conj())
         ones = np.ones((len(x), 1))
         angles = psi @ self.angles.T + np.concatenate([known, ones], axis=1) @ self.shift.T
-        home = near[self.turning]
+        away = angles[:, self.free] - near[self.turning][self.free]
+        turns = np.floor((away + np.pi) / (2.0 * np.pi))
         found = np.zeros((len(x), self.table.unknowns))
-        found[:, self.turning] = home + np.remainder(angles - home + np.pi, 2.0 * np.pi) - np.pi
+        found[:, self.turning] = angles - 2.0 * np.pi * (turns @ self.tied.T)
         for k, (j, a) in enumerate(zip(self.sliding, self.along, strict=True)):
             z = x[:, count + k]
             turned = z * np.exp(-1j * psi[:, a]) if a >= 0 else z
@@ -140,8 +143,21 @@ class DirectionForm:
         return found
 
 
-def direction_form(table: LoopTable) -> DirectionForm:
-    """The form of a block.
+def check_independent(left: ComplexArray) -> None:
+    """Refuse closures (L, M + 1) that are not independent.
+
+    Raises
+    ------
+    NoDirectionForm
+        If the loops say the same twice.
+    """
+    sizes = np.linalg.svd(left, compute_uv=False)
+    if sizes[-1] <= _DEPENDENT * sizes[0]:
+        raise NoDirectionForm("do not say different things: one follows from the others")
+
+
+def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
+    """The form of a block, or of several with ``free`` unknowns more than their loops determine.
 
     Raises
     ------
@@ -153,7 +169,7 @@ def direction_form(table: LoopTable) -> DirectionForm:
     n, loops = table.unknowns, table.loops
     turning = np.flatnonzero(table.turns[:n])
     sliding = np.flatnonzero(~table.turns[:n])
-    reduce, shift = _solved_lines(table, turning, sliding)
+    reduce, shift, free_angles = _solved_lines(table, turning, sliding)
     phases = np.zeros((len(loops.row), table.variables))
     np.add.at(phases, (loops.phase_term, loops.phase_variable), loops.phase_weight)
     if np.abs(phases[:, sliding]).max(initial=0.0) > 0.0:
@@ -167,7 +183,7 @@ def direction_form(table: LoopTable) -> DirectionForm:
             f"are {loops.rows} coupled loops, more than the {_MOST_LOOPS} whose paths are followed"
         )
     size = len(directions) + len(sliding)
-    if size != 2 * loops.rows:
+    if size != 2 * loops.rows + free:
         raise NoDirectionForm("do not have two unknown directions or lengths for every loop")
     place = {int(j): len(directions) + k for k, j in enumerate(sliding)}
     column = np.where(number < 0, size, number)
@@ -185,14 +201,16 @@ def direction_form(table: LoopTable) -> DirectionForm:
         rows=np.array(products, dtype=np.intp).reshape(size, 4).T,
         angles=angles,
         shift=shift,
+        tied=reduce,
+        free=np.array(free_angles, dtype=np.intp),
         along=along,
     )
 
 
 def _solved_lines(
     table: LoopTable, turning: IndexArray, sliding: IndexArray
-) -> tuple[Array, Array]:
-    """Angles = first · (angles left) + second · (known, 1), from the linear rows."""
+) -> tuple[Array, Array, list[int]]:
+    """Angles = first · (angles left) + second · (known, 1), from linear rows; which are left."""
     n, lines = table.unknowns, table.linear
     rows = np.zeros((len(lines.constant), table.variables + 1))
     np.add.at(rows, (lines.row, lines.variable), lines.weight)
@@ -222,7 +240,7 @@ def _solved_lines(
     for k, j in enumerate(pivots):
         reduce[j] = -own[k, free]
         shift[j] = -rest[k]
-    return reduce, shift
+    return reduce, shift, free
 
 
 def _directions(sums: Array) -> tuple[list[tuple[float, ...]], IndexArray]:

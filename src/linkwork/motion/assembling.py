@@ -24,10 +24,11 @@ from linkwork.kernels.loop_table import LoopTable
 from linkwork.motion.configuration_names import combined_name, ordered
 from linkwork.motion.model import Model
 from linkwork.motion.turned_slides import TurnedSlide, turned_slides
-from linkwork.numerics.bilinear import Roots, proved_roots
+from linkwork.numerics.bilinear import proved_roots
+from linkwork.numerics.bilinear_family import bilinear_roots
 from linkwork.numerics.block_solver import Block, linearised
-from linkwork.numerics.generic_roots import isolated_roots
 from linkwork.numerics.newton import newton
+from linkwork.numerics.polynomial_system import Roots
 from linkwork.numerics.proof import Proof, prove_block, rounding_of_inputs
 from linkwork.numerics.quadratic_roots import quadratic_roots
 from linkwork.results.configurations import PathCount
@@ -267,7 +268,7 @@ _FOLLOWS = _Solved(
 
 def _solved(form: DirectionForm, left: ComplexArray, off: Array) -> _Solved:
     system = form.system(left)
-    roots = quadratic_roots(system) if system.loops == 1 else isolated_roots(system)
+    roots = quadratic_roots(system) if system.loops == 1 else bilinear_roots(system)
     proofs = proved_roots(system, roots.x, off)
     m = system.size
     real = proofs.real | (~proofs.holds & (_mirror_gap(roots.x, m) < _ALMOST_REAL))

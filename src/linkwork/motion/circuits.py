@@ -1,4 +1,4 @@
-"""All circuits of a mechanism, seeded from its configurations at many inputs."""
+"""All circuits of a mechanism, seeded from its configurations between dead points."""
 
 from __future__ import annotations
 
@@ -12,22 +12,18 @@ from linkwork.equations.leading import LeadTable
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
-from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.status import Status
 from linkwork.motion.arcs import Arc, Explorer, positions_near
-from linkwork.motion.assembling import positions_at
 from linkwork.motion.branches import CurveBranch
 from linkwork.motion.limits import change_point_limit, dead_point_limit
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import motion_of_rows
 from linkwork.motion.rows import SolvedRows
-from linkwork.motion.start import first_position
-from linkwork.motion.tracking import turns_freely
+from linkwork.motion.seeding import Seeding
 from linkwork.numerics.change_point import Crossing
 from linkwork.numerics.curve import same_position
-from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.track import InputPath
 from linkwork.results.circuits import Branch, Circuit, Circuits
 from linkwork.results.motion import Motion
@@ -35,9 +31,8 @@ from linkwork.results.motion import Motion
 __all__ = ["branch_start", "circuits", "is_branch_name"]
 
 _FULL_TURN = 2.0 * np.pi
-_LOOKED_AT = 24  # input values at which all configurations are listed
 _FINE = 8  # positions kept per step of a curve
-_REGULAR = 1e5  # condition up to which a configuration can begin a curve
+_REGULAR = 1e5  # condition up to which positions have rates
 
 
 def circuits(
@@ -46,11 +41,12 @@ def circuits(
     certify: bool = True,
     progress: Callable[[float], None] | None = None,
 ) -> Circuits:
-    """Every circuit that comes by one of many inputs, as a proved curve, with its branches.
+    """Every circuit as a proved curve, with its branches.
 
-    All configurations at the guess's own input and at further ones are listed; through each that
-    lies on no circuit yet the curve of positions is followed in both directions, through dead
-    points, and at change points into every branch.
+    All configurations at the guess's own input and between any two neighbouring dead points are
+    listed; through each that lies on no circuit yet the curve of positions is followed in both
+    directions, through dead points, and at change points into every branch. Where dead points may
+    be missing from their list, further inputs are looked at.
 
     Raises
     ------
@@ -58,7 +54,7 @@ def circuits(
         If the mechanism has no input.
     """
     work = _Circuits(model, certify)
-    work.look(progress)
+    work.seeding.look(progress)
     return work.result()
 
 
@@ -79,45 +75,7 @@ class _Circuits:
         self.path = InputPath(origin=own - rate * own[self.lead], rate=rate)
         self.leads = LeadTable(model.compiled.table, self.path, self.lead)
         self.explorer = Explorer(self.leads, certify, _FINE)
-        self.names: list[tuple[Array, str]] = []
-        self.grade = Completeness.PROVED
-        self.seeded = 0
-
-    def look(self, progress: Callable[[float], None] | None) -> None:
-        """Seed with the guess, the configurations at its input, and those at further inputs."""
-        model = self.model
-        start = first_position(model, model.start_inputs, NewtonOptions())
-        if start.status.ok and self._regular(start.v):
-            self.explorer.visit(start.v)
-        values = [float(model.start_inputs[self.lead]), *self._further_inputs()]
-        for k, value in enumerate(values):
-            found = positions_at(model, self.path.at(value))
-            self.grade = self.grade.and_then(found.completeness)
-            if found.completeness is Completeness.NOT_LISTED:
-                break
-            if k == 0:
-                self.names = list(zip(found.v, found.names, strict=True))
-            for v in found.v:
-                if self._regular(v):
-                    self.explorer.visit(v)
-            self.seeded += 1
-            if progress is not None:
-                progress((k + 1) / len(values))
-
-    def _regular(self, v: Array) -> bool:
-        """Whether the input can lead at a position: not at dead points and change points."""
-        own = self.leads.by(self.leads.parameter)
-        return own is not None and own.node(v).condition < _REGULAR
-
-    def _further_inputs(self) -> list[float]:
-        """Equally spaced over a turn, or over the input's table."""
-        start = float(self.model.start_inputs[self.lead])
-        if turns_freely(self.model):
-            return [start + k * _FULL_TURN / _LOOKED_AT for k in range(1, _LOOKED_AT)]
-        t = self.model.rows[:, self.lead]
-        low, high = float(min(t.min(), start)), float(max(t.max(), start))
-        # off the round numbers at which a table begins and ends
-        return [low + (high - low) * (k + 0.5) / _LOOKED_AT for k in range(_LOOKED_AT)]
+        self.seeding = Seeding(model, self.path, self.lead, self.leads, self.explorer)
 
     def result(self) -> Circuits:
         """Circuits in the order found: that of the guess first."""
@@ -126,7 +84,7 @@ class _Circuits:
             for number, group in enumerate(self._groups(), start=1)
         ]
         name = self.model.equations.inputs[self.lead].name
-        grade, message = self._completeness()
+        grade, message = self.seeding.completeness()
         return Circuits(
             mechanism=self.model.description.name,
             circuits=tuple(found),
@@ -134,21 +92,7 @@ class _Circuits:
             message=message,
             input=name,
             input_unit=self.model.input_units[name],
-            seeded=self.seeded,
-        )
-
-    def _completeness(self) -> tuple[Completeness, str]:
-        if self.grade is Completeness.NOT_LISTED:
-            return self.grade, (
-                "only the circuit of the guess: the configurations of these equations cannot be "
-                "listed"
-            )
-        what = "every circuit that comes by one of"
-        if not self.grade.complete:
-            what = "the circuits found at"
-        return Completeness.NOT_PROVED, (
-            f"{what} {self.seeded} input values looked at; one that lies between two of them "
-            "would be missing"
+            seeded=self.seeding.seeded,
         )
 
     def _groups(self) -> list[_Group]:
@@ -229,7 +173,7 @@ class _Circuits:
         """The first of the configurations at the guess's input that lies on a branch."""
         value = float(self.model.start_inputs[self.lead])
         for here in self._solved(branch, value):
-            for v, name in self.names:
+            for v, name in self.seeding.names:
                 if same_position(self.leads, here, v):
                     return name
         return ""
@@ -333,7 +277,7 @@ def branch_start(model: Model, name: str) -> Model:
         With the names that exist.
     """
     work = _Circuits(model, False)
-    work.look(None)
+    work.seeding.look(None)
     known: dict[str, CurveBranch] = {}
     for number, group in enumerate(work._groups(), start=1):
         pieces = [branch for arc in group.arcs for branch in arc.branches]

@@ -18,13 +18,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, CountArray, IndexArray
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.numerics.polynomial_system import solved
 
-__all__ = ["BilinearSystem", "ProvedRoots", "Roots", "polished", "proved_roots"]
+__all__ = ["BilinearSystem", "ProvedRoots", "proved_roots"]
 
 _UNIT = np.finfo(float).eps / 2
 _SLACK = 1.0 + 1e-12
-_POLISH = 12  # steps of Newton's method at most
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -94,37 +94,6 @@ class BilinearSystem:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Roots:
-    """Isolated solutions of one system and what became of every path.
-
-    Parameters
-    ----------
-    x : (R, 2M) complex
-        Regular finite solutions (U, V).
-    multiple : (S, 2M) complex
-        Ends of paths at singular finite solutions, one for each cluster.
-    paths, at_infinity, singular, failed : int
-        Paths tracked; those that ran to infinity, ended at a singular solution, were lost.
-    expected : int
-        How many solutions random systems of this structure have.
-    sure : bool
-        Whether that number was confirmed.
-    continuum : bool
-        Whether a singular end belongs to a curve of solutions.
-    """
-
-    x: ComplexArray
-    multiple: ComplexArray
-    paths: int
-    at_infinity: int
-    singular: int
-    failed: int
-    expected: int
-    sure: bool
-    continuum: bool
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class ProvedRoots:
     """What is proved of each root, (R,): ``holds``, and ``real`` or ``complex``.
 
@@ -142,41 +111,6 @@ def _with_one(u: ComplexArray) -> ComplexArray:
     padded = np.ones((len(u), u.shape[1] + 1), dtype=complex)
     padded[:, :-1] = u
     return padded
-
-
-def polished(system: BilinearSystem, x: ComplexArray) -> tuple[ComplexArray, CountArray]:
-    """Newton's method from x (B, 2M) until nothing changes; the steps taken, -1 if it failed."""
-    x = x.copy()
-    steps = np.full(len(x), -1, dtype=np.int64)
-    live = np.arange(len(x))
-    last = np.full(len(x), np.inf)
-    for k in range(_POLISH):
-        f, j = system.residual_and_jacobian(x[live])
-        change = solved(j, f[:, :, None])[:, :, 0]
-        x[live] -= change
-        size = np.abs(change).max(axis=1, initial=0.0)
-        size /= 1.0 + np.abs(x[live]).max(axis=1, initial=0.0)
-        done = (size <= 1e-13) | ((size <= 1e-8) & (size > 0.25 * last))  # rounding is all
-        steps[live[done]] = k + 1
-        stay = ~done & np.isfinite(size)
-        live, last = live[stay], size[stay]
-        if not len(live):
-            break
-    return x, steps
-
-
-def solved(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
-    """Solutions per lane of (B, n, n) and (B, n, k); NaN where a matrix is singular."""
-    try:
-        return np.asarray(np.linalg.solve(matrix, right), dtype=complex)
-    except np.linalg.LinAlgError:
-        found = np.full(right.shape, np.nan, dtype=complex)
-        for lane in range(len(matrix)):
-            try:
-                found[lane] = np.linalg.solve(matrix[lane], right[lane])
-            except np.linalg.LinAlgError:
-                continue
-        return found
 
 
 def proved_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> ProvedRoots:

@@ -44,10 +44,20 @@ def _patch(rng: np.random.Generator, size: int) -> ComplexArray:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Patched:
-    """What both homotopies share: patches, and the products of a bilinear system."""
+    """What both homotopies share: patches, null spaces, and the products of a bilinear system."""
 
     rows: IndexArray
     patches: tuple[ComplexArray, ComplexArray]
+    spaces: tuple[ComplexArray, ComplexArray]
+
+    def points(self, w: ComplexArray) -> tuple[ComplexArray, Array]:
+        """(U, V), (B, 2M), and the smaller homogenising coordinate of unit vectors, (B,)."""
+        halves = np.split(w, 2, axis=1)
+        ends = [self.off_patch(k, halves[k]) @ self.spaces[k].T for k in range(2)]
+        scale: Array = np.minimum(*(np.abs(z[:, -1]) for z in ends))
+        with np.errstate(all="ignore"):
+            x = np.concatenate([z[:, :-1] / z[:, -1:] for z in ends], axis=1)
+        return x, scale
 
     def on_patch(self, which: int, z: ComplexArray) -> ComplexArray:
         """The coordinates w (B, L) of points û (B, L + 1)."""
@@ -66,11 +76,9 @@ class _Patched:
 class StartHomotopy(_Patched):
     """σ γ (a_k û)(b_k v̂) + (1 - σ) (the system's products), C(2L, L) paths.
 
-    ``spaces``: the null spaces of left and right, ``on_patches`` in the patches' coordinates;
-    ``forms`` (2, M, L + 1): a and b.
+    ``on_patches``: the null spaces in the patches' coordinates; ``forms`` (2, M, L + 1): a and b.
     """
 
-    spaces: tuple[ComplexArray, ComplexArray]
     on_patches: tuple[ComplexArray, ComplexArray]
     forms: ComplexArray
     gamma: complex
@@ -135,7 +143,6 @@ class ParameterHomotopy(_Patched):
     of the right side negated.
     """
 
-    spaces: tuple[ComplexArray, ComplexArray]
     base: ComplexArray
     wide: ComplexArray
     kernel: ComplexArray

@@ -21,7 +21,13 @@ from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.joined import JoinedBlocks, closure_of
 from linkwork.numerics.track import InputPath, Node
 
-__all__ = ["ChangePoint", "Crossing", "locate_change_point", "most_singular"]
+__all__ = [
+    "ChangePoint",
+    "Crossing",
+    "crossing_near",
+    "locate_change_point",
+    "most_singular",
+]
 
 _UNIT = np.finfo(float).eps
 _STEPS = 12
@@ -113,6 +119,21 @@ def locate_change_point(
         block=block,
         located=error <= 1e-9 * max(1.0, abs(t)),
     )
+
+
+def crossing_near(solver: BlockSolver, path: InputPath, block: int, v: Array) -> float | None:
+    """The path's parameter at the change point of a block next to a position v (N,).
+
+    ``None`` if there is none within a hundredth of the natural size of the inputs.
+    """
+    system = JoinedBlocks(solver, closure_of(solver, block))
+    moving = int(np.argmax(np.abs(path.rate)))
+    t = float((v[solver.unknowns + moving] - path.origin[moving]) / path.rate[moving])
+    found = _Crossing(system, path).solve(v[system.order[: system.unknowns]], t)
+    if found is None or abs(found[3]) > _UNFOLDED:
+        return None
+    near = 1e-2 * float(solver.variable_scale[solver.unknowns + moving] / abs(path.rate[moving]))
+    return found[1] if abs(found[1] - t) <= near else None
 
 
 def _distance(rate: Array, own: Array) -> float:

@@ -1,110 +1,98 @@
-"""All isolated solutions of a bilinear system, from the stored solutions of a random one like it.
+"""All isolated solutions of a system, from the stored solutions of a random one of its family.
 
-Systems with the same zeros and the same sums within the columns of their closure matrices (a link
-with three joints enters three loops with a, b and a + b) form a family. Almost every member of a
-family has the same number of isolated solutions, and a straight path from a random complex member
-to any other one leads to all isolated solutions of the latter (Morgan & Sommese 1989, Appl. Math.
-Comput. 29, 123; Sommese & Wampler 2005, ch. 7). The random member is solved once per process from
-C(2L, L) products of linear forms, and its set of solutions is completed until closed paths of
-systems lead to no new one.
+Almost every member of a linear family has the same number of isolated solutions, and a straight
+path from a random complex member to any other one leads to all isolated solutions of the latter
+(Morgan & Sommese 1989, Appl. Math. Comput. 29, 123; Sommese & Wampler 2005, ch. 7). The random
+member is solved once per process from products of linear forms, and its set of solutions is
+completed until closed paths of systems lead to no new one.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable
 from dataclasses import dataclass, replace
-from itertools import product
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from linkwork.foundation.arrays import BoolArray, ComplexArray
-from linkwork.numerics.bilinear import BilinearSystem, Roots, polished
-from linkwork.numerics.bilinear_homotopy import ParameterHomotopy, StartHomotopy
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.numerics.homotopy import (
     ARRIVED,
     BOLD,
     CAREFUL,
     LOST,
     SINGULAR,
+    Homotopy,
     Paths,
     TrackOptions,
     track,
 )
+from linkwork.numerics.polynomial_system import PolynomialSystem, Roots, polished
 
-__all__ = ["SEED", "Structure", "isolated_roots", "structure_of"]
+__all__ = [
+    "SEED",
+    "Family",
+    "HomotopyFromProducts",
+    "HomotopyFromRelative",
+    "isolated_roots",
+    "nearest_solution",
+]
 
 #: All random numbers follow from this one, so that every run gives the same answer.
 SEED = 20_210_501
 
-_SAME_SUM = 1e-11  # relative: two sums of coefficients are the same by construction
 _SAME = 1e-6  # two solutions are the same one
 _FINITE = 1e-8  # smallest homogenising coordinate, of vectors of length 1, of a finite solution
 _FADING = 0.5  # a singular path whose homogenising coordinate shrinks so much runs to infinity
-_LARGEST_FREE = 6  # coefficients of a column among which sums are looked for
 _ATTEMPTS = 5
 _FEW = 8  # paths that seldom meet, so that following them twice costs less than care
 _LOOPS = 2  # closed paths without a new solution after which a set counts as complete
 _TRIES = 30  # closed paths at most
 
+S = TypeVar("S", bound=PolynomialSystem)
 
-@dataclass(frozen=True)
-class Structure:
-    """What systems of one family share: products, and columns as sums of free coefficients.
 
-    ``columns``: for every column of the closure matrix the L coefficients as tuples of weights of
-    the column's free ones.
-    """
+class _ToSystem(Homotopy, Protocol):
+    def points(self, w: ComplexArray) -> tuple[ComplexArray, Array]:
+        """The system's unknowns, (B, n), and how far from infinity, from 0 to 1, (B,)."""
 
-    rows: tuple[tuple[int, ...], ...]
-    columns: tuple[tuple[tuple[int, ...], ...], ...]
 
-    def random(self, rng: np.random.Generator) -> BilinearSystem:
+class HomotopyFromProducts(_ToSystem, Protocol):
+    """From products of linear forms to a system."""
+
+    def starts(self) -> ComplexArray:
+        """All solutions at σ = 1."""
+
+
+class HomotopyFromRelative(_ToSystem, Protocol):
+    """From one member of a family to another."""
+
+    def starts(self, x: ComplexArray) -> ComplexArray:
+        """Solutions x (B, n) of the first member as points at σ = 1."""
+
+
+class Family(Hashable, Protocol[S]):
+    """Systems that differ in free coefficients only."""
+
+    def random(self, rng: np.random.Generator) -> S:
         """A member with random complex free coefficients."""
-        both = []
-        for _ in range(2):
-            parts = []
-            for column in self.columns:
-                weights = np.array(column, dtype=float)
-                free = rng.normal(size=weights.shape[1]) + 1j * rng.normal(size=weights.shape[1])
-                parts.append(weights @ free)
-            both.append(np.stack(parts, axis=1))
-        return BilinearSystem(left=both[0], right=both[1], rows=np.array(self.rows))
 
     def generator(self, purpose: int) -> np.random.Generator:
         """Random numbers of the family's own, the same in every run and in any order of calls."""
-        flat = [k for row in self.rows for k in row]
-        flat += [w + 1 for column in self.columns for entry in column for w in (*entry, 2)]
-        return np.random.default_rng([SEED, purpose, *flat])
 
+    def from_products(self, goal: S, rng: np.random.Generator) -> HomotopyFromProducts:
+        """Paths to all isolated solutions of a member."""
 
-def structure_of(system: BilinearSystem) -> Structure:
-    """The family of a system."""
-    columns = tuple(_sums(column.tolist()) for column in system.left.T)
-    return Structure(rows=tuple(map(tuple, system.rows.tolist())), columns=columns)
-
-
-def _sums(column: list[complex]) -> tuple[tuple[int, ...], ...]:
-    """Every coefficient of a column as a sum, with weights -1, 0 and 1, of earlier free ones."""
-    size = max(map(abs, column))
-    free: list[complex] = []
-    found: list[tuple[int, ...]] = []
-    for value in column:
-        few = free[:_LARGEST_FREE]
-        for weights in product((0, 1, -1), repeat=len(few)):
-            rest = value - sum(w * c for w, c in zip(weights, few, strict=True))
-            if abs(rest) <= _SAME_SUM * size:
-                found.append(weights)
-                break
-        else:
-            found.append((*(0 for _ in free), 1))
-            free.append(value)
-    width = len(free)
-    return tuple((*weights, *(0 for _ in range(width - len(weights)))) for weights in found)
+    def between(
+        self, start: S, goal: S, rng: np.random.Generator, *, nearest: bool = False
+    ) -> HomotopyFromRelative:
+        """Paths from member to member: random ones, or those with the ``nearest`` start."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Ends:
-    """Where paths ended, in (U, V): finite regular, infinite, singular, failed."""
+    """Where paths ended: finite regular, infinite, singular, failed."""
 
     x: ComplexArray
     regular: BoolArray
@@ -114,34 +102,33 @@ class _Ends:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Generic:
+class _Generic(Generic[S]):
     """A random member of a family with its solutions; ``sure`` that these are all."""
 
-    system: BilinearSystem
+    system: S
     x: ComplexArray
     sure: bool = False
 
 
-_KNOWN: dict[Structure, _Generic] = {}
+_KNOWN: dict[Family[Any], _Generic[Any]] = {}
 
 
-def isolated_roots(system: BilinearSystem) -> Roots:
-    """All isolated solutions of a system with at least two loops.
+def isolated_roots(system: S, family: Family[S]) -> Roots:
+    """All isolated solutions of a member of a family.
 
     Paths that were lost, or that met, are followed again with more care and along other systems.
     Where fewer solutions are found than random systems of the family have, a second set of paths
     has to confirm it.
     """
-    structure = structure_of(system)
-    generic = _generic(structure)
-    rng = structure.generator(1)
+    generic = _generic(family)
+    rng = family.generator(1)
     expected = len(generic.x)
     best: _Ends | None = None
     for attempt in range(_ATTEMPTS):
         care = CAREFUL if attempt else BOLD if expected <= _FEW else TrackOptions()
-        ends = _followed(generic, system, rng, care, nearest=not attempt)
+        ends = _followed(family, generic, system, rng, care, nearest=not attempt)
         if best is None or _quality(ends) >= _quality(best):
-            agreed = best is not None and _agree(system, ends, best)
+            agreed = best is not None and _agree(ends, best)
             best = ends
             if ends.regular.all() or (agreed and not ends.failed.any()):
                 break
@@ -153,66 +140,71 @@ def _quality(ends: _Ends) -> tuple[int, int]:
     return (-int(ends.failed.sum()), int(ends.regular.sum()))
 
 
-def _agree(system: BilinearSystem, a: _Ends, b: _Ends) -> bool:
+def _agree(a: _Ends, b: _Ends) -> bool:
     """Whether two sets of paths found the same regular solutions."""
     x, y = a.x[a.regular], b.x[b.regular]
     return len(x) == len(y) == len(_distinct(np.concatenate([x, y])))
 
 
-def _generic(structure: Structure) -> _Generic:
+def _generic(family: Family[S]) -> _Generic[S]:
     """The stored random member; solved when it is first wanted."""
-    if structure not in _KNOWN:
-        rng = structure.generator(0)
-        system = structure.random(rng)
-        x = np.zeros((0, 2 * system.size), dtype=complex)
-        for _ in range(_ATTEMPTS):
-            start = StartHomotopy.of(system, rng)
-            paths = track(start, start.starts(), CAREFUL)
-            ends = _read(system, start, start.spaces, paths)
-            x = _distinct(np.concatenate([x, ends.x[ends.regular]]))
-            if not (ends.failed | ends.singular | _meeting(ends)).any():
+    if family not in _KNOWN:
+        rng = family.generator(0)
+        system = family.random(rng)
+        x = np.zeros((0, 0), dtype=complex)
+        clean = 0
+        for attempt in range(_ATTEMPTS):
+            start = family.from_products(system, rng)
+            ends = _read(system, start, track(start, start.starts(), CAREFUL))
+            found = ends.x[ends.regular]
+            x = _distinct(np.concatenate([x, found])) if attempt else _distinct(found)
+            clean += not (ends.failed | ends.singular | _meeting(ends)).any()
+            if (clean and len(x)) or clean == _LOOPS:
                 break
-        _KNOWN[structure] = _closed(structure, _Generic(system=system, x=x), rng)
-    return _KNOWN[structure]
+        # closed paths say nothing where nothing is: all paths have to run to infinity twice
+        nothing = not len(x) and clean == _LOOPS
+        _KNOWN[family] = _closed(family, _Generic(system=system, x=x, sure=nothing), rng)
+    return _KNOWN[family]
 
 
-def _closed(structure: Structure, known: _Generic, rng: np.random.Generator) -> _Generic:
+def _closed(family: Family[S], known: _Generic[S], rng: np.random.Generator) -> _Generic[S]:
     """Solutions added until closed paths of systems lead to no new ones."""
     quiet = tries = 0
     while quiet < _LOOPS and tries < _TRIES and len(known.x) and len(known.x) < known.system.bound:
-        away = structure.random(rng)
-        there = _followed(known, away, rng, CAREFUL)
+        away = family.random(rng)
+        there = _followed(family, known, away, rng, CAREFUL)
         back = _Generic(system=away, x=_distinct(there.x[there.regular]))
-        ends = _followed(back, known.system, rng, CAREFUL)
+        ends = _followed(family, back, known.system, rng, CAREFUL)
         x = _distinct(np.concatenate([known.x, ends.x[ends.regular]]))
         whole = len(x) == len(known.x) and there.regular.all() and ends.regular.all()
         quiet = quiet + 1 if whole else 0
         tries += 1
         known = _Generic(system=known.system, x=x)
-    sure = quiet == _LOOPS or len(known.x) == known.system.bound
+    sure = known.sure or quiet == _LOOPS or len(known.x) == known.system.bound
     return replace(known, sure=sure)
 
 
 def _followed(
-    generic: _Generic,
-    goal: BilinearSystem,
+    family: Family[S],
+    generic: _Generic[S],
+    goal: S,
     rng: np.random.Generator,
     options: TrackOptions,
     *,
     nearest: bool = False,
 ) -> _Ends:
     """Paths from all solutions of one system; those that were lost or met once more, with care."""
-    homotopy = ParameterHomotopy.between(generic.system, goal, rng, nearest=nearest)
+    homotopy = family.between(generic.system, goal, rng, nearest=nearest)
     start = homotopy.starts(generic.x)
     paths = track(homotopy, start, options)
-    ends = _read(goal, homotopy, homotopy.spaces, paths)
+    ends = _read(goal, homotopy, paths)
     again = ends.failed | _meeting(ends)
     if again.any() and options is not CAREFUL:
         once_more = track(homotopy, start[again], CAREFUL)
         w, near, state = paths.w.copy(), paths.near.copy(), paths.state.copy()
         w[again], near[again], state[again] = once_more.w, once_more.near, once_more.state
         joined = Paths(w=w, near=near, state=state, steps=paths.steps + once_more.steps)
-        ends = _read(goal, homotopy, homotopy.spaces, joined)
+        ends = _read(goal, homotopy, joined)
         again = ends.failed | _meeting(ends)
     if not again.any():
         return ends
@@ -225,28 +217,12 @@ def _followed(
     )
 
 
-def _read(
-    system: BilinearSystem,
-    homotopy: StartHomotopy | ParameterHomotopy,
-    spaces: tuple[ComplexArray, ComplexArray],
-    paths: Paths,
-) -> _Ends:
-    """Ends of paths in (U, V), sorted by what they are."""
-    loops, m = system.loops, system.size
-
-    def homogeneous(w: ComplexArray, which: int) -> ComplexArray:
-        half = w[:, :loops] if which == 0 else w[:, loops:]
-        found: ComplexArray = homotopy.off_patch(which, half) @ spaces[which].T
-        return found
-
-    ends = [homogeneous(paths.w, k) for k in range(2)]
-    scale = np.minimum(*(np.abs(z[:, m]) for z in ends))
-    before = np.minimum(*(np.abs(homogeneous(paths.near, k)[:, m]) for k in range(2)))
+def _read(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) -> _Ends:
+    """Ends of paths in the system's unknowns, sorted by what they are."""
+    (x, scale), (_, before) = homotopy.points(paths.w), homotopy.points(paths.near)
     singular = paths.state == SINGULAR
     infinite = (paths.state == ARRIVED) & (scale < _FINITE)
     infinite |= singular & (scale < _FADING * before)
-    with np.errstate(all="ignore"):
-        x = np.concatenate([z[:, :m] / z[:, m:] for z in ends], axis=1)
     finite = (paths.state == ARRIVED) & ~infinite
     regular = np.zeros(len(x), dtype=bool)
     if finite.any():
@@ -294,7 +270,7 @@ def _distinct(x: ComplexArray, same: float = _SAME) -> ComplexArray:
     return x[kept]
 
 
-def _roots(system: BilinearSystem, ends: _Ends, generic: _Generic) -> Roots:
+def _roots(system: S, ends: _Ends, generic: _Generic[S]) -> Roots:
     multiple = _distinct(ends.x[ends.singular], 1e-2)
     continuum = [_on_a_curve(system, x) for x in multiple]
     return Roots(
@@ -310,21 +286,21 @@ def _roots(system: BilinearSystem, ends: _Ends, generic: _Generic) -> Roots:
     )
 
 
-def _on_a_curve(system: BilinearSystem, x: ComplexArray) -> bool:
+def _on_a_curve(system: PolynomialSystem, x: ComplexArray) -> bool:
     """Whether a singular solution can move: a step along the null direction leads to others."""
     reach = 1e-2
     with np.errstate(all="ignore"):
-        x = _nearest(system, x, 30)
+        x = nearest_solution(system, x, 30)
         _, jacobian = system.residual_and_jacobian(x[None])
         _, _, rows = np.linalg.svd(jacobian[0])
         size = 1.0 + float(np.abs(x).max())
-        away = _nearest(system, x + reach * size * rows[-1].conj(), 8)
+        away = nearest_solution(system, x + reach * size * rows[-1].conj(), 8)
         f, _ = system.residual_and_jacobian(away[None])
     moved = float(np.abs(away - x).max()) / size
     return bool(np.abs(f).max() < 1e-11 * size * size and moved > 0.1 * reach)
 
 
-def _nearest(system: BilinearSystem, x: ComplexArray, steps: int) -> ComplexArray:
+def nearest_solution(system: PolynomialSystem, x: ComplexArray, steps: int) -> ComplexArray:
     """Gauss-Newton with the shortest corrections."""
     for _ in range(steps):
         f, jacobian = system.residual_and_jacobian(x[None])

@@ -16,7 +16,7 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
-from linkwork.numerics.bilinear import solved
+from linkwork.numerics.polynomial_system import solved
 
 __all__ = [
     "ARRIVED",

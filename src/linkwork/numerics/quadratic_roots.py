@@ -9,8 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.foundation.arrays import BoolArray, ComplexArray, IndexArray
-from linkwork.numerics.bilinear import BilinearSystem, Roots
+from linkwork.numerics.bilinear import BilinearSystem
 from linkwork.numerics.bilinear_homotopy import null_space
+from linkwork.numerics.polynomial_system import Roots
 
 __all__ = ["quadratic_roots"]
 

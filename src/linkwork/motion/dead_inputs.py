@@ -1,0 +1,239 @@
+"""The input values of all dead points at once, from polynomials instead of from circuits."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.equations.directions import NoDirectionForm
+from linkwork.equations.leading import LeadTable
+from linkwork.equations.locking import LockingForm, locking_form
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.foundation.completeness import Completeness
+from linkwork.motion.model import Model
+from linkwork.numerics.change_point import crossing_near
+from linkwork.numerics.generic_roots import nearest_solution
+from linkwork.numerics.locking_family import locking_roots
+from linkwork.numerics.polynomial_system import Roots
+from linkwork.numerics.track import InputPath
+
+__all__ = ["DeadPointInputs", "LockingCount", "dead_point_inputs"]
+
+_MOST_PATHS = 300  # from products of linear forms: three loops at most, or a dyad behind three
+_ALMOST_REAL = 1e-6  # a solution this near to its mirror image is a real one,
+_ALMOST_DOUBLE = 1e-3  # and a multiple one, whose path ends less precisely
+_SAME = 1e-9  # weighted: two inputs are one,
+_SAME_MULTIPLE = 1e-5  # and that of a multiple solution another one's
+_WHOLE = 1e-12  # how far a rate may be from a whole number
+_STEPS = 40  # towards a multiple solution
+_GRADES = {
+    Completeness.WITH_PROBABILITY_ONE: (
+        "every dead point is listed, with probability one: all solution paths are accounted for"
+    ),
+    Completeness.NOT_PROVED: "not proved: solution paths were lost, so dead points may be missing",
+    Completeness.CONTINUUM: (
+        "not proved: the mechanism can move while the input stands still at a dead point"
+    ),
+}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LockingCount:
+    """What became of the paths of one block, and how many solutions are real."""
+
+    unknowns: tuple[str, ...]
+    paths: int
+    finite: int
+    real: int
+    multiple: int
+    expected: int
+    bound: int
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DeadPointInputs:
+    """Where the input can lock, internal units.
+
+    Parameters
+    ----------
+    values : (K,)
+        Of the leading input, rising; an angle from -π to π. A block can lock there; whether those
+        that depend on it can be closed there is not asked.
+    multiple : (K,) bool
+        At which solutions coincide, as at change points.
+    completeness, message : Completeness, str
+        Whether no dead point is missing.
+    poles : (P,)
+        Inputs at which a length runs to infinity; there, too, configurations begin and end.
+    poles_known : bool
+        Whether these are all.
+    counts : tuple of LockingCount
+        One for each block that can lock.
+    """
+
+    values: Array
+    multiple: BoolArray
+    completeness: Completeness
+    message: str
+    poles: Array
+    poles_known: bool
+    counts: tuple[LockingCount, ...]
+
+    @property
+    def cuts(self) -> Array:
+        """Dead points and poles, rising."""
+        return np.sort(np.concatenate([self.values, self.poles]))
+
+    @property
+    def cover_all(self) -> bool:
+        """Whether the number of configurations is constant between any two neighbouring cuts."""
+        return self.completeness.complete and self.poles_known
+
+    @property
+    def reason(self) -> str:
+        """Why it may not be."""
+        unbounded = "" if self.poles_known else "a length can run to infinity between them"
+        return self.message if not self.completeness.complete else unbounded
+
+
+def dead_point_inputs(model: Model, path: InputPath, lead: int) -> DeadPointInputs:
+    """All input values at which a block locks while those it depends on do not.
+
+    Parameters
+    ----------
+    path : InputPath
+        How the inputs move in lock-step.
+    lead : int
+        The input that the path is measured by.
+    """
+    return _Search(model, path, lead).run()
+
+
+class _Search:
+    def __init__(self, model: Model, path: InputPath, lead: int) -> None:
+        # rates that are whole numbers but for the rounding of a table in degrees
+        whole = np.round(path.rate)
+        rate = np.where(np.abs(path.rate - whole) <= _WHOLE, whole, path.rate)
+        self.model, self.path = model, replace(path, rate=rate)
+        self.leads = LeadTable(model.compiled.table, self.path, lead)
+        self.grade = Completeness.WITH_PROBABILITY_ONE
+        self.reasons: list[str] = []
+        self.values: list[float] = []
+        self.doubles: list[float] = []
+        self.counts: list[LockingCount] = []
+        self.poles: list[float] = []
+        self.poles_known = True
+
+    def run(self) -> DeadPointInputs:
+        """Block by block."""
+        solver = self.model.compiled.solver
+        for number, block in enumerate(solver.blocks):
+            names = tuple(self.model.equations.unknowns[int(k)].name for k in block.unknowns)
+            try:
+                form = locking_form(self.leads, solver, self.path, number)
+                if form is not None:
+                    self._add(form, number, names)
+            except NoDirectionForm as reason:
+                self.grade = self.grade.and_then(Completeness.NOT_LISTED)
+                self.reasons.append(f"the equations of {', '.join(names)} {reason}")
+        values, multiple = self._sorted()
+        message = "; ".join(self.reasons) if self.reasons else _GRADES[self.grade]
+        return DeadPointInputs(
+            values=values,
+            multiple=multiple,
+            completeness=self.grade,
+            message=message,
+            poles=np.sort(np.array(self._wrapped(self.poles), dtype=float)),
+            poles_known=self.poles_known,
+            counts=tuple(self.counts),
+        )
+
+    def _add(self, form: LockingForm, number: int, names: tuple[str, ...]) -> None:
+        system = form.system
+        if form.poles is None:
+            self.poles_known = False
+        else:
+            self.poles += form.poles
+        if system.bound > _MOST_PATHS:
+            raise NoDirectionForm(
+                f"hang on {system.loops} loops; their dead points would take {system.bound} paths, "
+                f"more than the {_MOST_PATHS} that are followed"
+            )
+        roots = locking_roots(system)
+        lost = roots.failed or not roots.sure
+        lost = lost or roots.paths != len(roots.x) + roots.at_infinity + roots.singular
+        if roots.continuum:
+            self.grade = self.grade.and_then(Completeness.CONTINUUM)
+        elif lost:
+            self.grade = self.grade.and_then(Completeness.NOT_PROVED)
+        real = _real(form, roots.x, _ALMOST_REAL)
+        double = _real(form, _sharpened(form, roots.multiple), _ALMOST_DOUBLE)
+        start = self.model.equations.start
+        self.values += self._wrapped(form.positions(real, start)[:, -1].tolist())
+        self.doubles += self._wrapped(
+            [self._crossing(form, number, x) for x in form.positions(double, start)]
+        )
+        self.counts.append(_count(names, form, roots, len(real) + len(double)))
+
+    def _crossing(self, form: LockingForm, number: int, x: Array) -> float:
+        """The input of a multiple solution x (n,): a change point's to rounding."""
+        v = self.model.equations.start.copy()
+        solver = self.model.compiled.solver
+        v[solver.unknowns :] = self.path.at(float(x[-1]))
+        v[form.variables] = x
+        found = crossing_near(solver, self.path, number, v)
+        return float(x[-1]) if found is None else found
+
+    def _wrapped(self, values: list[float]) -> list[float]:
+        """An angle's values from -π to π."""
+        if not self.leads.turns[self.leads.parameter]:
+            return values
+        return [math.remainder(value, 2.0 * math.pi) for value in values]
+
+    def _sorted(self) -> tuple[Array, BoolArray]:
+        """Values without repetitions; those of simple dead points come first."""
+        scale = float(self.leads.scale[self.leads.parameter])
+        turns = bool(self.leads.turns[self.leads.parameter])
+        kept: list[tuple[float, bool]] = []
+        for values, multiple, same in (
+            (self.doubles, True, _SAME_MULTIPLE),
+            (self.values, False, _SAME),
+        ):
+            for value in values:
+                gaps = np.abs([value - old for old, many in kept if many == multiple])
+                if turns:
+                    gaps = np.minimum(gaps, 2.0 * np.pi - gaps)
+                if not (gaps <= same * scale).any():
+                    kept.append((value, multiple))
+        kept.sort()
+        return (
+            np.array([value for value, _ in kept], dtype=float),
+            np.array([multiple for _, multiple in kept], dtype=bool),
+        )
+
+
+def _real(form: LockingForm, x: ComplexArray, within: float) -> ComplexArray:
+    """Those of solutions x (R, n) that are their own mirror images."""
+    m = form.system.size
+    gap = np.abs(x[:, :m] - x[:, m : 2 * m].conj()).max(axis=1, initial=0.0)
+    real: ComplexArray = x[gap < within * (1.0 + np.abs(x[:, : 2 * m]).max(axis=1, initial=0.0))]
+    return real
+
+
+def _sharpened(form: LockingForm, x: ComplexArray) -> ComplexArray:
+    """Multiple solutions (R, n), as well as rounding lets them be found."""
+    return np.array([nearest_solution(form.system, each, _STEPS) for each in x]).reshape(x.shape)
+
+
+def _count(names: tuple[str, ...], form: LockingForm, roots: Roots, real: int) -> LockingCount:
+    return LockingCount(
+        unknowns=names,
+        paths=roots.paths,
+        finite=len(roots.x),
+        real=real,
+        multiple=roots.singular,
+        expected=roots.expected,
+        bound=form.system.bound,
+    )

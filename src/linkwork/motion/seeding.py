@@ -1,0 +1,140 @@
+"""Where circuits begin: configurations at inputs that no circuit can avoid."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from linkwork.equations.leading import LeadTable
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.completeness import Completeness
+from linkwork.motion.arcs import Explorer
+from linkwork.motion.assembling import Assemblies, positions_at
+from linkwork.motion.dead_inputs import DeadPointInputs, dead_point_inputs
+from linkwork.motion.intervals import Interval, intervals_between
+from linkwork.motion.model import Model
+from linkwork.motion.start import first_position
+from linkwork.motion.tracking import turns_freely
+from linkwork.numerics.newton import NewtonOptions
+from linkwork.numerics.track import InputPath
+
+__all__ = ["Seeding"]
+
+_FULL_TURN = 2.0 * np.pi
+_LOOKED_AT = 24  # input values at which all configurations are listed if dead points may be missing
+_REGULAR = 1e5  # condition up to which a configuration can begin a curve
+
+
+class Seeding:
+    """Configurations at chosen inputs, each followed along its circuit by an explorer.
+
+    ``names``: the configurations at the guess's input with their names. ``seeded``: at how many
+    input values configurations were listed. ``unclear``: in how many intervals no list was sure.
+    """
+
+    def __init__(
+        self, model: Model, path: InputPath, lead: int, leads: LeadTable, explorer: Explorer
+    ) -> None:
+        self.model, self.path, self.lead = model, path, lead
+        self.leads, self.explorer = leads, explorer
+        self.names: list[tuple[Array, str]] = []
+        self.dead: DeadPointInputs | None = None
+        self.seeded = self.unclear = 0
+
+    def look(self, progress: Callable[[float], None] | None) -> None:
+        """Seed with the guess, the configurations at its input, and those between dead points."""
+        model = self.model
+        start = first_position(model, model.start_inputs, NewtonOptions())
+        if start.status.ok and self._regular(start.v):
+            self.explorer.visit(start.v)
+        value = float(model.start_inputs[self.lead])
+        found = positions_at(model, self.path.at(value))
+        if found.completeness is Completeness.NOT_LISTED:
+            return
+        self.names = list(zip(found.v, found.names, strict=True))
+        sure = self._visited(found)
+        self.dead = dead_point_inputs(model, self.path, self.lead)
+        intervals = self._intervals(value, sure)
+        for k, interval in enumerate(intervals):
+            self._look_into(interval)
+            if progress is not None:
+                progress((k + 1) / len(intervals))
+
+    def _intervals(self, value: float, sure: bool) -> list[Interval]:
+        """Where to look; a ``value`` whose list is ``sure`` stands for its own interval."""
+        assert self.dead is not None
+        place = self.leads.parameter
+        turns, scale = bool(self.leads.turns[place]), float(self.leads.scale[place])
+        cuts = self.dead.cuts
+        found = intervals_between(cuts, value if sure else None, scale, turns=turns)
+        if not len(cuts) and not sure:
+            found = [(value + 0.1 * scale, value - 0.17 * scale)]
+        if not self.dead.cover_all:
+            found += [(further,) for further in self._further_inputs(value)]
+        return found
+
+    def _look_into(self, interval: Interval) -> None:
+        """List the configurations at one value of an interval, at another where that fails."""
+        if not any(
+            self._visited(positions_at(self.model, self.path.at(value))) for value in interval
+        ):
+            self.unclear += 1
+
+    def _visited(self, found: Assemblies) -> bool:
+        """Follow the circuits of all configurations; whether none is missing or left out."""
+        regular = [self._regular(v) for v in found.v]
+        for v, good in zip(found.v, regular, strict=True):
+            if good:
+                self.explorer.visit(v)
+        self.seeded += 1
+        return found.completeness.complete and all(regular)
+
+    def _regular(self, v: Array) -> bool:
+        """Whether the input can lead at a position: not at dead points and change points."""
+        own = self.leads.by(self.leads.parameter)
+        return own is not None and own.node(v).condition < _REGULAR
+
+    def _further_inputs(self, start: float) -> list[float]:
+        """Equally spaced over a turn, or over the input's table."""
+        if turns_freely(self.model):
+            return [start + k * _FULL_TURN / _LOOKED_AT for k in range(1, _LOOKED_AT)]
+        t = self.model.rows[:, self.lead]
+        low, high = float(min(t.min(), start)), float(max(t.max(), start))
+        # off the round numbers at which a table begins and ends
+        return [low + (high - low) * (k + 0.5) / _LOOKED_AT for k in range(_LOOKED_AT)]
+
+    def _ends(self) -> str:
+        """What limits circuits."""
+        assert self.dead is not None
+        ends = ["all dead points"]
+        if self.dead.multiple.any():
+            ends.append("change points")
+        if len(self.dead.poles):
+            ends.append("inputs at which a length runs to infinity")
+        return " and ".join([", ".join(ends[:-1]), ends[-1]] if len(ends) > 1 else ends)
+
+    def completeness(self) -> tuple[Completeness, str]:
+        """Of the list of circuits."""
+        if self.dead is None:
+            return Completeness.NOT_LISTED, (
+                "only the circuit of the guess: the configurations of these equations cannot be "
+                "listed"
+            )
+        count = self.seeded
+        if self.dead.cover_all and not self.unclear:
+            where = "the guess's input: no dead point limits it"
+            if len(self.dead.cuts):
+                where = f"{count} input values, at least one between any two of them"
+            return Completeness.WITH_PROBABILITY_ONE, (
+                f"every circuit is listed, with probability one: {self._ends()} were found, and "
+                f"all configurations at {where}"
+            )
+        what = "the circuits found at" if self.unclear else "every circuit that comes by one of"
+        reason = ""
+        if not self.dead.cover_all:
+            reason = f" ({self.dead.reason})"
+        return Completeness.NOT_PROVED, (
+            f"{what} {count} input values looked at; one that lies between two of them "
+            f"would be missing{reason}"
+        )

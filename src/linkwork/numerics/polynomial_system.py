@@ -1,0 +1,91 @@
+"""Square systems of polynomial equations: what following their solutions needs to know of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from linkwork.foundation.arrays import ComplexArray, CountArray
+
+__all__ = ["PolynomialSystem", "Roots", "polished", "solved"]
+
+_POLISH = 12  # steps of Newton's method at most
+
+
+class PolynomialSystem(Protocol):
+    """n equations in n complex unknowns."""
+
+    @property
+    def bound(self) -> int:
+        """How many isolated solutions there are at most."""
+
+    def residual_and_jacobian(self, x: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """F, (B, n), and its derivative, (B, n, n), at x (B, n)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Roots:
+    """Isolated solutions of one system and what became of every path.
+
+    Parameters
+    ----------
+    x : (R, n) complex
+        Regular finite solutions.
+    multiple : (S, n) complex
+        Ends of paths at singular finite solutions, one for each cluster.
+    paths, at_infinity, singular, failed : int
+        Paths tracked; those that ran to infinity, ended at a singular solution, were lost.
+    expected : int
+        How many solutions random systems of this structure have.
+    sure : bool
+        Whether that number was confirmed.
+    continuum : bool
+        Whether a singular end belongs to a curve of solutions.
+    """
+
+    x: ComplexArray
+    multiple: ComplexArray
+    paths: int
+    at_infinity: int
+    singular: int
+    failed: int
+    expected: int
+    sure: bool
+    continuum: bool
+
+
+def polished(system: PolynomialSystem, x: ComplexArray) -> tuple[ComplexArray, CountArray]:
+    """Newton's method from x (B, n) until nothing changes; the steps taken, -1 if it failed."""
+    x = x.copy()
+    steps = np.full(len(x), -1, dtype=np.int64)
+    live = np.arange(len(x))
+    last = np.full(len(x), np.inf)
+    for k in range(_POLISH):
+        f, j = system.residual_and_jacobian(x[live])
+        change = solved(j, f[:, :, None])[:, :, 0]
+        x[live] -= change
+        size = np.abs(change).max(axis=1, initial=0.0)
+        size /= 1.0 + np.abs(x[live]).max(axis=1, initial=0.0)
+        done = (size <= 1e-13) | ((size <= 1e-8) & (size > 0.25 * last))  # rounding is all
+        steps[live[done]] = k + 1
+        stay = ~done & np.isfinite(size)
+        live, last = live[stay], size[stay]
+        if not len(live):
+            break
+    return x, steps
+
+
+def solved(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
+    """Solutions per lane of (B, n, n) and (B, n, k); NaN where a matrix is singular."""
+    try:
+        return np.asarray(np.linalg.solve(matrix, right), dtype=complex)
+    except np.linalg.LinAlgError:
+        found = np.full(right.shape, np.nan, dtype=complex)
+        for lane in range(len(matrix)):
+            try:
+                found[lane] = np.linalg.solve(matrix[lane], right[lane])
+            except np.linalg.LinAlgError:
+                continue
+        return found
