@@ -14,7 +14,7 @@ from scipy.optimize import minimize_scalar
 import linkwork as lw
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
-from tests.oracles.four_bar import FourBar
+from tests.oracles.four_bar import FourBar, random_crank_rockers
 
 Array = npt.NDArray[np.float64]
 DEAD = math.degrees(math.acos(11 / 16))  # of 4/2/5/2
@@ -374,15 +374,21 @@ def test_the_rapier_s_stroke_is_located_and_has_rows() -> None:
     assert motion.asked.sum() == 37
 
 
+def exact_extremes(bar: FourBar) -> list[arb]:
+    """Crank angles [deg] of a crank-rocker's extremes with B on the left of the ground."""
+    ctx.prec = 200
+    exact = []
+    for sign in (-1, 1):  # the triangle O2 B O4 with crank and coupler in line
+        reach = arb(bar.r3) + sign * arb(bar.r2)
+        cosine = (arb(bar.r1) ** 2 + reach**2 - arb(bar.r4) ** 2) / (2 * bar.r1 * reach)
+        exact.append(cosine.acos() * 180 / arb.pi() + (180 if sign < 0 else 0))
+    return exact
+
+
 def test_limits_of_a_rocker_are_where_crank_and_coupler_line_up() -> None:
     bar = FourBar(4.0, 2.0, 5.0, 3.5)
     motion = four_bar(bar, 90, step=60).sweep(limits_of=["rocker", "B.x"])
-    ctx.prec = 200
-    exact = []
-    for reach in (bar.r3 - bar.r2, bar.r3 + bar.r2):  # the triangle O2 B O4
-        cosine = (arb(bar.r1) ** 2 + arb(reach) ** 2 - arb(bar.r4) ** 2) / (2 * bar.r1 * reach)
-        direction = cosine.acos() * 180 / arb.pi()
-        exact.append(direction + (180 if reach < bar.r3 else 0))
+    exact = exact_extremes(bar)
     mine = [x for x in motion.output_limits if x.name == "rocker"]
     assert sorted(x.kind for x in mine) == ["maximum", "minimum"]
     for extreme in mine:
@@ -401,6 +407,59 @@ def test_limits_of_a_rocker_are_where_crank_and_coupler_line_up() -> None:
             options={"xatol": 1e-10},
         )
         assert extreme.value == pytest.approx(sign * best.fun, abs=1e-12)
+
+
+def test_brackets_hold_the_exact_extremes_of_rockers() -> None:
+    for number, bar in enumerate(random_crank_rockers(20, seed=5)):
+        side = 1 if number % 2 else -1
+        motion = four_bar(bar, 50, side, step=60).sweep(limits_of=["rocker"])
+        assert len(motion.output_limits) == 2
+        exact = [
+            side * x + turn for x in exact_extremes(bar) for side in (1, -1) for turn in (0, 360)
+        ]
+        for extreme in motion.output_limits:
+            true = min(exact, key=lambda x, at=extreme.input: abs(float(x) - at))
+            assert extreme.bracket[0] < true < extreme.bracket[1], bar
+            assert extreme.bracket[1] - extreme.bracket[0] < 1e-10
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_extremes_beside_a_dead_point_are_found_on_every_branch(side: int) -> None:
+    bar = FourBar(100.0, 70.0, 120.0, 80.0)
+    points = bar.points(math.pi / 2, side)
+    a, b = complex(*points["A"]), complex(*points["B"])
+    tip = (55 + 70j) / (111 + 46j)
+    p = a + (b - a) * tip
+    motion = lw.linkage(
+        points=points | {"P": (p.real, p.imag)},
+        links={
+            "ground": ("O2", "O4"),
+            "crank": ("O2", "A"),
+            "coupler": ("A", "B", "P"),
+            "rocker": ("O4", "B"),
+        },
+        inputs=lw.Input(link="crank", start=0, stop=360, step=10),
+    ).sweep(through=True, limits_of=["P.x"])
+    assert len(motion.output_limits) == 4
+    names = {limit: motion.branch[row] for row, limit in enumerate(motion.limit) if limit}
+    assert names["maximum of P.x"] != ""
+    for extreme in motion.output_limits:
+        assert extreme.located
+        theta = np.radians(extreme.input + np.array([-1e-3, 0, 1e-3]))
+        sign = -1 if extreme.kind == "maximum" else 1
+
+        def height(assembly: int, theta: Array = theta) -> Array:
+            ends = bar.crank_end(theta), bar.coupler_end(theta, assembly)
+            return np.asarray((ends[0] + (ends[1] - ends[0]) * tip).real)
+
+        x = min((height(s) for s in (1, -1)), key=lambda h, v=extreme.value: abs(h[1] - v))
+        assert x[1] == pytest.approx(extreme.value, abs=1e-9)
+        assert sign * x[1] < sign * x[0]
+        assert sign * x[1] < sign * x[2]
+    # the largest value is an eighth of a degree beside the dead point, on one of the branches
+    largest = max(motion.output_limits, key=lambda e: e.value)
+    assert 0 < largest.input - 18.1948723388 < 0.125
+    assert np.nanmax(motion["P.x"]) == pytest.approx(largest.value, abs=1e-9)
 
 
 @pytest.mark.parametrize("step", [1, 10, 60])
@@ -434,8 +493,12 @@ def test_an_extreme_is_told_once_although_the_track_turns_twice() -> None:
 
 def test_extremes_beyond_a_change_point_are_those_of_the_chosen_branch() -> None:
     bar = FourBar(4.0, 1.0, 3.0, 2.0)
-    motion = four_bar(bar, 60, step=10).sweep(change_points="straight", limits_of=["rocker"])
-    assert len(motion.output_limits) == 2
+    mechanism = four_bar(bar, 60, step=10)
+    motion = mechanism.sweep(change_points="straight", limits_of=["rocker", "coupler"])
+    # the coupler has an extreme on the way around, which was not chosen
+    assert [extreme.name for extreme in motion.output_limits] == ["rocker", "rocker"]
+    around = mechanism.sweep(limits_of=["coupler"])
+    assert [round(extreme.input, 2) for extreme in around.output_limits] == [-48.19]
     for row in np.flatnonzero([limit.endswith("of rocker") for limit in motion.limit]):
         beyond = motion["crank"][row] > 180
         assert (motion.certification[row] is Certification.BRANCH_CHOSEN) == beyond
