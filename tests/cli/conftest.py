@@ -70,6 +70,29 @@ line = ["O", "X"]
 link = "crank"
 """
 
+PARALLELOGRAM = """\
+format = 1
+name = "Parallelogram"
+[points]
+O2 = [0, 0]
+A = [10, 17.32]
+B = [40, 17.32]
+O4 = [30, 0]
+[links]
+ground = ["O2", "O4"]
+crank = ["O2", "A"]
+coupler = ["A", "B"]
+rocker = ["O4", "B"]
+[lengths]
+"O2 A" = 20
+"A B" = 30
+"O4 B" = 20
+"O2 O4" = 30
+[input]
+link = "crank"
+step = 30
+"""
+
 FIVE_BAR = """\
 format = 1
 name = "Five-bar"
@@ -112,6 +135,7 @@ FILES = {
     "open": FOUR_BAR.replace("a = 40", "a = 400"),
     "slider-crank": SLIDER_CRANK,
     "five-bar": FIVE_BAR,
+    "parallelogram": PARALLELOGRAM,
     "cubic": CUBIC,
     "wrong": FOUR_BAR.replace('"O4 B" = 80', '"O4 B" = -80').replace('"B", "P"]', '"B", "Q"]'),
 }

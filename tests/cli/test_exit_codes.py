@@ -58,7 +58,8 @@ def test_mathematics_that_says_no_ends_with_1(run: Run, words: tuple[str, ...], 
             ("solve", "nothing.toml"),
             "Error: 1 problem in nothing.toml\n"
             "  there is no such file (TOML files there: wrong.toml, open.toml, cubic.toml,\n"
-            "  double-rocker.toml, five-bar.toml, four-bar.toml, slider-crank.toml)\n",
+            "  double-rocker.toml, five-bar.toml, four-bar.toml, parallelogram.toml,\n"
+            "  slider-crank.toml)\n",
         ),
         (
             ("solve", "rapier-drive"),

@@ -82,6 +82,52 @@ def test_a_motion_as_json(run: Run) -> None:
     assert low <= data["limits"][0]["input"] <= high
 
 
+def test_a_whole_circuit_as_json(run: Run) -> None:
+    words = ("sweep", "double-rocker.toml", "--step", "10", "--through", "--limits-of", "mu")
+    data = _json(run(*words, "--json").stdout)
+    assert data["circuit"] == "CLOSED"
+    assert data["counts"] == {"OUT_OF_REACH": 4, "CONVERGED": 70}
+    columns = data["columns"]
+    assert columns["branch"].count("circuit 1 branch 2") == 35
+    assert columns["limit"].count("dead point") == 4
+    row = columns["limit"].index("dead point")
+    assert columns["rocker.d1"][row] is None
+    assert columns["condition"][row] is None
+    assert columns["certified"][row] is True
+    high, low = data["output_limits"]
+    assert (high["name"], high["kind"], high["located"]) == ("mu", "maximum", True)
+    assert (high["value"], low["value"]) == pytest.approx((114.9530208, -114.9530208), abs=1e-6)
+    assert high["bracket"][0] <= 180 <= high["bracket"][1]
+    for limit in data["limits"]:
+        assert (limit["kind"], limit["located"], limit["passed"]) == ("DEAD_POINT", True, "")
+        assert (limit["loops"], limit["in_line"]) == (["O2 A B O4"], ["coupler", "rocker"])
+        assert limit["bracket"][0] <= limit["input"] <= limit["bracket"][1]
+    assert _json(run("sweep", "four-bar.toml", "--json").stdout)["circuit"] is None
+
+
+def test_change_points_as_json(run: Run) -> None:
+    data = _json(run("sweep", "parallelogram.toml", "--change-points", "turn", "--json").stdout)
+    assert [limit["passed"] for limit in data["limits"]] == ["", "turn", ""]
+    assert [limit["input"] for limit in data["limits"]] == [0, 180, 360]
+    assert data["limits"][1]["onward"]["rocker"] == pytest.approx(1, abs=1e-9)
+    assert data["limits"][1]["other"]["rocker"] == pytest.approx(-1 / 5, abs=1e-9)
+    assert data["columns"]["limit"][6] == "change point"
+
+
+def test_rows_of_limits_are_in_the_csv_with_empty_cells(run: Run) -> None:
+    words = ("sweep", "double-rocker.toml", "--step", "10", "--csv", "-")
+    header, rows = _rows(run(*words).stdout)
+    (first, second) = (row for row in rows if row[header.index("limit")] == "dead point")
+    assert float(first[0]) == pytest.approx(18.1948723388, abs=1e-9)
+    assert float(second[0]) == pytest.approx(341.805127661, abs=1e-9)
+    for row in (first, second):
+        assert row[header.index("rocker.d1")] == row[header.index("rocker.velocity")] == ""
+        assert row[header.index("status")] == "CONVERGED"
+        assert row[header.index("certified")] == "true"
+        assert row[header.index("branch")] == "circuit 1 branch 1"
+    assert [float(row[0]) for row in rows] == sorted(float(row[0]) for row in rows)
+
+
 def _rows(text: str) -> tuple[list[str], list[list[str]]]:
     header, *rows = csv.reader(io.StringIO(text))
     return header, rows

@@ -75,6 +75,41 @@ crank from 0 to 360 deg by 1: 361 positions, 2 more at limits
                    (coupler and rocker in line)
 """
 
+AROUND = """\
+Four-bar
+crank from 0 to 360 deg by 10: 37 positions, 2 more at limits and 35 on further
+branches
+  found            70
+  out of reach     4 at 0 to 10, 350 to 360 deg: this branch does not reach the
+                   input value: the motion ends at the limit reported, ask for
+                   values before it
+  dead point       crank = 18.1948723388 deg, where loop "O2 A B O4" locks
+                   (coupler and rocker in line)
+  dead point       crank = 341.805127661 deg, where loop "O2 A B O4" locks
+                   (coupler and rocker in line)
+  maximum          mu = 114.9530208 deg at crank = 180 deg
+  minimum          mu = -114.9530208 deg at crank = 180 deg
+  circuit          closed: the motion comes back to where it began
+  certified        70
+"""
+
+STRAIGHT = """\
+Parallelogram
+crank from 0 to 360 deg by 30: 13 positions
+  found            13
+  change point     crank = 0 deg, where loop "O2 A B O4" can close in two ways
+                   (coupler and rocker in line)
+  change point     crank = 180 deg, where loop "O2 A B O4" can close in two ways
+                   (coupler and rocker in line); went straight on
+  change point     crank = 360 deg, where loop "O2 A B O4" can close in two ways
+                   (coupler and rocker in line)
+  certified        5
+  not certified    3: too near to a singular position: rounding is larger than
+                   what the proof allows
+  not certified    5: the position is proved; at a change point before it
+                   nothing but the chosen way of going on decides the branch
+"""
+
 CHECKED = """\
 Four-bar
   written as  points and links
@@ -227,6 +262,46 @@ def test_sweep_summary_names_what_failed_and_where_the_motion_ends(run: Run) -> 
     assert done.stdout.endswith(
         "\nThe whole table: --csv double-rocker.csv. A picture: --draw double-rocker.png.\n"
     )
+
+
+def test_sweep_through_dead_points_tells_of_the_whole_circuit(run: Run) -> None:
+    words = ("sweep", "double-rocker.toml", "--step", "10", "--through", "--limits-of", "mu")
+    done = run(*words)
+    assert done.exit_code == 1  # some rows of the table are out of reach all the same
+    assert done.stdout.startswith(AROUND)
+    assert _too_wide(done.stdout) == []
+    # at dead points the condition is infinite: the worst of the others is shown
+    assert "\n  worst condition  25, at crank = 20 deg\n" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("policy", "said"),
+    [("straight", "; went straight on\n"), ("turn", "; turned off\n"), ("stop", "")],
+)
+def test_sweep_tells_how_the_motion_went_on_at_change_points(
+    run: Run, policy: str, said: str
+) -> None:
+    done = run("sweep", "parallelogram.toml", "--change-points", policy)
+    assert done.exit_code == (1 if policy == "stop" else 0)
+    assert done.stdout.count(said) == 1 or policy == "stop"
+    assert ("; went" in done.stdout, "; turned" in done.stdout) == (
+        policy == "straight",
+        policy == "turn",
+    )
+    if policy == "straight":
+        assert done.stdout.startswith(STRAIGHT)
+    if policy == "stop":
+        assert "\n  change point     5 at 210 to 330 deg: the motion reaches" in done.stdout
+    assert _too_wide(done.stdout) == []
+
+
+def test_sweep_tells_which_ways_and_names_there_are(run: Run) -> None:
+    way = run("sweep", "parallelogram.toml", "--change-points", "strait")
+    assert way.exit_code == 2
+    assert "'strait' is not one of 'stop', 'straight', 'turn'." in way.stderr
+    name = run("sweep", "parallelogram.toml", "--limits-of", "roker")
+    assert name.exit_code == 2
+    assert name.stderr == 'Error: there is no "roker" (names: rocker, coupler, crank)\n'
 
 
 def test_sweep_gives_the_range_of_unknowns_outputs_and_traced_points(run: Run) -> None:

@@ -65,7 +65,7 @@ def further_branches(
     walks = [traced(leads, start, 1.0, certify)]
     if not walks[0].curve.end.closed:
         walks.append(traced(leads, start, -1.0, certify))
-    ways = [(walk, branches_of(leads, walk)) for walk in walks]
+    ways = [(walk, branches_of(leads, walk)) for walk in walks if walk.curve.legs]
     pieces: list[tuple[Traced, CurveBranch]] = [
         (walk, branch) for walk, branches in ways for branch in branches[1:]
     ]

@@ -44,33 +44,44 @@ class SweepTable:
         self.model, self.path, self.lead = model, path, lead
         self.asked, self.rows = asked, rows
         self.window, self.free = window, free
+        self._ends: list[tuple[BranchEnd, str]] = []
         self._extra: list[SolvedRows] = []
         self._extra_t: list[float] = []
 
-    def place_of(self, t: float) -> float | None:
-        """Where a value belongs in the table's range, whole turns apart if need be."""
+    def places_of(self, t: float) -> list[float]:
+        """Where a value belongs in the table's range, whole turns apart too."""
         low, high = self.window
         slack = self._slack(max(abs(low), abs(high)))
-        for turns in (0, -1, 1, -2, 2) if self.free else (0,):
-            here = t + turns * _FULL_TURN
-            if low - slack <= here <= high + slack:
-                return here
-        return None
+        turns = np.zeros(1)
+        if self.free:
+            first = np.ceil((low - slack - t) / _FULL_TURN)
+            turns = np.arange(first, np.floor((high + slack - t) / _FULL_TURN) + 1.0)
+        here = t + turns * _FULL_TURN
+        return [float(x) for x in here if low - slack <= x <= high + slack]
 
     def put_end(self, end: BranchEnd, branch: str) -> None:
         """A row of its own for the end of a branch, if its place lies in the table."""
-        here = None if end.v is None else self.place_of(end.t)
-        if here is None or end.v is None or end.first is None:
-            return
+        self._ends.append((end, branch))
+        places = self.places_of(end.t)
+        if places:
+            self._put_at(end, branch, min(places, key=lambda here: abs(here - end.t)))
+
+    def _put_at(self, end: BranchEnd, branch: str, here: float) -> None:
+        if end.v is not None and end.first is not None:
+            self.put(self._row_of(end, end.v, end.first, branch, here), here)
+
+    def _row_of(
+        self, end: BranchEnd, v: Array, first: Array, branch: str, here: float
+    ) -> SolvedRows:
         solver = self.model.compiled.solver
         row = SolvedRows.blank(self._inputs(end, here), solver.variables, Status.CONVERGED)
-        row.v[0], row.first[0] = end.v, end.first
-        row.residual[0] = float(solver.residual(end.v[None, :])[0])
+        row.v[0], row.first[0] = v, first
+        row.residual[0] = float(solver.residual(v[None, :])[0])
         row.condition[0] = np.inf
         row.certification[0] = end.certification.code
         row.radius[0], row.unique[0] = end.radius, end.unique
         row.branch[0], row.limit[0] = branch, end.limit.kind.word
-        self.put(row, here)
+        return row
 
     def put(self, row: SolvedRows, here: float) -> None:
         """A row at a value of t: in the place of one that was asked for just there, or between."""
@@ -79,6 +90,8 @@ class SweepTable:
             return
         same = np.flatnonzero(np.abs(self.asked.t - here) <= slack)
         for k in same:
+            if self.rows.limit[k]:
+                continue
             row.inputs[0] = self.rows.inputs[k]
             self.rows.put(np.array([k]), row)
         if not len(same):
@@ -87,6 +100,9 @@ class SweepTable:
 
     def finished(self) -> tuple[SolvedRows, BoolArray]:
         """All rows in the table's order, and which of them were not asked for."""
+        for end, branch in self._ends:  # where nothing else is, whole turns away
+            for here in self.places_of(end.t):
+                self._put_at(end, branch, here)
         added = np.arange(len(self.rows) + len(self._extra)) >= len(self.rows)
         if not self._extra:
             return self.rows, added

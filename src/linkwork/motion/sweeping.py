@@ -211,9 +211,13 @@ class _Sweep:
         """The further branches of the circuit, in the direction of travel."""
         track = self.branches[0].found.track
         anchor = track.nodes[track.start]
-        # the start may lie close to a dead point
         if self.branches[0].found.proved_to_ends or not self.certify:
-            anchor = min(track.nodes, key=lambda node: node.condition)
+            # the start may lie close to a dead point
+            weights = self.model.compiled.solver.variable_scale
+            anchor = min(
+                track.nodes,
+                key=lambda node: node.condition * np.abs(node.first / weights).max(),
+            )
         around = further_branches(
             self.model, self.path, self.lead, anchor.v, asked, self.report, self.certify
         )
@@ -250,16 +254,19 @@ class _Sweep:
             for t, limit in output_limits(
                 self.model, self.path, self._whole_track(branch), self.lead, self.scale, name
             ):
-                here = table.place_of(t)
-                if here is None or not table.is_among(here, branch.own):
-                    continue
-                if any(abs(here - other) < _SAME for other in places):
-                    continue  # a whole turn away
-                places.append(here)
-                self.output_limits.append(limit)
-                row = self._branch_row(branch, t, here)
-                row.branch[0], row.limit[0] = branch.name, f"{limit.kind} of {name}"
-                table.put(row, here)
+                mine = [
+                    here
+                    for here in table.places_of(t)
+                    if table.is_among(here, branch.own)
+                    and not any(abs(here - other) < _SAME for other in places)
+                ]
+                if mine:
+                    self.output_limits.append(limit)
+                for here in mine:
+                    places.append(here)
+                    row = self._branch_row(branch, t, here)
+                    row.branch[0], row.limit[0] = branch.name, f"{limit.kind} of {name}"
+                    table.put(row, here)
 
     def _whole_track(self, branch: _Branch) -> Track:
         """The branch's track, of a further branch of the circuit up to its dead points."""

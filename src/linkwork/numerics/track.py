@@ -177,7 +177,11 @@ def follow(
     failed_at = goal
     for _ in range(opt.most_steps):
         rest = abs(goal - here.t)
-        h = min(h, opt.largest_step * scale, rest, _room(here, sign, solver.variable_scale, scale))
+        room = _room(here, sign, solver.variable_scale, scale)
+        if room < opt.smallest_step * max(scale, abs(here.t)):
+            status = _kind_of_end(solver, start, here, scale)
+            return nodes, End(reached=here.t, failed=here.t + sign * 2.0 * room, status=status)
+        h = min(h, opt.largest_step * scale, rest, room)
         t = goal if h == rest else here.t + sign * h
         following, correction = _step(solver, path, here, t, quick, opt)
         if following is None:
