@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -155,32 +156,8 @@ def _data(motion: Motion) -> dict[str, Any]:
         "mechanism": motion.mechanism,
         "units": dict(table.units),
         "columns": {name: column.tolist() for name, column in table.columns.items()},
-        "limits": [
-            {
-                "kind": limit.kind.name,
-                "input": limit.input,
-                "bracket": list(limit.bracket),
-                "located": limit.located,
-                "status": limit.status.name,
-                "loops": list(limit.loops),
-                "in_line": list(limit.in_line),
-                "onward": dict(limit.onward),
-                "other": dict(limit.other),
-                "passed": limit.passed,
-            }
-            for limit in motion.limits
-        ],
-        "output_limits": [
-            {
-                "name": extreme.name,
-                "kind": extreme.kind,
-                "input": extreme.input,
-                "value": extreme.value,
-                "bracket": list(extreme.bracket),
-                "located": extreme.located,
-            }
-            for extreme in motion.output_limits
-        ],
+        "limits": [limit.to_dict() for limit in motion.limits],
+        "output_limits": [asdict(extreme) for extreme in motion.output_limits],
         "circuit": None if motion.circuit is None else motion.circuit.name,
         "counts": {status.name: count for status, count in motion.counts.items()},
     }

@@ -168,19 +168,6 @@ class Circuits:
 
 
 def _circuit_data(circuit: Circuit) -> dict[str, Any]:
-    def limits(found: tuple[Limit, ...]) -> list[dict[str, Any]]:
-        return [
-            {
-                "kind": limit.kind.name,
-                "input": limit.input,
-                "bracket": list(limit.bracket),
-                "located": limit.located,
-                "loops": list(limit.loops),
-                "in_line": list(limit.in_line),
-            }
-            for limit in found
-        ]
-
     return {
         "name": circuit.name,
         "closed": circuit.closed,
@@ -198,8 +185,8 @@ def _circuit_data(circuit: Circuit) -> dict[str, Any]:
             }
             for branch in circuit.branches
         ],
-        "dead_points": limits(circuit.dead_points),
-        "change_points": limits(circuit.change_points),
+        "dead_points": [limit.to_dict() for limit in circuit.dead_points],
+        "change_points": [limit.to_dict() for limit in circuit.change_points],
         "smallest_singular_value": circuit.smallest_singular_value,
         "weakest": circuit.weakest,
     }

@@ -91,6 +91,21 @@ class Limit:
     other: Mapping[str, float] = FrozenDict()
     passed: str = ""
 
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, as in the command line's JSON."""
+        return {
+            "kind": self.kind.name,
+            "input": self.input,
+            "bracket": list(self.bracket),
+            "located": self.located,
+            "status": self.status.name,
+            "loops": list(self.loops),
+            "in_line": list(self.in_line),
+            "onward": dict(self.onward),
+            "other": dict(self.other),
+            "passed": self.passed,
+        }
+
 
 @dataclass(frozen=True, kw_only=True)
 class OutputLimit:
