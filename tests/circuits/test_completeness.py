@@ -92,7 +92,7 @@ def test_what_makes_the_list_complete_is_told() -> None:
     assert (free.completeness, free.seeded) == (Completeness.WITH_PROBABILITY_ONE, 1)
     assert free.message == (
         "every circuit is listed, with probability one: all dead points were found, and all "
-        "configurations at the guess's input: no dead point limits it"
+        "configurations at the guess's input (there is no dead point)"
     )
 
 

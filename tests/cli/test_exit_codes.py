@@ -240,3 +240,15 @@ def test_nothing_is_written_when_the_input_is_wrong(run: Run, folder: Path) -> N
     ):
         assert run(*words).exit_code, words
         assert sorted(folder.iterdir()) == before, words
+
+
+def test_what_to_draw_without_a_picture_ends_with_2(run: Run) -> None:
+    done = run("circuits", "four-bar.toml", "--of", "rocker")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert done.stderr == "Error: --of says what --draw shows: add --draw PATH\n"
+
+
+def test_an_unknown_quantity_is_answered_with_coordinates_too(run: Run) -> None:
+    done = run("sweep", "four-bar.toml", "--limits-of", "B.z")
+    assert done.exit_code == 2
+    assert '"B.z" (names: B.' in done.stderr

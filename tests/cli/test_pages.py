@@ -12,7 +12,7 @@ import pytest
 
 from linkwork.cli.check import check_lines
 from linkwork.cli.main import linkwork
-from linkwork.everyday import examples, load
+from linkwork.everyday import example_text, examples, load
 from tests.cli.conftest import FILES, Run
 
 COMMANDS = tuple(linkwork.list_commands(click.Context(linkwork)))
@@ -332,8 +332,27 @@ def test_ranges_leave_out_rows_that_were_not_found(run: Run) -> None:
 
 def test_sweep_without_a_start_says_why_and_what_to_do(run: Run) -> None:
     text = " ".join(run("sweep", "open.toml").stdout.split())
-    assert 'no start 361 at 0 to 360 deg: loop "O2 A B O4" cannot be closed' in text
-    assert text.endswith("How it went: linkwork solve FILE --show-steps")
+    assert 'no start 361 at 0 to 360 deg why loop "O2 A B O4" cannot be closed' in text
+    assert " remedy it just closes with " in text
+    assert text.endswith("How it went: linkwork solve open.toml --show-steps")
+
+
+def test_limits_bear_the_inputs_of_their_rows(run: Run, folder: Path) -> None:
+    name = "rapier-drive-limited.toml"
+    (folder / name).write_text(example_text("rapier-drive-limited"), encoding="utf-8")
+    ends = ("149.617278637", "201.320100396")
+    for option in ((), ("--through", "--limits-of", "s16")):
+        text = " ".join(run("sweep", name, *option).stdout.split())
+        for place in ends:
+            assert f"dead point θ12 = {place} deg" in text
+        assert "θ12 = -" not in text
+    table = run("sweep", name, "--through", "--csv", "-").stdout.splitlines()[1:]
+    assert all(0.0 <= float(line.split(",")[0]) <= 360.0 for line in table)
+
+
+def test_a_list_without_configurations_says_where_to_ask(run: Run) -> None:
+    text = run("configurations", "open.toml", "--at", "90").stdout
+    assert text.endswith("\nWhat is in the way: linkwork solve open.toml --at 90\n")
 
 
 def test_check_tells_what_was_understood(run: Run) -> None:
@@ -364,7 +383,8 @@ def test_check_says_when_grubler_and_rank_differ(
 
 def test_check_without_a_position_says_why(run: Run) -> None:
     text = run("check", "open.toml").stdout
-    assert "\nNo position found at crank = 29.7448813 deg\n  why  loop " in text
+    assert "\nNo position found at crank = 29.7448813 deg\n  why        loop " in text
+    assert "\n  elsewhere  no configuration exists there\n" in text
     assert "1 by Grübler's count, not known by rank, which needs a position" in text
 
 

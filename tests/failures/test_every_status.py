@@ -76,7 +76,7 @@ def out_of_reach() -> Reached:
     angle = math.degrees(math.acos(11 / 16))
     return four_bar(2, 5, 2, 4).solve(at=10), (
         "this branch does not reach the input value: the motion ends at the limit reported, ask "
-        f"for values before it (met at crank = {angle:.10g}° and {360 - angle:.10g}°); "
+        f"for values before it (met at crank = {angle:.10g}° and {-angle:.10g}°); "
         f"nearest reachable input: crank = {angle:.10g}° (dead point); "
         "no configuration exists there"
     )
@@ -85,7 +85,7 @@ def out_of_reach() -> Reached:
 def change_point() -> Reached:
     return four_bar(1, 2, 1, 2, at=60).solve(at=200), (
         "the motion reaches a change point, where two branches cross, before this input value: "
-        "ask for values before it, or start from a guess beyond it (met at crank = 180° and 0°); "
+        "ask for values before it, or start from a guess beyond it (met at crank = 180° and 360°); "
         "nearest reachable input: crank = 180° (change point); "
         "2 configurations exist there: open (coupler = 13.27254518°, rocker = 173.2725452°) or "
         "crossed (coupler = 0°, rocker = -160°)"

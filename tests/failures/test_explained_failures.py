@@ -238,6 +238,19 @@ def test_where_the_circuit_reaches_the_value_on_another_branch_that_is_told() ->
     assert len(failure.configurations) == 2
 
 
+def test_without_a_position_at_the_guess_what_exists_at_the_value_asked_is_told() -> None:
+    mechanism = four_bar(40, 30, 40, 100)
+    failure = failure_of(mechanism.solve(at=10))
+    assert failure.what.startswith("the motion is followed from the guess's own input value, and ")
+    assert dict(failure.asked) == {"crank": 10.0}
+    assert failure.configuration_names == ("open", "crossed")
+    assert not failure.nearest_input
+    beyond = failure_of(mechanism.solve(at=60))
+    assert dict(beyond.asked) == {"crank": 60.0}
+    assert not beyond.configurations
+    assert beyond.nearest_input["crank"] == pytest.approx(33.1229402, abs=1e-7)
+
+
 def test_an_input_of_a_slider_says_the_length_that_can_be_reached() -> None:
     mechanism = lw.linkage(
         name="pushed crank",

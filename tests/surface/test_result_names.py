@@ -31,3 +31,11 @@ def test_inputs_and_points_too() -> None:
     turned = crank.sweep(stop=3)
     np.testing.assert_array_equal(turned["Omega.y"], turned["Ω.y"])
     np.testing.assert_array_equal(turned.trace("Omega"), turned.trace("Ω"))
+
+
+def test_a_table_shows_its_size_and_first_columns() -> None:
+    table = lw.example("rapier-drive").sweep(stop=3).table()
+    assert repr(table).startswith("<Table of 4 rows over θ12, ")
+    assert repr(table).endswith(
+        " columns: θ12 [deg], θ13 [deg], θ14 [deg], θ15 [deg], s16 [mm], A0.x [mm], …>"
+    )

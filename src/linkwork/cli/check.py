@@ -105,8 +105,9 @@ def _start(report: CheckReport) -> list[str]:
     )
     at = f"at {where}" if where else ""
     if not report.start.ok:
-        told = fields([("why", report.start_message)])
-        return [*sentence(bad, "No position found", at), *told]
+        told = report.failure
+        why = [("why", report.start_message)] if told is None else told.sentences()
+        return [*sentence(bad, "No position found", at), *fields(why)]
     measure = "" if report.form == "equations" else " of the longest link"
     residual = significant(report.residual, 2) + measure
     return [*sentence(good, "Position found", at), *fields([("residual", residual)])]

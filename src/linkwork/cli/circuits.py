@@ -23,6 +23,7 @@ from linkwork.cli.terminal import (
 )
 from linkwork.cli.text_table import Column, short, table_lines
 from linkwork.drawing.chart import circuit_chart
+from linkwork.foundation.errors import InputError
 from linkwork.results.circuits import Circuit, Circuits
 
 __all__ = ["circuits", "circuits_lines"]
@@ -36,7 +37,7 @@ __all__ = ["circuits", "circuits_lines"]
     "names",
     metavar="NAME",
     multiple=True,
-    help="Draw NAME over the input; repeatable. Left out: the unknowns.",
+    help="Draw NAME over the input, with --draw; repeatable. Left out: the unknowns.",
 )
 @click.option("--no-certificates", is_flag=True, help="Prove nothing: faster.")
 @set_option
@@ -62,6 +63,8 @@ def circuits(
       linkwork circuits rapier.toml --draw circuits.png --of s16
       linkwork sweep rapier.toml --configuration "circuit 3 branch 1"
     """
+    if names and draw is None:
+        raise InputError("--of says what --draw shows: add --draw PATH")
     if draw is not None:
         picture.check_picture(draw)
     check_outputs(file, draw)
@@ -123,10 +126,10 @@ def _facts(found: Circuits, circuit: Circuit) -> Iterator[tuple[str, str]]:
     for limit in (*circuit.dead_points, *circuit.change_points):
         yield limit.kind.word, limit_text(limit, found.input, found.input_unit)
     if not (circuit.dead_points or circuit.change_points):
-        where = f"{found.input} = {short(circuit.weakest)} {found.input_unit}".rstrip()
+        where = f"{found.input} = {circuit.weakest:.3g} {found.input_unit}".rstrip()
         yield (
             "weakest",
-            f"smallest singular value {circuit.smallest_singular_value:.3g}, at {where}",
+            f"smallest singular value {circuit.smallest_singular_value:.3g}, near {where}",
         )
 
 

@@ -18,8 +18,17 @@ from linkwork.cli.options import (
 )
 from linkwork.cli.output_file import check_outputs
 from linkwork.cli.position_page import Row, inputs_text, value_cells
-from linkwork.cli.terminal import bad, fields, good, print_json, print_lines, sentence, title_lines
-from linkwork.cli.text_table import Column, table_lines
+from linkwork.cli.terminal import (
+    bad,
+    fields,
+    good,
+    print_json,
+    print_lines,
+    sentence,
+    title_lines,
+    wrapped,
+)
+from linkwork.cli.text_table import Column, short, table_lines
 from linkwork.drawing.sheet import configuration_sheet
 from linkwork.everyday import Mechanism
 from linkwork.results.configurations import Configurations, PathCount
@@ -63,9 +72,18 @@ def configurations(
     if as_json:
         print_json(found.to_dict())
     else:
-        print_lines([*configurations_lines(mechanism, found), *_written(draw, len(found))])
+        hint = [] if len(found) else _reason(file, found)
+        written = _written(draw, len(found))
+        print_lines([*configurations_lines(mechanism, found), *written, *hint])
     if not (found.completeness.complete and len(found)):
         context.exit(1)
+
+
+def _reason(file: str, found: Configurations) -> list[str]:
+    """Where to ask why there is none."""
+    asked = [f"{name}={short(value)}" for name, value in found.input.items()]
+    at = "".join(f" --at {text if len(asked) > 1 else text.partition('=')[2]}" for text in asked)
+    return ["", *wrapped(f"What is in the way: linkwork solve {file}{at}")]
 
 
 def _written(draw: str | None, count: int) -> list[str]:

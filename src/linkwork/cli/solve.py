@@ -54,6 +54,7 @@ _POSITIVE = _Tolerance(min=0.0, min_open=True, max=math.inf, max_open=True)
 @click.option("--show-steps", is_flag=True, help="Show every Newton-Raphson iteration.")
 @click.option(
     "--equation-tolerance",
+    metavar="NUMBER",
     type=_POSITIVE,
     default=_DEFAULT.equation_tolerance,
     show_default=True,
@@ -61,6 +62,7 @@ _POSITIVE = _Tolerance(min=0.0, min_open=True, max=math.inf, max_open=True)
 )
 @click.option(
     "--solution-tolerance",
+    metavar="NUMBER",
     type=_POSITIVE,
     default=_DEFAULT.solution_tolerance,
     show_default=True,
@@ -68,6 +70,7 @@ _POSITIVE = _Tolerance(min=0.0, min_open=True, max=math.inf, max_open=True)
 )
 @click.option(
     "--max-steps",
+    metavar="NUMBER",
     type=click.IntRange(1),
     default=_DEFAULT.max_steps,
     show_default=True,

@@ -145,7 +145,7 @@ def _written(motion: Motion, page: Scene | None, csv: str | None, draw: str | No
 def _hint(file: str, motion: Motion) -> list[str]:
     """What to do next."""
     if not motion.found.any():
-        return ["How it went: linkwork solve FILE --show-steps"]
+        return wrapped(f"How it went: linkwork solve {file} --show-steps")
     stem = "cycle" if file == "-" else Path(file).stem
     return wrapped(f"The whole table: --csv {stem}.csv. A picture: --draw {stem}.png.")
 
@@ -159,5 +159,6 @@ def _data(motion: Motion) -> dict[str, Any]:
         "limits": [limit.to_dict() for limit in motion.limits],
         "output_limits": [asdict(extreme) for extreme in motion.output_limits],
         "circuit": None if motion.circuit is None else motion.circuit.name,
+        **({} if motion.failure is None else {"failure": motion.failure.to_dict()}),
         "counts": {status.name: count for status, count in motion.counts.items()},
     }

@@ -16,6 +16,7 @@ from linkwork.results.quantity import Kind
 __all__ = ["Chart", "Curve", "Mark", "Panel", "circuit_chart"]
 
 _MOST_PANELS = 6
+_ROUNDING = 1e-9  # of a turn: an angle this near to a whole one lies on it
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -92,12 +93,15 @@ def circuit_chart(circuits: Circuits, names: tuple[str, ...] = ()) -> Chart:
         curves: list[Curve] = []
         marks: list[Mark] = []
         for tone, circuit in enumerate(circuits, start=1):
-            x, y = circuit.motion[circuits.input], circuit.motion[name]
+            x = _rounded(circuit.motion[circuits.input], turns.x)
+            y = _rounded(circuit.motion[name], turns.y)
+            lines: list[Curve] = []
             for branch in circuit.branches:
                 mine = np.array([b == branch.name for b in circuit.motion.branch])
                 line = _folded(x[mine], y[mine], turns.x, turns.y)
-                curves.append(Curve(x=line[0], y=line[1], tone=tone, name=circuit.name))
-            marks += _marks(circuit.motion, circuits.input, name, tone, turns)
+                lines.append(Curve(x=line[0], y=line[1], tone=tone, name=circuit.name))
+            curves += lines
+            marks += _marks(circuit.motion, circuits.input, name, tone, turns, lines)
         label = f"{name} [{unit}]" if unit else name
         panels.append(
             Panel(label=label, curves=tuple(curves), marks=tuple(marks), whole_turns=angle)
@@ -111,6 +115,14 @@ def circuit_chart(circuits: Circuits, names: tuple[str, ...] = ()) -> Chart:
         whole_turns=turning,
         turn=turn,
     )
+
+
+def _rounded(values: Array, turn: float) -> Array:
+    """Values (K,) with those on whole turns exactly there: rounding must not fold a line."""
+    if not turn:
+        return values
+    whole = np.round(values / turn) * turn
+    return np.where(np.abs(values - whole) < _ROUNDING * turn, whole, values)
 
 
 def _folded(x: Array, y: Array, x_turn: float, y_turn: float) -> tuple[Array, Array]:
@@ -141,16 +153,27 @@ def _folded(x: Array, y: Array, x_turn: float, y_turn: float) -> tuple[Array, Ar
     return folded[:, 0], folded[:, 1]
 
 
-def _marks(motion: Motion, driver: str, name: str, tone: int, turns: Turns) -> list[Mark]:
-    """Dead points and change points on the curve of one quantity."""
-    x, y = motion[driver], motion[name]
+def _marks(
+    motion: Motion, driver: str, name: str, tone: int, turns: Turns, lines: list[Curve]
+) -> list[Mark]:
+    """Dead points and change points on the curves of one quantity, at both edges if need be."""
+    x, y = _rounded(motion[driver], turns.x), _rounded(motion[name], turns.y)
+    ends = np.concatenate([np.stack([line.x, line.y], axis=1) for line in lines])
+    reach = np.array([turns.x, turns.y])
+    near = _ROUNDING * np.where(reach > 0.0, reach, np.maximum(1.0, np.nanmax(np.abs(ends), 0)))
     return [
-        Mark(
-            x=float(np.mod(x[k], turns.x)) if turns.x else float(x[k]),
-            y=float(np.mod(y[k], turns.y)) if turns.y else float(y[k]),
-            tone=tone,
-            kind=kind,
-        )
+        Mark(x=at_x, y=at_y, tone=tone, kind=kind)
         for k, kind in enumerate(motion.limit)
         if kind
+        for at_x in _edges(float(x[k]), turns.x)
+        for at_y in _edges(float(y[k]), turns.y)
+        if (np.abs(ends - [at_x, at_y]) < near).all(axis=1).any()
     ]
+
+
+def _edges(value: float, turn: float) -> tuple[float, ...]:
+    """Where a value lies inside one turn: a whole turn at both of its edges."""
+    if not turn:
+        return (value,)
+    folded = float(np.mod(value, turn))
+    return (folded,) if folded else (0.0, turn)

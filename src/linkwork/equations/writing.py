@@ -267,3 +267,5 @@ def _matrix_lines(
         for column, entry in zip(columns, row, strict=True):
             if entry != "0":
                 yield from _wrapped(f"  ∂({label})/∂{column} = ", entry, width, "      ")
+    if any("0" in row for row in matrix):
+        yield "  all others = 0"

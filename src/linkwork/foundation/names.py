@@ -53,6 +53,8 @@ def latex_name(name: str) -> str:
     r"""The name for LaTeX: ``theta12`` → ``\theta_{12}``, ``crank`` → ``\mathrm{crank}``."""
     stem, index = _stem_and_index(canonical(name))
     head, _, tail = stem.rstrip("_").partition("_")
+    if any(letter.isdigit() for letter in head) and not tail:  # O2O4: the last digit is no index
+        head, index = head + index.rstrip("'"), index[len(index.rstrip("'")) :]
     primes = index.count("'") * "'"
     subscript = ",".join(part for part in (tail.replace("_", r"\_"), index.rstrip("'")) if part)
     base = rf"\{head}" if head in _LETTER else head if len(head) == 1 else rf"\mathrm{{{head}}}"

@@ -108,7 +108,7 @@ def _check_ground(
         if not given.agrees(sketch, _AGREE):
             raise ShapeError(
                 f"ground coordinates are exact and give {given.shown(sketch)}, "
-                f"not {given.amount_text}",
+                f"not {given.amount_text}: change [points] or leave this out",
                 given.table,
                 given.key,
             )

@@ -66,6 +66,7 @@ def check(model: Model) -> CheckReport:
             for v, value in zip(equations.inputs, model.everyday_start, strict=True)
         },
         residual=start.residual,
+        failure=start.failure,
     )
 
 

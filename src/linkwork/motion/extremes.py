@@ -46,7 +46,10 @@ def _series(named: Named, name: str) -> Series:
         return named.points[point][axis == "y"]
     tables = (named.unknowns, named.links, named.sliders, named.outputs)
     known_names = dict.fromkeys(known for table in tables for known in table)
-    raise UnknownNameError(f'there is no "{name}" {choices("names", known_names, name)}')
+    places = [f"{point}.{axis}" for point in named.points for axis in "xy"]
+    raise UnknownNameError(
+        f'there is no "{name}" {choices("names", [*known_names, *places], name)}'
+    )
 
 
 def output_limits(

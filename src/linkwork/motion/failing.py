@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -24,7 +25,7 @@ from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit
 from linkwork.results.quantity import Kind
 
-__all__ = ["another_root", "beyond_reach", "no_position"]
+__all__ = ["another_root", "beyond_reach", "no_position", "without_start"]
 
 #: How the positions that exist at given inputs are found, for every explanation.
 ELSEWHERE: ElsewhereAt = positions_elsewhere
@@ -75,6 +76,30 @@ def _explained(
     )
 
 
+def without_start(model: Model, failure: Failure, inputs: Array) -> Failure:
+    """A failure at the guess's own inputs, told to who asked for others (p,).
+
+    What exists is looked for at the inputs asked; a nearest input is told only if nothing does.
+    """
+    here = _failure(model, inputs, what="")
+    nearest = failure if not here.configurations else here
+    return replace(
+        failure,
+        what="the motion is followed from the guess's own input value, and there is no position "
+        f"there: {failure.what}",
+        asked=here.asked,
+        nearest_input=nearest.nearest_input,
+        nearest_kind=nearest.nearest_kind,
+        nearest_proved=nearest.nearest_proved,
+        through=nearest.through,
+        unreachable=nearest.unreachable,
+        configurations=here.configurations,
+        configuration_names=here.configuration_names,
+        complete=here.complete,
+        complete_likely=here.complete_likely,
+    )
+
+
 def another_root(model: Model, found: Array) -> Failure | None:
     """What to say of a position (N,) that is another one than the one beside the guess."""
     solver = model.compiled.solver
@@ -119,7 +144,11 @@ def beyond_reach(
         near = _nearest_limit(model, path, lead, asked, limits)
     name = model.equations.inputs[lead].name
     unit = model.units.angle.sign if model.equations.inputs[lead].kind == "angle" else ""
-    met = " and ".join(f"{limit.input:.10g}{unit}" for limit in limits)
+    scale = float(model.input_scale[lead])
+    turn = 2.0 * np.pi / scale if turns_freely(model) else np.inf
+    met = " and ".join(
+        f"{_turned(limit.input, asked / scale, turn):.10g}{unit}" for limit in limits
+    )
     return _failure(
         model,
         path.at(asked),
@@ -127,6 +156,12 @@ def beyond_reach(
         loops=tuple(dict.fromkeys(loop for limit in limits for loop in limit.loops)),
         reach=near,
     )
+
+
+def _turned(value: float, asked: float, turn: float) -> float:
+    """A value as near to the one asked as whole turns bring it; exactly itself without any."""
+    turns = round((asked - value) / turn)
+    return value + turns * turn if turns else value
 
 
 def _nearest_limit(

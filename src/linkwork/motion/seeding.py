@@ -123,7 +123,7 @@ class Seeding:
             )
         count = self.seeded
         if self.dead.cover_all and not self.unclear:
-            where = "the guess's input: no dead point limits it"
+            where = "the guess's input (there is no dead point)"
             if len(self.dead.cuts):
                 where = f"{count} input values, at least one between any two of them"
             return Completeness.WITH_PROBABILITY_ONE, (

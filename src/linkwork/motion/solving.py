@@ -11,7 +11,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
-from linkwork.motion.failing import another_root, beyond_reach
+from linkwork.motion.failing import another_root, beyond_reach, without_start
 from linkwork.motion.limits import ends_of
 from linkwork.motion.model import Model
 from linkwork.motion.positions import (
@@ -75,7 +75,14 @@ def solve(
     inputs = target * model.input_scale
     start = first_position(model, inputs if from_guess else model.start_inputs, options, with_steps)
     if not start.status.ok:
-        position = _failed(model, target, start.status, start.failure, start)
+        failure = start.failure
+        if (
+            failure is not None
+            and not from_guess
+            and not np.array_equal(inputs, model.start_inputs)
+        ):
+            failure = without_start(model, failure, inputs)
+        position = _failed(model, target, start.status, failure, start)
     elif from_guess or np.array_equal(inputs, model.start_inputs):
         position = _arrived(model, target, start, certify)
     else:

@@ -27,6 +27,8 @@ class SweepTable:
         The input that t is.
     window : (float, float)
         Smallest and largest value of t that has a place in the table.
+    span : (float, float)
+        Smallest and largest value of t that the sweep was asked for.
     free : bool
         Whether a row a whole turn away is the same position.
     """
@@ -39,11 +41,12 @@ class SweepTable:
         asked: Asked,
         rows: SolvedRows,
         window: tuple[float, float],
+        span: tuple[float, float],
         free: bool,
     ) -> None:
         self.model, self.path, self.lead = model, path, lead
         self.asked, self.rows = asked, rows
-        self.window, self.free = window, free
+        self.window, self.span, self.free = window, span, free
         self._ends: list[tuple[BranchEnd, str]] = []
         self._extra: list[SolvedRows] = []
         self._extra_t: list[float] = []
@@ -58,6 +61,21 @@ class SweepTable:
             turns = np.arange(first, np.floor((high + slack - t) / _FULL_TURN) + 1.0)
         here = t + turns * _FULL_TURN
         return [float(x) for x in here if low - slack <= x <= high + slack]
+
+    def turns_at(self, here: float) -> int:
+        """By how many whole turns rows beside a value of t are named apart from it.
+
+        On a further branch the rows bear the inputs of the table, whole turns away if need be:
+        one put between them does the same, inside the table's range if it can.
+        """
+        lead, scale = self.lead, float(self.model.input_scale[self.lead])
+        named = self.asked.everyday[:, lead] * scale
+        beside = np.argsort(np.abs(self.asked.t - here), kind="stable")[:2]
+        turns = [round(float(named[k] - self.asked.t[k]) / _FULL_TURN) for k in beside]
+        slack = self._slack(abs(here))
+        low, high = self.span
+        inside = [k for k in turns if low - slack <= here + k * _FULL_TURN <= high + slack]
+        return (inside or turns or [0])[0]
 
     def put_end(self, end: BranchEnd, branch: str) -> None:
         """A row of its own for the end of a branch, if its place lies in the table."""
@@ -126,7 +144,7 @@ class SweepTable:
         scale = self.model.input_scale
         everyday = np.array([_short(x) for x in self.path.at(end.t) / scale])
         everyday[self.lead] = end.limit.input
-        turns = round((here - end.t) / _FULL_TURN)
+        turns = round((here - end.t) / _FULL_TURN) + self.turns_at(here)
         return (everyday + turns * self.path.rate * (_FULL_TURN / scale))[None, :]
 
     @staticmethod

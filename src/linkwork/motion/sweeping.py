@@ -139,7 +139,14 @@ class _Sweep:
         _demote(found.rows, standing)
         free = turns_freely(self.model)
         table = SweepTable(
-            self.model, self.path, self.lead, asked, found.rows, _span(asked.t), free
+            self.model,
+            self.path,
+            self.lead,
+            asked,
+            found.rows,
+            _span(asked.t),
+            _span(asked.t),
+            free,
         )
         self.tables.append(table)
         first = self._told(table, found, self.model.branch, standing, found.here)
@@ -225,7 +232,14 @@ class _Sweep:
         for branch in around.branches:
             rows = branch.found.rows
             table = SweepTable(
-                self.model, self.path, self.lead, branch.asked, rows, branch.window, False
+                self.model,
+                self.path,
+                self.lead,
+                branch.asked,
+                rows,
+                branch.window,
+                _span(asked.t),
+                False,
             )
             self.tables.append(table)
             self._told(table, branch.found, branch.name, branch.standing, branch.found.here)
@@ -279,9 +293,10 @@ class _Sweep:
 
     def _branch_row(self, branch: _Branch, t: float, here: float) -> SolvedRows:
         """The row of a branch at a value of t, named by its place in the table."""
-        track, inputs = branch.found.track, self.path.at(np.array([t]))
+        table, track = branch.table, branch.found.track
+        inputs = self.path.at(np.array([t]))
         everyday = inputs / self.model.input_scale
-        turns = round((here - t) / (2.0 * np.pi))
+        turns = round((here - t) / (2.0 * np.pi)) + table.turns_at(here)
         everyday = everyday + turns * self.path.rate * (2.0 * np.pi / self.model.input_scale)
         asked = Asked(t=np.array([t]), inputs=inputs, everyday=everyday)
         rows = self._branch(track.nodes[track.start], asked).rows

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from linkwork.foundation.status import Status
+from linkwork.results.failure import Failure
 
 __all__ = ["BlockSummary", "CheckReport"]
 
@@ -35,6 +36,8 @@ class CheckReport:
     start : Status, str
         How Newton-Raphson ended at the guess's own input value, and the sentence.
     start_input : mapping of the guess's input values, everyday units.
+    failure : Failure, optional
+        Why there is no position at the start.
     """
 
     mechanism: str
@@ -53,6 +56,7 @@ class CheckReport:
     start_message: str
     start_input: dict[str, float]
     residual: float
+    failure: Failure | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """The report as JSON-ready data."""
@@ -76,4 +80,5 @@ class CheckReport:
                 "input": self.start_input,
                 "residual": self.residual,
             },
+            **({} if self.failure is None else {"failure": self.failure.to_dict()}),
         }

@@ -246,7 +246,8 @@ class Motion:
             return self.points[point][axis == "y"]
         tables = (self.inputs, self.unknowns, self.links, self.sliders, self.outputs)
         known = dict.fromkeys(known for table in tables for known in table)
-        raise UnknownNameError(f'there is no "{name}" {choices("names", known, name)}')
+        places = [f"{point}.{axis}" for point in self.points for axis in "xy"]
+        raise UnknownNameError(f'there is no "{name}" {choices("names", [*known, *places], name)}')
 
     @property
     def found(self) -> BoolArray:

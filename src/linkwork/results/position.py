@@ -146,7 +146,8 @@ class Position:
         if point in self.points and axis in ("x", "y"):
             return self.points[point][axis == "y"]
         known = dict.fromkeys(known for table in tables for known in table)
-        raise UnknownNameError(f'there is no "{name}" {choices("names", known, name)}')
+        places = [f"{point}.{axis}" for point in self.points for axis in "xy"]
+        raise UnknownNameError(f'there is no "{name}" {choices("names", [*known, *places], name)}')
 
     def __repr__(self) -> str:
         return position_summary(self)

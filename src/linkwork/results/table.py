@@ -18,8 +18,10 @@ __all__ = ["Table", "table_of"]
 
 Column = AnyArray
 
+_SHOWN = 6  # columns that ``repr`` names
 
-@dataclass(frozen=True, kw_only=True)
+
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Table:
     """Columns by name, all of one length, with the unit of each ("" for none).
 
@@ -36,6 +38,11 @@ class Table:
 
     def __getitem__(self, name: str) -> Column:
         return self.columns[name]
+
+    def __repr__(self) -> str:
+        named = [f"{name} [{unit}]" if unit else name for name, unit in self.units.items()]
+        shown = ", ".join(named[:_SHOWN]) + (", …" if len(named) > _SHOWN else "")
+        return f"<Table of {len(self)} rows over {self.index}, {len(named)} columns: {shown}>"
 
     def rows(self) -> Iterator[tuple[Any, ...]]:
         """The rows as tuples of plain Python values."""
