@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from itertools import product
 
 import numpy as np
 import numpy.typing as npt
@@ -206,25 +205,6 @@ def _radii(case: _Case, root: list[arb], false: object) -> None:
             false(f"unknown {k} is {float(off.mid())} away, beyond {case.radii.each[0, k]}")
 
 
-def _contracts(case: _Case, box: list[arb], n: int) -> bool:
-    """‖I - A J‖ < 1 in a box, or in both halves of each of its sides: boxes of balls are wide."""
-    if all(row < 1 for row in case.balls.defect(box, case.matrix)):
-        return True
-    halves = [
-        [ball(float(x.mid()) + side * 0.5 * float(x.rad()), 0.5 * float(x.rad())) for x in box[:n]]
-        for side in (-1.0, 1.0)
-    ]
-    return all(
-        all(
-            row < 1
-            for row in case.balls.defect(
-                [halves[side][k] for k, side in enumerate(sides)] + box[n:], case.matrix
-            )
-        )
-        for sides in product((0, 1), repeat=n)
-    )
-
-
 def _alone(
     rng: np.random.Generator,
     case: _Case,
@@ -246,7 +226,7 @@ def _alone(
     box = [x + ball(0, half * float(wk)) for x, wk in zip(box[:n], w, strict=True)] + box[n:]
     if half < 0.5:
         verdict.counts["boxes without a second root"] += 1
-        if not _contracts(case, box, n):
+        if not all(row < 1 for row in case.balls.defect(box, case.matrix)):
             false(f"J may be singular within {half} although r+ = {unique}")
     v = np.repeat(case.v[None, :], starts, axis=0)
     reach = np.where(np.arange(starts) < starts // 2, inside, 4.0)[:, None]

@@ -189,7 +189,8 @@ class BallTable:
     def defect(self, v: Balls, matrix: Array) -> Balls:
         """Σ_j |I - A J|_ij w_j / w_i over the unknowns, row by row; an upper end for balls.
 
-        Coefficients are added behind A before a phasor is taken, so that boxes stay tight.
+        Coefficients, times the middles of variable lengths, are added behind A before a phasor is
+        taken, so that boxes stay tight.
         """
         n = self.unknowns
         product = []
@@ -199,14 +200,23 @@ class BallTable:
             sums: dict[tuple[int, tuple[tuple[int, fmpq], ...]], acb] = {}
             for r, c, length, phase in self.terms:
                 sums[length, phase] = sums.get((length, phase), acb(0)) + alpha[r] * c
+            whole: dict[tuple[tuple[int, fmpq], ...], acb] = {}
             for (length, phase), z in sums.items():
+                middle = v[length].mid() if length >= 0 else arb(1)
+                whole[phase] = whole.get(phase, acb(0)) + z * middle
+            parts = [(z, arb(1), -1, phase) for phase, z in whole.items()]
+            parts += [
+                (z, v[length] - v[length].mid(), length, phase)
+                for (length, phase), z in sums.items()
+                if length >= 0
+            ]
+            for z, size, length, phase in parts:
                 angle = z.arg() if z != 0 else arb(0)
                 for k, w in phase:
                     angle += v[k] * arb(w)
-                size = abs(z) * v[length] if length >= 0 else abs(z)
                 for k, w in phase:
                     if k < n:
-                        row[k] += size * angle.sin() * arb(w)
+                        row[k] += abs(z) * size * angle.sin() * arb(w)
                 if 0 <= length < n:
                     row[length] -= abs(z) * angle.cos()
             for r, k, w in self.lines:
