@@ -51,11 +51,12 @@ class SweepTable:
         """Where a value belongs in the table's range, whole turns apart if need be."""
         low, high = self.window
         slack = self._slack(max(abs(low), abs(high)))
-        for turns in (0, -1, 1, -2, 2) if self.free else (0,):
-            here = t + turns * _FULL_TURN
-            if low - slack <= here <= high + slack:
-                return here
-        return None
+        here = t
+        if self.free:
+            up = max(0.0, np.ceil((low - slack - t) / _FULL_TURN))
+            down = max(0.0, np.ceil((t - high - slack) / _FULL_TURN))
+            here = float(t + (up - down) * _FULL_TURN)
+        return here if low - slack <= here <= high + slack else None
 
     def put_end(self, end: BranchEnd, branch: str) -> None:
         """A row of its own for the end of a branch, if its place lies in the table."""

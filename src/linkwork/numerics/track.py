@@ -178,6 +178,9 @@ def follow(
     for _ in range(opt.most_steps):
         rest = abs(goal - here.t)
         h = min(h, opt.largest_step * scale, rest, _room(here, sign, solver.variable_scale, scale))
+        if h < rest and h < opt.smallest_step * max(scale, abs(here.t)):
+            status = _kind_of_end(solver, start, here, scale)
+            return nodes, End(reached=here.t, failed=failed_at, status=status)
         t = goal if h == rest else here.t + sign * h
         following, correction = _step(solver, path, here, t, quick, opt)
         if following is None:
