@@ -54,8 +54,10 @@ def prove_curve(leads: Leads, curve: Curve) -> ProvenCurve:
     closed = False
     if curve.end.closed and own is not None and _provable(own):
         last = curve.legs[-1]
-        closed = same_solution(last.led, own, last.v[-1])
-        closed = closed and _meets(leads, own, curve.legs[0].v[0], last.v[-1])
+        first = curve.legs[0]
+        closed = same_solution(own, first.led, first.v[0])
+        closed = closed and same_solution(last.led, own, last.v[-1])
+        closed = closed and _meets(leads, own, first.v[0], last.v[-1])
     return ProvenCurve(legs=legs, joints=joints, closed=closed, steps=steps)
 
 
