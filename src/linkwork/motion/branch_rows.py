@@ -150,9 +150,8 @@ def _covering(
         return track
     # the other way around, from where the track stands there already
     if track.above is not None and track.below is None:
-        beyond = t[t > track.last_t]
-        if len(beyond):
-            goal = float(beyond.min()) - _FULL_TURN
+        goal = float((t - _turns_above(t, track.last_t) * _FULL_TURN).min())
+        if goal < track.first_t:
             nodes, end = follow(solver, path, track.nodes[0], goal, scale, care)
             return replace(
                 track,
@@ -161,24 +160,26 @@ def _covering(
                 below=end,
             )
     if track.below is not None and track.above is None:
-        beyond = t[t < track.first_t]
-        if len(beyond):
-            goal = float(beyond.max()) + _FULL_TURN
+        goal = float((t + _turns_above(track.first_t, t) * _FULL_TURN).max())
+        if goal > track.last_t:
             nodes, end = follow(solver, path, track.nodes[-1], goal, scale, care)
             return replace(track, nodes=(*track.nodes, *nodes), above=end)
     return track
 
 
+def _turns_above(t: Array | float, edge: Array | float) -> Array:
+    """How many whole turns down bring values that lie above an edge to it or below."""
+    turns: Array = np.maximum(np.ceil((np.asarray(t) - edge) / _FULL_TURN), 0.0)
+    return turns
+
+
 def _placed(track: Track, t: Array, free: bool) -> Array:
     """Where on the track each row lies, whole turns apart if need be; NaN if nowhere."""
-    placed = np.where((t >= track.first_t) & (t <= track.last_t), t, np.nan)
-    if not free:
-        return placed
-    for turns in (-1, 1, -2, 2):
+    moved = t
+    if free:
+        turns = _turns_above(track.first_t, t) - _turns_above(t, track.last_t)
         moved = t + turns * _FULL_TURN
-        inside = np.isnan(placed) & (moved >= track.first_t) & (moved <= track.last_t)
-        placed[inside] = moved[inside]
-    return placed
+    return np.where((moved >= track.first_t) & (moved <= track.last_t), moved, np.nan)
 
 
 def _solved(

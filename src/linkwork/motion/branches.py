@@ -108,15 +108,17 @@ def branches_of(leads: Leads, found: Traced, fine: int = 1) -> list[CurveBranch]
     for number, leg in enumerate(found.curve.legs):
         t, v, ratio = _samples(leads, leg, fine)
         sign = 1.0 if t[-1] >= t[0] else -1.0
-        for k in range(len(t)):
-            while waiting and waiting[0].leg == number and sign * (waiting[0].node.t - t[k]) < 0.0:
+        for k in range(len(t) + 1):  # behind the last position, too
+            here = sign * t[k] if k < len(t) else np.inf
+            while waiting and waiting[0].leg == number and sign * waiting[0].node.t < here:
                 turn = waiting.pop(0)
                 at = _Sample(v=turn.v, ratio=0.0, leader=leg.led, limit=LimitKind.DEAD_POINT.word)
                 pieces[-1].append(at)
                 ends.append(turn)
                 pieces.append([at])
                 proved.append(found.certified)
-            pieces[-1].append(_Sample(v=v[k], ratio=float(ratio[k]), leader=leg.led))
+            if k < len(t):
+                pieces[-1].append(_Sample(v=v[k], ratio=float(ratio[k]), leader=leg.led))
     crossing = found.curve.crossing
     if crossing is not None and found.curve.legs:
         led = found.curve.legs[-1].led

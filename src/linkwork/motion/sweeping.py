@@ -219,12 +219,7 @@ class _Sweep:
         track = self.branches[0].found.track
         anchor = track.nodes[track.start]
         if self.branches[0].found.proved_to_ends or not self.certify:
-            # the start may lie close to a dead point
-            weights = self.model.compiled.solver.variable_scale
-            anchor = min(
-                track.nodes,
-                key=lambda node: node.condition * np.abs(node.first / weights).max(),
-            )
+            anchor = min(track.nodes, key=self._steepness)
         around = further_branches(
             self.model, self.path, self.lead, anchor.v, asked, self.report, self.certify
         )
@@ -251,6 +246,11 @@ class _Sweep:
             for end in around.dead_points
             if end.v is not None and not any(self._same(end.v, v) for v in known)
         ]
+
+    def _steepness(self, node: Node) -> float:
+        """Large near dead points, where a single equation has no bad condition, and crossings."""
+        weights = self.model.compiled.table.variable_scale
+        return node.condition * float(np.abs(node.first / weights).max())
 
     def _same(self, a: Array, b: Array) -> bool:
         """Whether two positions (N,) are one, whole turns aside."""

@@ -29,6 +29,7 @@ __all__ = [
     "Led",
     "Leg",
     "apart",
+    "divided",
     "fastest_leader",
     "hermite",
     "same_position",
@@ -40,6 +41,9 @@ _SAME = 1e-6  # weighted distance below which two positions at one input can be 
 _ON_PLANE = 1e-11  # a value of the parameter this near, relative, is reached
 _LEG = 8.0  # natural sizes of the leader, after which a leg ends if nothing else ends it
 _UNIT = np.finfo(float).eps
+_DIVISIONS = 12  # halvings of a step in which a variable turns back several times
+_CUBIC = 1e-3  # relative error of a cubic that is good enough
+_SHARES = np.linspace(0.0625, 0.9375, 15)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -407,9 +411,16 @@ def _where(place: int, low: Node, high: Node, value: float) -> float:
 
 def _one_way(led: Led, place: int, before: Node, after: Node) -> list[Node]:
     """A step, divided where a variable turns back within it."""
-    low, high = before, after
-    if low.first[place] * high.first[place] >= 0.0:
-        return [before, after]
+    chain = [before]
+    for low, high in itertools.pairwise(divided(led, place, before, after)):
+        if low.first[place] * high.first[place] < 0.0:
+            chain.append(_turned(led, place, low, high))
+        chain.append(high)
+    return chain
+
+
+def _turned(led: Led, place: int, low: Node, high: Node) -> Node:
+    """Where a variable turns back between two nodes at which it goes opposite ways."""
     for _ in range(60):
         reach = min(abs(low.first[place]), abs(high.first[place])) * abs(high.t - low.t)
         if reach <= _UNIT:
@@ -422,10 +433,36 @@ def _one_way(led: Led, place: int, before: Node, after: Node) -> list[Node]:
             low = here
         else:
             high = here
-    return [before, min(low, high, key=lambda node: abs(float(node.first[place]))), after]
+    return min(low, high, key=lambda node: abs(float(node.first[place])))
 
 
-def hermite(s: float, h: float, v0: Array, d0: Array, v1: Array, d1: Array) -> Array:
+def divided(led: Led, place: int, a: Node, b: Node, depth: int = _DIVISIONS) -> list[Node]:
+    """A step, divided so finely that a variable turns back at most once in each piece.
+
+    Halved until the cubic through the variable's rates at both ends meets the rate halfway; then
+    divided where that cubic is zero more than once. What turns back and forth within less than the
+    cubic's error is not seen.
+    """
+    h = b.t - a.t
+    ends = (a.first[place], a.second[place], b.first[place], b.second[place])
+    middle = _node_between(led, a, b, 0.5) if h and depth else None
+    if middle is None:
+        return [a, b]
+    size = max(abs(ends[0]), abs(ends[2]), abs(middle.first[place]))
+    if size * abs(h) <= _ON_PLANE * max(1.0, abs(float(a.v[place]))):
+        return [a, b]  # it rests, to rounding
+    guesses = hermite(_SHARES, h, *ends)
+    off = abs(float(middle.first[place]) - float(hermite(0.5, h, *ends)))
+    signs = np.sign([ends[0], *guesses, ends[2]])
+    least = float(np.abs([ends[0], *guesses, ends[2]]).min())
+    once = np.count_nonzero(signs[1:] != signs[:-1]) <= 1
+    if once and (4.0 * off < least or off <= _CUBIC * size):
+        return [a, b]
+    left = divided(led, place, a, middle, depth - 1)
+    return [*left, *divided(led, place, middle, b, depth - 1)[1:]]
+
+
+def hermite(s: float | Array, h: float, v0: Array, d0: Array, v1: Array, d1: Array) -> Array:
     """The cubic through both ends of a step, at the fraction s of it."""
     rise = v1 - v0
     bend = 3.0 * rise - h * (2.0 * d0 + d1) + s * (h * (d0 + d1) - 2.0 * rise)

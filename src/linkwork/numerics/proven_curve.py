@@ -49,14 +49,25 @@ def prove_curve(leads: Leads, curve: Curve) -> ProvenCurve:
         for k, (leg, following) in enumerate(zip(curve.legs, curve.legs[1:], strict=False)):
             last = leg.v[-1]
             joints[k] = same_solution(leg.led, following.led, last)
-            joints[k] &= np.array_equal(last, following.v[0])
+            joints[k] &= np.array_equal(last, following.v[0]) and _goes_on(leads, leg, following)
     own = leads.by(leads.parameter)
     closed = False
     if curve.end.closed and own is not None and _provable(own):
         last = curve.legs[-1]
-        closed = same_solution(last.led, own, last.v[-1])
-        closed = closed and _meets(leads, own, curve.legs[0].v[0], last.v[-1])
+        first = curve.legs[0]
+        closed = same_solution(own, first.led, first.v[0])
+        closed = closed and same_solution(last.led, own, last.v[-1])
+        closed = closed and _meets(leads, own, first.v[0], last.v[-1])
     return ProvenCurve(legs=legs, joints=joints, closed=closed, steps=steps)
+
+
+def _goes_on(leads: Leads, leg: Leg, following: Leg) -> bool:
+    """Whether the next leg leaves in the direction in which a leg arrives."""
+    arrival, departure = (
+        np.sign(part.nodes[-1].t - part.nodes[0].t) * part.first[place] / leads.scale
+        for part, place in ((leg, -1), (following, 0))
+    )
+    return bool(arrival @ departure > 0.0)
 
 
 def _provable(led: Led) -> bool:

@@ -178,10 +178,14 @@ def follow(
     for _ in range(opt.most_steps):
         rest = abs(goal - here.t)
         room = _room(here, sign, solver.variable_scale, scale)
-        if room < opt.smallest_step * max(scale, abs(here.t)):
+        smallest = opt.smallest_step * max(scale, abs(here.t))
+        if room < smallest:
             status = _kind_of_end(solver, start, here, scale)
             return nodes, End(reached=here.t, failed=here.t + sign * 2.0 * room, status=status)
         h = min(h, opt.largest_step * scale, rest, room)
+        if h < rest and h < smallest:
+            status = _kind_of_end(solver, start, here, scale)
+            return nodes, End(reached=here.t, failed=failed_at, status=status)
         t = goal if h == rest else here.t + sign * h
         following, correction = _step(solver, path, here, t, quick, opt)
         if following is None:

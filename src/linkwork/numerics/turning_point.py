@@ -21,8 +21,8 @@ from linkwork.numerics.curve import (
     Leads,
     Led,
     Leg,
+    divided,
     fastest_leader,
-    hermite,
 )
 from linkwork.numerics.track import Node, follow, node_at
 
@@ -67,10 +67,15 @@ def turning_points(leads: Leads, curve: Curve) -> Iterator[TurningPoint]:
         for k, (a, b) in enumerate(itertools.pairwise(leg.nodes)):
             if max(abs(a.first[place]), abs(b.first[place])) < resting:
                 continue
-            chain = _divided(leg.led, a, b, place)
+            chain = divided(leg.led, place, a, b)
             for low, high in itertools.pairwise(chain):
-                if low.first[place] * high.first[place] < 0.0:
+                if _rises(low, place) is not _rises(high, place):
                     yield _refined(leads, leg.led, low, high, (number, k))
+
+
+def _rises(node: Node, place: int) -> bool:
+    """Whether the parameter grows with the leader; a rate of exactly zero counts as growing."""
+    return bool(node.first[place] >= 0.0)
 
 
 def turn_beyond(
@@ -112,27 +117,13 @@ def turn_beyond(
     if not nodes or nodes[-1].first[place] * node.first[place] > 0.0:
         return None
     before = nodes[-2] if len(nodes) > 1 else node
-    turn = _refined(leads, led, before, nodes[-1], (0, max(len(nodes) - 1, 0)))
+    pieces = itertools.pairwise(divided(led, place, before, nodes[-1]))
+    low, high = next(  # the first one, where there are several
+        pair for pair in pieces if pair[0].first[place] * pair[1].first[place] <= 0.0
+    )
+    turn = _refined(leads, led, low, high, (0, max(len(nodes) - 1, 0)))
     chain = (node, *nodes[:-1], turn.node) if turn.node.t != before.t else (node, *nodes[:-1])
     return Leg(led=led, nodes=chain), turn
-
-
-def _divided(led: Led, a: Node, b: Node, place: int) -> list[Node]:
-    """The step from a to b, divided if the parameter may turn back twice within it."""
-    h = b.t - a.t
-    ends = (a.first[place], a.second[place], b.first[place], b.second[place])
-    if ends[0] * ends[2] < 0.0:
-        return [a, b]
-    inside = [s for s in np.linspace(0.125, 0.875, 7) if hermite(s, h, *ends) * ends[0] <= 0.0]
-    if not inside:
-        return [a, b]
-    s = min(inside, key=lambda x: float(hermite(x, h, *ends) * ends[0]))
-    guess = hermite(s, h, a.v, a.first, b.v, b.first)
-    guess[-1] = a.t + s * h
-    found = led.solver.solve(guess[None, :])
-    if found.status[0] != _CONVERGED:
-        return [a, b]
-    return [a, node_at(led.solver, led.path, float(guess[-1]), found.v[0]), b]
 
 
 def _refined(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, int]) -> TurningPoint:

@@ -1,0 +1,74 @@
+"""Sweeps whose tables, dead points or equations are unusual."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from tests.oracles.four_bar import FourBar
+
+
+@pytest.mark.parametrize(
+    ("start", "stop", "reached"),
+    [(1090, 1400, 8), (-660, -400, 3), (-1400, -1000, 13), (-1080, 1080, 48), (500, 700, 0)],
+)
+def test_rows_whole_turns_away_are_reached_however_far(
+    start: float, stop: float, reached: int
+) -> None:
+    bar = FourBar(3.0, 2.6, 1.7, 2.2)  # between dead points at 6.2 and 88.0 degrees
+    mechanism = lw.linkage(
+        points=bar.points(np.radians(40.0), 1),
+        links={
+            "ground": ("O2", "O4"),
+            "crank": ("O2", "A"),
+            "coupler": ("A", "B"),
+            "rocker": ("O4", "B"),
+        },
+        inputs=lw.Input(link="crank"),
+    )
+    motion = mechanism.sweep(start=start, stop=stop, step=10)
+    assert motion.found[motion.asked].sum() == reached
+    assert motion.certified[motion.found].all()
+    exact = bar.coupler_end(np.radians(motion["crank"]), 1)
+    rows = motion.found & motion.asked
+    assert np.abs(motion["B.x"] + 1j * motion["B.y"] - exact)[rows].max(initial=0.0) < 1e-9
+    assert [limit.kind for limit in motion.limits] == [lw.LimitKind.DEAD_POINT] * 2
+
+
+def test_three_dead_points_within_one_degree_are_all_passed() -> None:
+    # the four-bar turns back at -70.59178 degrees; the dyad on it does at -70.68424, beyond that
+    mechanism = lw.loops(
+        loops={
+            "1": "1.1506868993121604*e^(i*t) + 1.4015301927498651*e^(i*p) "
+            "= 1.0168797508205394 + 2.6587007529023197*e^(i*q)",
+            "2": "1.1506868993121604*e^(i*t) + (1.5918774708532644 - i*2.2387661530443754)*e^(i*p) "
+            "+ 3.266084146225838*e^(i*x) "
+            "= -0.4233697291303557 + i*2.8947794769492443 + 1.531444418102215*e^(i*y)",
+        },
+        guess={"t": -80.3, "p": -162.8797, "q": 215.5748, "x": 84.4018, "y": 144.3598},
+        inputs=lw.Input(variable="t"),
+    )
+    (circuit, *others) = mechanism.circuits()
+    limits = sorted(limit.input for limit in circuit.dead_points)
+    assert limits == pytest.approx([-96.1064795848, -70.6842424005, -70.591779558, -70.591779558])
+    assert len(circuit.branches) == 4
+    assert all(other.input_range[1] > 0.0 for other in others)
+    motion = mechanism.sweep(start=-90, stop=-75, step=1)
+    assert motion.certified.all()
+    found = sorted(limit.input for limit in mechanism.sweep(through=True).limits)
+    assert found == pytest.approx(limits)
+
+
+def test_a_single_equation_is_followed_through_its_dead_points() -> None:
+    circle = lw.plain_equations(
+        equations={"F": "x^2 + y^2 - 1 = 0"},
+        guess={"x": 1, "y": 0.1},
+        inputs=lw.Input(variable="y", start=-2, stop=2, step=0.125),
+    )
+    motion = circle.sweep(through=True)
+    assert motion.circuit is lw.CircuitEnd.CLOSED
+    assert [limit.input for limit in motion.limits] == [-1.0, 1.0]
+    x, y = motion["x"][motion.found], motion["y"][motion.found]
+    assert np.abs(x * x + y * y - 1.0).max() < 1e-12
+    assert ((x > 1e-3).sum(), (x < -1e-3).sum()) == (15, 15)
