@@ -8,7 +8,7 @@ from collections import Counter
 import numpy as np
 
 import linkwork as lw
-from linkwork.motion.dead_inputs import DeadPointInputs, dead_point_inputs
+from linkwork.motion.circuit.dead_inputs import DeadPointInputs, dead_point_inputs
 from linkwork.motion.lock_step import lock_step
 from linkwork.numerics.track import InputPath
 from tests.campaigns.motion import FAMILIES, random_mechanism

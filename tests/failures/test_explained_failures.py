@@ -11,8 +11,8 @@ from click.testing import CliRunner
 
 import linkwork as lw
 from linkwork.cli.main import linkwork
-from linkwork.motion import failing
-from linkwork.motion.elsewhere import Elsewhere
+from linkwork.motion.failure import failing
+from linkwork.motion.failure.elsewhere import Elsewhere
 from tests.failures.test_positions_that_do_not_exist import four_bar
 
 EXACT = 1e-11  # relative: what closed form and fold differ by is rounding

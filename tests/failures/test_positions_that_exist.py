@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.motion.dyads import dyad_of
-from linkwork.motion.elsewhere import block_positions, positions_elsewhere
+from linkwork.motion.failure.dyads import dyad_of
+from linkwork.motion.failure.elsewhere import block_positions, positions_elsewhere
 from tests.oracles.four_bar import FourBar
 
 KINDS = {

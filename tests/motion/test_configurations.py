@@ -10,8 +10,8 @@ import pytest
 
 import linkwork as lw
 from linkwork import Completeness
-from linkwork.motion import assembling
-from linkwork.motion.assembling import positions_at
+from linkwork.motion.assembly import assembling
+from linkwork.motion.assembly.assembling import positions_at
 from linkwork.numerics import generic_roots, homotopy
 from tests.campaigns.configurations import judge_truss
 from tests.laws.mechanisms import NAMES, mechanism_of

@@ -8,7 +8,7 @@ import numpy as np
 
 import linkwork as lw
 from linkwork.kernels.loop_table import LinearRows
-from linkwork.motion.turned_slides import turned_slides
+from linkwork.motion.assembly.turned_slides import turned_slides
 
 
 def _shaper() -> lw.Mechanism:

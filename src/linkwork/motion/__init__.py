@@ -7,9 +7,13 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
+    from linkwork.motion.assembly.configurations import (
+        configurations,
+        solve_configuration,
+        started_in,
+    )
     from linkwork.motion.checking import check
-    from linkwork.motion.circuits import branch_start, circuits
-    from linkwork.motion.configurations import configurations, solve_configuration, started_in
+    from linkwork.motion.circuit.circuits import branch_start, circuits
     from linkwork.motion.model import Model, model_of
     from linkwork.motion.solving import solve
     from linkwork.motion.sweeping import sweep
@@ -17,9 +21,9 @@ else:
     __getattr__ = loader(
         __name__,
         {
+            "assembly.configurations": ("configurations", "solve_configuration", "started_in"),
             "checking": ("check",),
-            "circuits": ("branch_start", "circuits"),
-            "configurations": ("configurations", "solve_configuration", "started_in"),
+            "circuit.circuits": ("branch_start", "circuits"),
             "model": ("Model", "model_of"),
             "solving": ("solve",),
             "sweeping": ("sweep",),

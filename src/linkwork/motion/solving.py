@@ -11,7 +11,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
-from linkwork.motion.failing import another_root, beyond_reach, without_start
+from linkwork.motion.failure.failing import another_root, beyond_reach, without_start
 from linkwork.motion.limits import ends_of
 from linkwork.motion.model import Model
 from linkwork.motion.positions import (

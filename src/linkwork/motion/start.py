@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
-from linkwork.motion.failing import no_position
+from linkwork.motion.failure.failing import no_position
 from linkwork.motion.model import Model
 from linkwork.numerics.newton import NewtonOptions, Watch
 from linkwork.results.failure import Failure

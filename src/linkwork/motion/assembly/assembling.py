@@ -21,9 +21,9 @@ from linkwork.foundation.arrays import (
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.status import Status
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.motion.configuration_names import combined_name, ordered
+from linkwork.motion.assembly.configuration_names import combined_name, ordered
+from linkwork.motion.assembly.turned_slides import TurnedSlide, turned_slides
 from linkwork.motion.model import Model
-from linkwork.motion.turned_slides import TurnedSlide, turned_slides
 from linkwork.numerics.bilinear import proved_roots
 from linkwork.numerics.bilinear_family import bilinear_roots
 from linkwork.numerics.block_solver import Block, linearised

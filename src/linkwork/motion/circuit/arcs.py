@@ -14,7 +14,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
-from linkwork.motion.branches import CurveBranch, Traced, branches_of, traced
+from linkwork.motion.circuit.branches import CurveBranch, Traced, branches_of, traced
 from linkwork.numerics.change_point import ChangePoint, Crossing
 from linkwork.numerics.curve import Leads, Led, apart, fastest_leader, same_position
 

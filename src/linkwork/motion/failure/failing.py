@@ -10,13 +10,13 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.newton_trouble import NewtonTrouble
 from linkwork.foundation.status import Status
-from linkwork.motion.dyads import dyad_of
-from linkwork.motion.elsewhere import ElsewhereAt, block_positions, positions_elsewhere
+from linkwork.motion.failure.dyads import dyad_of
+from linkwork.motion.failure.elsewhere import ElsewhereAt, block_positions, positions_elsewhere
+from linkwork.motion.failure.newton_reasons import Miss, miss_of, root_beside_guess, trouble_of
+from linkwork.motion.failure.reach import MOST_UNKNOWNS, Reach, assembled_near, reach_towards
+from linkwork.motion.failure.remedies import remedies_of
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
-from linkwork.motion.newton_reasons import Miss, miss_of, root_beside_guess, trouble_of
-from linkwork.motion.reach import MOST_UNKNOWNS, Reach, assembled_near, reach_towards
-from linkwork.motion.remedies import remedies_of
 from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.block_solver import Block
 from linkwork.numerics.newton import NewtonOptions

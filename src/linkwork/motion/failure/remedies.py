@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.motion.dyads import dyad_of
-from linkwork.motion.lengths import ChangeableLength, lengths_of, model_with
+from linkwork.motion.failure.dyads import dyad_of
+from linkwork.motion.failure.lengths import ChangeableLength, lengths_of, model_with
 from linkwork.motion.model import Model
 from linkwork.numerics.fold import Family, locate_fold
 from linkwork.numerics.joined import JoinedBlocks, closure_of

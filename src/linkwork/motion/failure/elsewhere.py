@@ -11,8 +11,8 @@ from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.status import Status
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.motion.assembling import positions_at
-from linkwork.motion.dyads import dyad_of
+from linkwork.motion.assembly.assembling import positions_at
+from linkwork.motion.failure.dyads import dyad_of
 from linkwork.motion.model import Model
 from linkwork.numerics.block_solver import Block
 from linkwork.numerics.newton import NewtonOptions, newton

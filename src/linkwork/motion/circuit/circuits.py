@@ -14,14 +14,14 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.status import Status
-from linkwork.motion.arcs import Arc, Explorer, positions_near
-from linkwork.motion.branches import CurveBranch
+from linkwork.motion.circuit.arcs import Arc, Explorer, positions_near
+from linkwork.motion.circuit.branches import CurveBranch
+from linkwork.motion.circuit.seeding import Seeding
 from linkwork.motion.limits import change_point_limit, dead_point_limit
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import motion_of_rows
 from linkwork.motion.rows import SolvedRows
-from linkwork.motion.seeding import Seeding
 from linkwork.numerics.change_point import Crossing
 from linkwork.numerics.curve import same_position
 from linkwork.numerics.track import InputPath

@@ -9,10 +9,10 @@ import numpy as np
 from linkwork.equations.leading import LeadTable
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.completeness import Completeness
-from linkwork.motion.arcs import Explorer
-from linkwork.motion.assembling import Assemblies, positions_at
-from linkwork.motion.dead_inputs import DeadPointInputs, dead_point_inputs
-from linkwork.motion.intervals import Interval, intervals_between
+from linkwork.motion.assembly.assembling import Assemblies, positions_at
+from linkwork.motion.circuit.arcs import Explorer
+from linkwork.motion.circuit.dead_inputs import DeadPointInputs, dead_point_inputs
+from linkwork.motion.circuit.intervals import Interval, intervals_between
 from linkwork.motion.model import Model
 from linkwork.motion.start import first_position
 from linkwork.motion.tracking import turns_freely

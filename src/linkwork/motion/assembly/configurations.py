@@ -12,8 +12,8 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import InputError, NotConvergedError, UnknownNameError, choices
 from linkwork.foundation.status import Status
-from linkwork.motion.assembling import Assemblies, positions_at
-from linkwork.motion.circuits import branch_start, is_branch_name
+from linkwork.motion.assembly.assembling import Assemblies, positions_at
+from linkwork.motion.circuit.circuits import branch_start, is_branch_name
 from linkwork.motion.model import Model
 from linkwork.motion.positions import (
     Evidence,

@@ -1,0 +1,1 @@
+"""Every way to put a mechanism together at one input."""

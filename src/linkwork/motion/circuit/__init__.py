@@ -1,0 +1,1 @@
+"""Circuits and branches: what can be reached without taking the mechanism apart."""

@@ -1,0 +1,1 @@
+"""Why there is no position, and what would help."""
