@@ -301,7 +301,10 @@ def test_sweep_tells_which_ways_and_names_there_are(run: Run) -> None:
     assert "'strait' is not one of 'stop', 'straight', 'turn'." in way.stderr
     name = run("sweep", "parallelogram.toml", "--limits-of", "roker")
     assert name.exit_code == 2
-    assert name.stderr == 'Error: there is no "roker" (names: rocker, coupler, crank)\n'
+    assert name.stderr == (
+        'Error: there is no "roker" (names: rocker, coupler, crank, O2.x, O2.y, A.x, A.y,\n'
+        "  B.x, … 3 more)\n"
+    )
 
 
 def test_sweep_gives_the_range_of_unknowns_outputs_and_traced_points(run: Run) -> None:
