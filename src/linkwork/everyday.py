@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from linkwork import drawing, motion, textfile
 from linkwork import equations as closure
@@ -21,11 +21,13 @@ from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.parts import Number
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.results.check import CheckReport
-from linkwork.results.circuits import Circuits
-from linkwork.results.configurations import Configurations
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
+
+if TYPE_CHECKING:
+    from linkwork.results.check import CheckReport
+    from linkwork.results.circuits import Circuits
+    from linkwork.results.configurations import Configurations
 
 __all__ = [
     "Mechanism",

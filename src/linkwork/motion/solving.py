@@ -11,8 +11,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
-from linkwork.motion.failure.failing import another_root, beyond_reach, without_start
-from linkwork.motion.limits import ends_of
+from linkwork.motion import failure as why
 from linkwork.motion.model import Model
 from linkwork.motion.positions import (
     Evidence,
@@ -81,7 +80,7 @@ def solve(
             and not from_guess
             and not np.array_equal(inputs, model.start_inputs)
         ):
-            failure = without_start(model, failure, inputs)
+            failure = why.without_start(model, failure, inputs)
         position = _failed(model, target, start.status, failure, start)
     elif from_guess or np.array_equal(inputs, model.start_inputs):
         position = _arrived(model, target, start, certify)
@@ -125,7 +124,7 @@ def _arrived(model: Model, target: Array, start: Start, certify: bool) -> Positi
     )
     track = Track(nodes=(node,), start=0)
     place = _Place(path=path, track=track, t=t, asked=target)
-    return _from_row(model, target, place, rows, start, certify, another_root(model, start.v))
+    return _from_row(model, target, place, rows, start, certify, _other_root(model, start.v))
 
 
 def _followed(model: Model, target: Array, start: Start, certify: bool) -> Position:
@@ -148,12 +147,12 @@ def _followed(model: Model, target: Array, start: Start, certify: bool) -> Posit
         track = track_to(solver, path, first, [t], scale)
         if not track.ends:
             break
-        met = _limits(model, path, track, lead)
+        met = why.limits_met(model, path, track, lead)
         limits += tuple(limit for limit in met if limit.input not in [old.input for old in limits])
     else:
         reasons = {limit.status for limit in limits}
         status = reasons.pop() if len(reasons) == 1 else limits[0].status
-        failure = beyond_reach(model, start.v, (path, lead, goal), status, limits)
+        failure = why.beyond_reach(model, start.v, (path, lead, goal), status, limits)
         return _failed(model, target, status, failure, start)
     rows = rows_on_track(solver, path, track, np.array([t]), scale)
     place = _Place(
@@ -175,8 +174,18 @@ def _turns_away(model: Model, way: float) -> list[int]:
     return list(dict.fromkeys([0, whole, whole + int(np.copysign(1.0, way))]))
 
 
-def _limits(model: Model, path: InputPath, track: Track, lead: int) -> tuple[Limit, ...]:
-    return tuple(end.limit for end in ends_of(model, path, track, lead))
+def _other_root(model: Model, found: Array) -> Failure | None:
+    """What to say of a position (N,) on the other side of the guess: det J has another sign."""
+    solver = model.compiled.solver
+    here = found.copy()
+    here[: solver.unknowns] = model.equations.start[: solver.unknowns]
+    for block in solver.blocks:
+        both = np.stack([here, found])[:, block.variables]
+        slopes = block.system.jacobian(both)[:, :, : len(block.unknowns)]
+        if np.prod(np.sign(np.linalg.det(slopes))) <= 0.0:
+            return why.another_root(model, found)
+        here[block.unknowns] = found[block.unknowns]
+    return None
 
 
 def _input_weights(model: Model) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
-from linkwork.motion.failure.failing import no_position
+from linkwork.motion import failure as why
 from linkwork.motion.model import Model
 from linkwork.numerics.newton import NewtonOptions, Watch
 from linkwork.results.failure import Failure
@@ -47,7 +47,7 @@ def first_position(
     status = Status.of_code(int(done.status[0]))
     failure = None
     if not status.ok:
-        status, failure = no_position(model, v, status, int(done.failed_block[0]), options)
+        status, failure = why.no_position(model, v, status, int(done.failed_block[0]), options)
     trails = []
     for k, watcher in enumerate(watchers):
         if watcher.steps:

@@ -15,12 +15,13 @@ from linkwork.motion.failure.elsewhere import ElsewhereAt, block_positions, posi
 from linkwork.motion.failure.newton_reasons import Miss, miss_of, root_beside_guess, trouble_of
 from linkwork.motion.failure.reach import MOST_UNKNOWNS, Reach, assembled_near, reach_towards
 from linkwork.motion.failure.remedies import remedies_of
+from linkwork.motion.limits import ends_of
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.block_solver import Block
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.track import InputPath
+from linkwork.numerics.track import InputPath, Track
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit
 from linkwork.results.quantity import Kind
@@ -118,6 +119,11 @@ def another_root(model: Model, found: Array) -> Failure | None:
             )
         here[block.unknowns] = found[block.unknowns]
     return None
+
+
+def limits_met(model: Model, path: InputPath, track: Track, lead: int) -> tuple[Limit, ...]:
+    """Where a track ended before its goals, lower end first."""
+    return tuple(end.limit for end in ends_of(model, path, track, lead))
 
 
 def beyond_reach(
