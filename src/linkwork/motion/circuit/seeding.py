@@ -17,7 +17,7 @@ from linkwork.motion.model import Model
 from linkwork.motion.start import first_position
 from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.track import InputPath
+from linkwork.numerics.track import InputPath, TrackOptions
 
 __all__ = ["Seeding"]
 
@@ -46,7 +46,7 @@ class Seeding:
         """Seed with the guess, the configurations at its input, and those between dead points."""
         model = self.model
         start = first_position(model, model.start_inputs, NewtonOptions())
-        if start.status.ok and self._regular(start.v):
+        if start.status.ok and self._regular(start.v, TrackOptions().largest_condition):
             self.explorer.visit(start.v)
         value = float(model.start_inputs[self.lead])
         found = positions_at(model, self.path.at(value))
@@ -90,10 +90,11 @@ class Seeding:
         self.seeded += 1
         return found.completeness.complete and all(regular)
 
-    def _regular(self, v: Array) -> bool:
+    def _regular(self, v: Array, most: float | None = None) -> bool:
         """Whether the input can lead at a position: not at dead points and change points."""
         own = self.leads.by(self.leads.parameter)
-        return own is not None and own.node(v).condition < _REGULAR
+        largest = _REGULAR if most is None else most
+        return own is not None and own.node(v).condition < largest
 
     def _further_inputs(self, start: float) -> list[float]:
         """Equally spaced over a turn, or over the input's table."""
