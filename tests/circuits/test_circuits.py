@@ -132,6 +132,8 @@ def test_a_kite_moves_while_its_crank_stands_still() -> None:
     assert circuit.end is lw.CircuitEnd.CHANGE_POINT
     spans = [high - low for low, high in (branch.input_range for branch in circuit.branches)]
     assert sorted(np.round(spans, 6).tolist()) == [0.0, 0.0, 360.0, 360.0]
+    rest = lw.CircuitEnd.INPUT_CONSTANT
+    assert [branch.end is rest for branch in circuit.branches] == [span < 1e-6 for span in spans]
 
 
 def test_a_length_that_grows_without_bound_ends_a_circuit() -> None:

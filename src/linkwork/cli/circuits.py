@@ -23,6 +23,7 @@ from linkwork.cli.terminal import (
 )
 from linkwork.cli.text_table import Column, short, table_lines
 from linkwork.drawing.chart import circuit_chart
+from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import InputError
 from linkwork.results.circuits import Circuit, Circuits
 
@@ -123,6 +124,13 @@ def _facts(found: Circuits, circuit: Circuit) -> Iterator[tuple[str, str]]:
     yield ("closed" if circuit.closed else "not closed"), f"{circuit.end.story}; {proof}"
     if circuit.closed:
         yield from _turning(circuit)
+    resting = [
+        branch.name.removeprefix(f"{circuit.name} ")
+        for branch in circuit.branches
+        if branch.end is CircuitEnd.INPUT_CONSTANT
+    ]
+    if resting:
+        yield "input at rest", f"along {', '.join(resting)} {CircuitEnd.INPUT_CONSTANT.story}"
     for limit in (*circuit.dead_points, *circuit.change_points):
         yield limit.kind.word, limit_text(limit, found.input, found.input_unit)
     if not (circuit.dead_points or circuit.change_points):

@@ -33,12 +33,15 @@ class Branch:
         The name of its configuration at the guess's own input, "" if it does not come by there.
     certified : bool
         Whether the way to it and along it is proved.
+    end : CircuitEnd
+        How the curve that it is a part of ends; ``INPUT_CONSTANT`` if the input rests all along.
     """
 
     name: str
     input_range: tuple[float, float]
     configuration: str
     certified: bool
+    end: CircuitEnd
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -182,6 +185,7 @@ def _circuit_data(circuit: Circuit) -> dict[str, Any]:
                 "input_range": list(branch.input_range),
                 "configuration": branch.configuration,
                 "certified": branch.certified,
+                "end": branch.end.name,
             }
             for branch in circuit.branches
         ],

@@ -167,6 +167,7 @@ class _Circuits:
             input_range=(_tidy(low / scale), _tidy(high / scale)),
             configuration=self._configuration_on(branch),
             certified=arc.certified,
+            end=arc.end,
         )
 
     def _configuration_on(self, branch: CurveBranch) -> str:
