@@ -16,7 +16,7 @@ from linkwork.results.failure import Failure
 from linkwork.results.motion import Series
 from linkwork.results.position import Certificate, NewtonTrail, Position
 
-__all__ = ["Evidence", "found_message", "input_rate", "position_of", "target_values"]
+__all__ = ["Evidence", "Found", "found_message", "input_rate", "position_of", "target_values"]
 
 _HOPELESS = 1e12  # condition beyond which derivatives mean nothing
 _SINGULAR = (
@@ -38,6 +38,17 @@ class Evidence:
     trails: tuple[NewtonTrail, ...] = ()
     configuration: str = ""
     failure: Failure | None = None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Found:
+    """A position that was found (or not, as ``status`` tells): variables v (N,) and evidence."""
+
+    v: Array
+    status: Status
+    residual: float
+    iterations: int
+    certificate: Certificate
 
 
 def found_message(status: Status, condition: float, failure: Failure | None = None) -> str:

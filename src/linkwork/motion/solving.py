@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,23 +11,21 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
 from linkwork.motion import failure as why
+from linkwork.motion import following
 from linkwork.motion.model import Model
 from linkwork.motion.positions import (
     Evidence,
+    Found,
     found_message,
     input_rate,
     position_of,
     target_values,
 )
-from linkwork.motion.proving import prove_rows
 from linkwork.motion.reading import named_series
 from linkwork.motion.start import Start, first_position
-from linkwork.motion.tracking import leading_scale, track_to, turns_freely
-from linkwork.motion.whole_turns import laps_to
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.track import InputPath, Rows, Track, node_at, rows_on_track
+from linkwork.numerics.proof import prove, rounding_of_inputs
 from linkwork.results.failure import Failure
-from linkwork.results.motion import Limit
 from linkwork.results.position import Certificate, Position
 
 __all__ = ["solve"]
@@ -83,95 +80,43 @@ def solve(
             failure = why.without_start(model, failure, inputs)
         position = _failed(model, target, start.status, failure, start)
     elif from_guess or np.array_equal(inputs, model.start_inputs):
-        position = _arrived(model, target, start, certify)
+        found = _arrived(model, start, certify)
+        position = _position(model, target, found, start, _other_root(model, start.v))
     else:
-        position = _followed(model, target, start, certify)
+        reached = following.followed(model, start.v, target, certify)
+        if isinstance(reached, following.OutOfReach):
+            position = _failed(model, target, reached.status, reached.failure, start)
+        else:
+            position = _position(model, target, reached, start)
     if throw and not position.status.ok:
         raise NotConvergedError(position.message)
     return position
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Place:
-    """Where on a track the position lies.
-
-    ``asked`` (p,): the input values meant there, everyday units, whole turns aside. ``gain`` (N,):
-    what whole turns that were left out add to the variables; ``joined``: whether they are proved.
-    """
-
-    path: InputPath
-    track: Track
-    t: float
-    asked: Array
-    gain: Array | None = None
-    joined: bool = True
-
-
-def _arrived(model: Model, target: Array, start: Start, certify: bool) -> Position:
+def _arrived(model: Model, start: Start, certify: bool) -> Found:
     """The start itself is the position asked for."""
-    solver = model.compiled.solver
-    own = start.v[solver.unknowns :]
-    lead = int(np.argmax(input_rate(model) == 1.0)) if len(own) else 0
-    t = float(own[lead]) if len(own) else 0.0
-    path = InputPath(origin=own - input_rate(model) * t, rate=input_rate(model))
-    node = node_at(solver, path, t, start.v)
-    rows = Rows(
-        v=start.v[None, :],
-        status=np.array([Status.CONVERGED.code], dtype=np.int8),
-        iterations=np.array([start.iterations]),
-        residual=np.array([start.residual]),
-        rates=solver.rates(start.v[None, :], input_rate(model)),
+    return Found(
+        v=start.v,
+        status=start.status,
+        residual=start.residual,
+        iterations=start.iterations,
+        certificate=_certificate(model, start.v) if certify else Certificate(),
     )
-    track = Track(nodes=(node,), start=0)
-    place = _Place(path=path, track=track, t=t, asked=target)
-    return _from_row(model, target, place, rows, start, certify, _other_root(model, start.v))
 
 
-def _followed(model: Model, target: Array, start: Start, certify: bool) -> Position:
-    """Along the straight line from the guess's inputs to the target."""
+def _certificate(model: Model, v: Array) -> Certificate:
+    """Of one position (N,) that nothing was followed to."""
     solver = model.compiled.solver
-    origin = model.start_inputs
-    laps = laps_to(model, start.v, target)
-    asked = target if laps is None else laps.inputs
-    inputs = asked * model.input_scale
-    span = inputs - origin
-    lead = int(np.argmax(np.abs(span / _input_weights(model))))
-    scale = leading_scale(model, lead)
-    rate = span / span[lead]
-    path = InputPath(origin=origin - rate * origin[lead], rate=rate)
-    first = node_at(solver, path, float(origin[lead]), start.v)
-    goal = float(inputs[lead])
-    limits: tuple[Limit, ...] = ()
-    for turns in _turns_away(model, goal - first.t):
-        t = goal - turns * 2.0 * np.pi
-        track = track_to(solver, path, first, [t], scale)
-        if not track.ends:
-            break
-        met = why.limits_met(model, path, track, lead)
-        limits += tuple(limit for limit in met if limit.input not in [old.input for old in limits])
-    else:
-        reasons = {limit.status for limit in limits}
-        status = reasons.pop() if len(reasons) == 1 else limits[0].status
-        failure = why.beyond_reach(model, start.v, (path, lead, goal), status, limits)
-        return _failed(model, target, status, failure, start)
-    rows = rows_on_track(solver, path, track, np.array([t]), scale)
-    place = _Place(
-        path=path,
-        track=track,
-        t=t,
-        asked=asked - (turns * model.units.angle.turn if turns else 0.0),
-        gain=None if laps is None else laps.gain,
-        joined=laps is None or laps.proved,
+    if not all(block.system.bends_boundedly for block in solver.blocks):
+        return Certificate(certification=Certification.NO_BOUND)
+    proof = prove(solver, v[None, :], rounding_of_inputs(v[None, :], solver.unknowns))
+    if not proof.holds[0]:
+        return Certificate(certification=Certification.POSITION_NOT_PROVED)
+    return Certificate(
+        certification=Certification.CERTIFIED,
+        radius=float(proof.radius[0]),
+        unique_within=float(proof.alone_within[0]),
     )
-    return _from_row(model, target, place, rows, start, certify)
-
-
-def _turns_away(model: Model, way: float) -> list[int]:
-    """By how many whole turns to come short of a value this far away [rad], in order of trial."""
-    if not turns_freely(model):
-        return [0]
-    whole = int(way / (2.0 * np.pi))
-    return list(dict.fromkeys([0, whole, whole + int(np.copysign(1.0, way))]))
 
 
 def _other_root(model: Model, found: Array) -> Failure | None:
@@ -186,10 +131,6 @@ def _other_root(model: Model, found: Array) -> Failure | None:
             return why.another_root(model, found)
         here[block.unknowns] = found[block.unknowns]
     return None
-
-
-def _input_weights(model: Model) -> Array:
-    return model.compiled.solver.variable_scale[model.compiled.solver.unknowns :]
 
 
 def _failed(
@@ -210,43 +151,24 @@ def _failed(
     return position_of(model, named, 0, evidence, nothing[0, : model.compiled.solver.unknowns])
 
 
-def _from_row(
-    model: Model,
-    target: Array,
-    place: _Place,
-    rows: Rows,
-    start: Start,
-    certify: bool,
-    failure: Failure | None = None,
+def _position(
+    model: Model, target: Array, found: Found, start: Start, failure: Failure | None = None
 ) -> Position:
-    """The one row of a batch as a position, with its certificate."""
+    """What was found, named and with its derivatives."""
     solver = model.compiled.solver
-    certificate = Certificate()
-    if certify:
-        asked = (place.asked * model.input_scale)[None, :]
-        proofs = prove_rows(solver, place.path, place.track, np.array([place.t]), rows, asked)
-        proved = bool(np.isfinite(proofs.radius[0]))
-        certification = Certification.of_code(int(proofs.code[0]))
-        if certification is Certification.CERTIFIED and not place.joined:
-            certification = Certification.MOTION_NOT_PROVED
-        certificate = Certificate(
-            certification=certification,
-            radius=float(proofs.radius[0]) if proved else None,
-            unique_within=float(proofs.unique[0]) if proved else None,
-        )
-    status = Status.of_code(int(rows.status[0]))
-    rates = solver.rates(rows.v, input_rate(model))
-    found = np.array([status.ok])
-    v = rows.v if place.gain is None else rows.v + place.gain
-    named = named_series(model, v, rates.first, rates.second, target[None, :], found)
+    v = found.v[None, :]
+    rates = solver.rates(v, input_rate(model))
+    ok = np.array([found.status.ok])
+    named = named_series(model, v, rates.first, rates.second, target[None, :], ok)
+    condition = float(rates.condition[0])
     evidence = Evidence(
-        status=status,
-        message=found_message(status, float(rates.condition[0]), failure),
-        residual=float(rows.residual[0]),
-        iterations=int(rows.iterations[0]),
-        condition=float(rates.condition[0]),
-        certificate=certificate,
+        status=found.status,
+        message=found_message(found.status, condition, failure),
+        residual=found.residual,
+        iterations=found.iterations,
+        condition=condition,
+        certificate=found.certificate,
         trails=start.trails,
         failure=failure,
     )
-    return position_of(model, named, 0, evidence, v[0, : solver.unknowns])
+    return position_of(model, named, 0, evidence, found.v[: solver.unknowns])

@@ -1,0 +1,14 @@
+"""A position at another input value than the guess's: loaded only when one is asked for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwork.foundation.lazy import loader
+
+if TYPE_CHECKING:
+    from linkwork.motion.following.to_value import OutOfReach, followed
+else:
+    __getattr__ = loader(__name__, {"to_value": ("OutOfReach", "followed")})
+
+__all__ = ["OutOfReach", "followed"]

@@ -1,0 +1,119 @@
+"""The branch of a position followed to one other input value."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.certification import Certification
+from linkwork.foundation.status import Status
+from linkwork.motion import failure as why
+from linkwork.motion.following.whole_turns import Laps, laps_to
+from linkwork.motion.model import Model
+from linkwork.motion.positions import Found
+from linkwork.motion.proving import prove_rows
+from linkwork.motion.tracking import leading_scale, track_to, turns_freely
+from linkwork.numerics.track import InputPath, Rows, Track, node_at, rows_on_track
+from linkwork.results.failure import Failure
+from linkwork.results.motion import Limit
+from linkwork.results.position import Certificate
+
+__all__ = ["OutOfReach", "followed"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutOfReach:
+    """The branch ends before the value asked; ``failure`` explains it."""
+
+    status: Status
+    failure: Failure | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Place:
+    """Where on a track the position lies; ``asked`` (p,): the input values meant there, everyday
+    units, whole turns aside.
+    """
+
+    path: InputPath
+    track: Track
+    t: float
+    asked: Array
+
+
+def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | OutOfReach:
+    """The position at another input value, along the straight line from the guess's inputs.
+
+    Parameters
+    ----------
+    v : (N,)
+        The position at the guess's own input value.
+    target : (p,)
+        The value asked, everyday units.
+    """
+    solver = model.compiled.solver
+    origin = model.start_inputs
+    laps = laps_to(model, v, target)
+    asked = target if laps is None else laps.inputs
+    inputs = asked * model.input_scale
+    span = inputs - origin
+    weights = solver.variable_scale[solver.unknowns :]
+    lead = int(np.argmax(np.abs(span / weights)))
+    scale = leading_scale(model, lead)
+    rate = span / span[lead]
+    path = InputPath(origin=origin - rate * origin[lead], rate=rate)
+    first = node_at(solver, path, float(origin[lead]), v)
+    goal = float(inputs[lead])
+    limits: tuple[Limit, ...] = ()
+    for turns in _turns_away(model, goal - first.t):
+        t = goal - turns * 2.0 * np.pi
+        track = track_to(solver, path, first, [t], scale)
+        if not track.ends:
+            break
+        met = why.limits_met(model, path, track, lead)
+        limits += tuple(limit for limit in met if limit.input not in [old.input for old in limits])
+    else:
+        reasons = {limit.status for limit in limits}
+        status = reasons.pop() if len(reasons) == 1 else limits[0].status
+        failure = why.beyond_reach(model, v, (path, lead, goal), status, limits)
+        return OutOfReach(status=status, failure=failure)
+    rows = rows_on_track(solver, path, track, np.array([t]), scale)
+    place = _Place(
+        path=path,
+        track=track,
+        t=t,
+        asked=asked - (turns * model.units.angle.turn if turns else 0.0),
+    )
+    return Found(
+        v=rows.v[0] if laps is None else rows.v[0] + laps.gain,
+        status=Status.of_code(int(rows.status[0])),
+        residual=float(rows.residual[0]),
+        iterations=int(rows.iterations[0]),
+        certificate=_certificate(model, place, rows, laps) if certify else Certificate(),
+    )
+
+
+def _turns_away(model: Model, way: float) -> list[int]:
+    """By how many whole turns to come short of a value this far away [rad], in order of trial."""
+    if not turns_freely(model):
+        return [0]
+    whole = int(way / (2.0 * np.pi))
+    return list(dict.fromkeys([0, whole, whole + int(np.copysign(1.0, way))]))
+
+
+def _certificate(model: Model, place: _Place, rows: Rows, laps: Laps | None) -> Certificate:
+    """Of the position and of the way to it."""
+    asked = (place.asked * model.input_scale)[None, :]
+    at = np.array([place.t])
+    proofs = prove_rows(model.compiled.solver, place.path, place.track, at, rows, asked)
+    proved = bool(np.isfinite(proofs.radius[0]))
+    certification = Certification.of_code(int(proofs.code[0]))
+    if certification is Certification.CERTIFIED and laps is not None and not laps.proved:
+        certification = Certification.MOTION_NOT_PROVED
+    return Certificate(
+        certification=certification,
+        radius=float(proofs.radius[0]) if proved else None,
+        unique_within=float(proofs.unique[0]) if proved else None,
+    )
