@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.equations.model import LoopEquations, Term
+from linkwork.equations.model import LawEquation, LoopEquations, Term
 from linkwork.equations.real_rows import FormulaRow
 from linkwork.expression.jets import Jet, evaluate
 from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.names import canonical
+from linkwork.kernels.law_row import LawRow
 from linkwork.kernels.loop_table import LinearRows, LoopTable, TableSplitter
 from linkwork.kernels.phasor_rows import PhasorRows
 from linkwork.numerics.block_solver import Block, BlockSolver
@@ -153,8 +154,10 @@ def _table(equations: LoopEquations, index: Mapping[str, int]) -> LoopTable:
         for name, weight in equation.terms
     ]
     scale = equations.length_scale
-    functions = tuple(_formula_row(e.left, e.right, equations, index) for e in equations.real)
-    sizes, amounts = _plain_scales(equations, functions)
+    formulas = tuple(_formula_row(e.left, e.right, equations, index) for e in equations.real)
+    sizes, amounts = _plain_scales(equations, formulas)
+    laws = tuple(_law_row(law, index) for law in equations.laws)
+    law_sizes = [scale if law.kind == "length" else 1.0 for law in equations.laws]
     weights = [
         {"length": scale, "angle": 1.0}.get(v.kind, float(amount))
         for v, amount in zip(equations.variables, amounts, strict=True)
@@ -168,12 +171,28 @@ def _table(equations: LoopEquations, index: Mapping[str, int]) -> LoopTable:
             variable=np.array([k for _, k, _ in linear_entries], dtype=np.intp),
             weight=np.array([w for _, _, w in linear_entries], dtype=float),
         ),
-        functions=functions,
+        functions=(*formulas, *laws),
         equation_scale=np.array(
-            [scale] * (2 * len(equations.loops)) + [1.0] * len(equations.linear) + sizes.tolist()
+            [scale] * (2 * len(equations.loops))
+            + [scale if e.kind == "length" else 1.0 for e in equations.linear]
+            + sizes.tolist()
+            + law_sizes
         ),
         variable_scale=np.array(weights, dtype=float),
         turns=np.array([v.kind == "angle" for v in equations.variables], dtype=bool),
+    )
+
+
+def _law_row(law: LawEquation, index: Mapping[str, int]) -> LawRow:
+    weights, inner = dict(law.terms), dict(law.inner)
+    names = list(dict.fromkeys([*weights, *inner]))
+    return LawRow(
+        variables=tuple(index[name] for name in names),
+        weights=np.array([weights.get(name, 0.0) for name in names]),
+        constant=law.constant,
+        law=law.law,
+        inner=np.array([inner.get(name, 0.0) for name in names]),
+        offset=law.offset,
     )
 
 

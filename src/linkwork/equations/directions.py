@@ -165,7 +165,8 @@ def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
         If it has none.
     """
     if table.functions:
-        raise NoDirectionForm("are plain equations, not loops")
+        cams = table.bends_boundedly
+        raise NoDirectionForm("contain a cam or a curve" if cams else "are plain equations")
     n, loops = table.unknowns, table.loops
     turning = np.flatnonzero(table.turns[:n])
     sliding = np.flatnonzero(~table.turns[:n])
@@ -219,19 +220,7 @@ def _solved_lines(
         raise NoDirectionForm("tie an angle to a length, as racks and rolling do")
     own = rows[:, turning].copy()
     rest = np.concatenate([rows[:, n:-1], rows[:, -1:]], axis=1)
-    pivots: list[int] = []
-    for k in range(len(own)):
-        units = [j for j in range(own.shape[1]) if abs(abs(own[k, j]) - 1.0) <= _WHOLE]
-        if not units:
-            raise NoDirectionForm("tie angles by ratios other than 1, as gears do")
-        j = units[0]
-        pivots.append(j)
-        own[k], rest[k] = own[k] / own[k, j], rest[k] / own[k, j]
-        for other in range(len(own)):
-            if other != k and own[other, j]:
-                factor = own[other, j]
-                own[other] -= factor * own[k]
-                rest[other] -= factor * rest[k]
+    pivots = _eliminated(own, rest)
     free = [j for j in range(len(turning)) if j not in pivots]
     reduce = np.zeros((len(turning), len(free)))
     shift = np.zeros((len(turning), rest.shape[1]))
@@ -241,6 +230,43 @@ def _solved_lines(
         reduce[j] = -own[k, free]
         shift[j] = -rest[k]
     return reduce, shift, free
+
+
+def _eliminated(own: Array, rest: Array) -> list[int]:
+    """Solve lines own · angles + rest · known = 0 in place, each for one angle; which those are.
+
+    An angle that lines determine altogether may have any ratio to what is known. Otherwise a turn
+    of one angle has to be a whole number of turns of the other.
+    """
+    pivots: list[int] = []
+    for k in range(len(own)):
+        j = int(np.argmax(np.abs(own[k])))
+        if abs(own[k, j]) <= _WHOLE:
+            raise NoDirectionForm("tie the same angles twice")
+        pivots.append(j)
+        _solve_for(own, rest, k, j)
+    for k, j in enumerate(pivots):
+        others = [i for i in np.flatnonzero(np.abs(own[k]) > _WHOLE).tolist() if i != j]
+        for choice in (j, *others) if others else ():
+            turns = own[k] / own[k, choice]
+            if np.abs(turns - np.round(turns)).max() <= _WHOLE:
+                pivots[k] = choice
+                _solve_for(own, rest, k, choice)
+                break
+        else:
+            if others:
+                raise NoDirectionForm("tie angles by ratios other than 1, as gears do")
+    return pivots
+
+
+def _solve_for(own: Array, rest: Array, row: int, angle: int) -> None:
+    """Make one angle appear in one row only, with weight 1."""
+    own[row], rest[row] = own[row] / own[row, angle], rest[row] / own[row, angle]
+    for other in range(len(own)):
+        if other != row and own[other, angle]:
+            factor = own[other, angle]
+            own[other] -= factor * own[row]
+            rest[other] -= factor * rest[row]
 
 
 def _directions(sums: Array) -> tuple[list[tuple[float, ...]], IndexArray]:

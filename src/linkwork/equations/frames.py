@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from linkwork.equations.model import LinkAngle, Term
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, Node
 from linkwork.foundation.names import canonical
+from linkwork.mechanism.contacts import Weld
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.linkage import GROUND, Linkage
-from linkwork.mechanism.parts import Slider, Slot
+from linkwork.mechanism.parts import Cylinder, Slider
 
 __all__ = ["Frames", "Place"]
 
@@ -55,48 +57,79 @@ class Frames:
         for body in frames.bodies:
             frames.angle[body] = groups.angle_of(body)
         for body in frames.bodies:
-            root = groups.root(body)
             if frames.angle[body].variable == body:
-                frames.start[body] = groups.sketched_angle(root, body)
+                frames.start[body] = groups.sketched_angle(body)
             local = linkage.shapes.local[body]
             frames.places[body] = {p: Place(z, base=p) for p, z in local.items()}
         for slot in linkage.slots:
-            frames._add_guide(slot, slot.point, 0.0)
+            frames.add_guide((slot.name, slot.on, slot.line), slot.point)
         for slider in linkage.sliders:
-            frames._add_guide(slider, slider.points[0], linkage.numbers(slider.offset))
+            offset, name = linkage.numbers(slider.offset), f"{slider.name}_offset"
+            guide = (slider.name, slider.on, slider.line)
+            frames.add_guide(guide, slider.points[0], offset, name)
         for cylinder in linkage.cylinders:
-            a, b = cylinder.between
-            frames.bodies.append(cylinder.name)
-            frames.angle[cylinder.name] = LinkAngle(variable=cylinder.angle_name, constant=0.0)
-            rod = Term(
-                value=1.0 + 0j,
-                length=canonical(cylinder.name),
-                phase=((canonical(cylinder.angle_name), 1.0),),
-            )
-            frames.places[cylinder.name] = {a: Place(0j, base=a), b: Place(0j, (rod,), base=a)}
-            span = linkage.sketched(b) - linkage.sketched(a)
-            frames.lengths.append(cylinder.name)
-            frames.start[cylinder.name] = abs(span)
-            frames.start[cylinder.angle_name] = cmath.phase(span)
+            frames.add_rod(cylinder.name, cylinder.between)
         return frames
 
-    def _add_guide(self, guide: Slot | Slider, point: str, offset: float) -> None:
-        """The guided point's place in the body that carries the line."""
-        linkage, body = self.linkage, guide.on
-        s, t = (linkage.shapes.local[body][p] for p in guide.line)
+    def add_guide(
+        self,
+        guide: tuple[str, str, tuple[str, str]],
+        point: str,
+        offset: float = 0.0,
+        symbol: str = "",
+    ) -> None:
+        """The place of a guided point in the body that carries the line.
+
+        ``guide``: the displacement's name, the body, two points of its line.
+        """
+        linkage, (own, body, line) = self.linkage, guide
+        s, t = (linkage.shapes.local[body][p] for p in line)
         along = (t - s) / abs(t - s)
-        terms = [self._turned(along, None, body, guide.name)]
+        terms = [self.turned(along, None, body, own)]
         if offset:
-            name = canonical(f"{guide.name}_offset")
+            name = canonical(symbol)
             self.symbols[name] = abs(offset)
             sideways = 1j * along * math.copysign(1.0, offset)
-            terms.append(self._turned(sideways * abs(offset), Name(name, name), body))
-        self.places[body][point] = Place(s, tuple(terms), base=guide.line[0])
-        self.lengths.append(guide.name)
-        a, b, p = (linkage.sketched(q) for q in (*guide.line, point))
-        self.start[guide.name] = ((p - a) * (b - a).conjugate()).real / abs(b - a)
+            terms.append(self.turned(sideways * abs(offset), Name(name, name), body))
+        self.places[body][point] = Place(s, tuple(terms), base=line[0])
+        self.lengths.append(own)
+        a, b, p = (linkage.sketched(q) for q in (*line, point))
+        self.start[own] = ((p - a) * (b - a).conjugate()).real / abs(b - a)
 
-    def _turned(self, z: complex, shown: Node | None, body: str, length: str | None = None) -> Term:
+    def add_rod(self, name: str, between: tuple[str, str], length: float | None = None) -> None:
+        """A body between two points: of that length, or of a variable one that has its name."""
+        a, b = between
+        turning = name if length is not None else Cylinder(name=name, between=between).angle_name
+        self.bodies.append(name)
+        self.angle[name] = LinkAngle(variable=turning, constant=0.0)
+        span = self.linkage.sketched(b) - self.linkage.sketched(a)
+        self.start[turning] = cmath.phase(span)
+        if length is None:
+            rod = self.turned(1.0 + 0j, None, name, name)
+            self.lengths.append(name)
+            self.start[name] = abs(span)
+        else:
+            symbol = canonical(f"{name}_rod")
+            self.symbols[symbol] = length
+            rod = self.turned(length + 0j, Name(symbol, symbol), name)
+        self.places[name] = {a: Place(0j, base=a), b: Place(0j, (rod,), base=a)}
+
+    def now(self, angle: LinkAngle) -> float:
+        """The variable part of an angle in the sketch [rad]."""
+        return 0.0 if angle.variable is None else self.start[angle.variable]
+
+    def angles_of(self, bodies: Iterable[tuple[str, float]]) -> tuple[dict[str, float], float]:
+        """Σ weight · angle of body as weights of variables by name, and a constant [rad]."""
+        weights: dict[str, float] = {}
+        constant = 0.0
+        for body, weight in bodies:
+            angle = self.angle[body]
+            constant += weight * angle.constant
+            if angle.variable is not None:
+                weights[angle.variable] = weights.get(angle.variable, 0.0) + weight
+        return {name: weight for name, weight in weights.items() if weight}, constant
+
+    def turned(self, z: complex, shown: Node | None, body: str, length: str | None = None) -> Term:
         """A vector of the body's frame as a term."""
         angle = self.angle[body]
         phase = ((canonical(angle.variable), 1.0),) if angle.variable is not None else ()
@@ -109,7 +142,7 @@ class Frames:
         terms = []
         if a.base != b.base:
             shown = self._distance(body, a.base, b.base)
-            terms.append(self._turned(b.fixed - a.fixed, shown, body))
+            terms.append(self.turned(b.fixed - a.fixed, shown, body))
         terms += [term.negated() for term in a.sliding]
         terms += list(b.sliding)
         return terms
@@ -138,13 +171,28 @@ class _Orientation:
         self.linkage = linkage
         self._parent: dict[str, tuple[str, float]] = {b: (b, 0.0) for b in linkage.links}
         for k, slider in enumerate(linkage.sliders):
-            self._join(slider, ("sliders", k), problems)
+            gap = self._join(slider.link, slider.on, self._constant(slider))
+            if gap:
+                problems.add(
+                    ("sliders", k),
+                    f'"{slider.link}" cannot keep its angle against "{slider.on}": '
+                    f"other sliders turn it by {math.degrees(gap):.6g}° from there",
+                )
+        for k, weld in enumerate(linkage.welds):
+            first, second = weld.links
+            gap = self._join(second, first, self._welded(weld))
+            if gap:
+                problems.add(
+                    ("welds", k),
+                    f'"{second}" cannot keep its angle against "{first}": '
+                    f"other joints turn it by {math.degrees(gap):.6g}° from there",
+                )
         driven = {w.link for w in linkage.inputs if w.link}
         self._name: dict[str, str] = {}
         for body in linkage.links:
             root = self.root(body)
             named = self._name.get(root)
-            if len(linkage.links[body]) < 2 or body == GROUND:
+            if body == GROUND or not self._turns(body):
                 continue
             if named is None or (body in driven and named not in driven):
                 self._name[root] = body
@@ -162,21 +210,27 @@ class _Orientation:
         """The group of a body."""
         return self._find(body)[0]
 
-    def _join(self, slider: Slider, key: tuple[str | int, ...], problems: Problems) -> None:
-        """θ_link = θ_on + constant."""
-        constant = self._constant(slider)
-        a, offset_a = self._find(slider.link)
-        b, offset_b = self._find(slider.on)
+    def _turns(self, body: str) -> bool:
+        """Whether a link has a direction of its own, or is a wheel."""
+        several = len(self.linkage.links[body]) > 1
+        return several or body in self.linkage.turning_on_one_point
+
+    def _join(self, link: str, on: str, constant: float) -> float:
+        """θ_link = θ_on + constant; by how much that contradicts what is known already [rad]."""
+        a, offset_a = self._find(link)
+        b, offset_b = self._find(on)
         if a == b:
             gap = math.remainder(offset_a - offset_b - constant, 2 * math.pi)
-            if abs(gap) > 1e-9:
-                problems.add(
-                    key,
-                    f'"{slider.link}" cannot keep its angle against "{slider.on}": '
-                    f"other sliders turn it by {math.degrees(gap):.6g}° from there",
-                )
-            return
+            return gap if abs(gap) > 1e-9 else 0.0
         self._parent[a] = (b, constant + offset_b - offset_a)
+        return 0.0
+
+    def _welded(self, weld: Weld) -> float:
+        """The second link's angle minus the first one's."""
+        if weld.angle is not None:
+            return self.linkage.numbers(weld.angle) * self.linkage.angle.radians
+        first, second = (self.sketched_angle(link) for link in weld.links)
+        return second - first
 
     def _constant(self, slider: Slider) -> float:
         """The link's angle minus the carrier's, from the line and the sliding points."""
@@ -206,8 +260,10 @@ class _Orientation:
         name = self._name[root]
         return LinkAngle(variable=name, constant=_tidy(offset - self._find(name)[1]))
 
-    def sketched_angle(self, root: str, body: str) -> float:
-        """The direction of a link in the sketch [rad]."""
+    def sketched_angle(self, body: str) -> float:
+        """The direction of a link in the sketch [rad]; 0 for ground and wheels of one point."""
+        if body == GROUND or len(self.linkage.links[body]) < 2:
+            return 0.0
         first, second = self.linkage.links[body][:2]
         return cmath.phase(self.linkage.sketched(second) - self.linkage.sketched(first))
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from linkwork.equations.contacts import Contacts
 from linkwork.equations.frames import Frames
 from linkwork.equations.model import (
     LinearEquation,
@@ -59,6 +60,9 @@ class _Writer:
         where = f'mechanism "{linkage.name}"'
         self.frames = frames = Frames.of(linkage, self.problems)
         self.problems.raise_any(where)
+        self.contacts = contacts = Contacts.of(frames, self.problems)
+        self.problems.raise_any(where)
+        self.linear = list(contacts.linear)
         self.rank = {body: k for k, body in enumerate(frames.bodies)}
         self.start = dict(frames.start)
         for k, which in enumerate(linkage.inputs):
@@ -84,8 +88,10 @@ class _Writer:
             angle=linkage.angle,
             unknowns=tuple(unknowns),
             inputs=tuple(self.inputs),
-            loops=tuple(loops),
+            loops=(*loops, *contacts.loops),
             linear=tuple(self.linear),
+            laws=tuple(contacts.laws),
+            outlines=contacts.outlines,
             symbols=dict(frames.symbols),
             dimensions=dict(linkage.numbers.known),
             start=np.array([self.start[v.name] for v in variables]),
@@ -104,7 +110,8 @@ class _Writer:
 
     def _variables(self, angles: Sequence[str | None]) -> list[tuple[str, str]]:
         named = [(a, "angle") for a in angles if a is not None]
-        return named + [(length, "length") for length in self.frames.lengths]
+        lengths = [(length, "length") for length in self.frames.lengths]
+        return named + lengths + self.contacts.variables
 
     def _drive(self, which: Input, key: tuple[str | int, ...]) -> None:
         """Turn an input into a variable: an angle, a relative angle or a length."""
@@ -164,11 +171,19 @@ class _Writer:
         for body, point in incidences:
             turning = frames.angle[body].variable
             found = [None if turning is None else canonical(turning)]
-            found += [term.length for term in frames.places[body][point].sliding]
+            for term in frames.places[body][point].sliding:
+                found += [term.length, *(name for name, _ in term.phase)]
+            found = list(dict.fromkeys(found))
             variables[body, point] = tuple(n for n in found if n is not None and n in unknown)
         relations = [
             tuple(name for name, _ in equation.terms if name in unknown) for equation in self.linear
         ]
+        for law in self.contacts.laws:
+            names = dict.fromkeys(name for name, _ in (*law.terms, *law.inner))
+            relations.append(tuple(name for name in names if name in unknown))
+        for loop in self.contacts.loops:
+            names = dict.fromkeys(n for term in loop.terms for n in _names_of(term))
+            relations += 2 * [tuple(name for name in names if name in unknown)]
         return Structure(incidences, variables, relations, GROUND)
 
     def _check_connected(self, structure: Structure) -> None:
@@ -249,6 +264,11 @@ class _Writer:
         kinds |= {canonical(link): "angle" for link in self.linkage.links if link != GROUND}
         known = self.linkage.numbers.known
         return read_outputs(self.linkage.outputs, kinds, self.points, known, self.problems)
+
+
+def _names_of(term: Term) -> tuple[str, ...]:
+    own = () if term.length is None else (term.length,)
+    return (*own, *(name for name, _ in term.phase))
 
 
 def _variable(name: str, kind: str) -> Variable:

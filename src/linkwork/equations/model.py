@@ -10,10 +10,12 @@ import numpy as np
 
 from linkwork.expression.tree import Node
 from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.kernels.piecewise import Piecewise
 
 __all__ = [
+    "LawEquation",
     "LinearEquation",
     "LinkAngle",
     "LoopEquation",
@@ -104,11 +106,36 @@ class LoopEquation:
 
 @dataclass(frozen=True, kw_only=True)
 class LinearEquation:
-    """Σ weight · variable + constant = 0; angles in radians."""
+    """Σ weight · variable + constant = 0; angles in radians.
+
+    ``kind`` tells whether its residual is an angle or a length.
+    """
 
     label: str
     terms: tuple[tuple[str, float], ...]
     constant: float
+    kind: str = "angle"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LawEquation:
+    """Σ weight · variable + constant - f(Σ weight · variable + offset) = 0; angles in radians.
+
+    ``shown`` is how the function is called in printed equations, ``primes`` of how manyth
+    derivative it is and ``meaning`` what it is in words; ``kind`` tells whether the equation is one
+    of lengths or angles.
+    """
+
+    label: str
+    terms: tuple[tuple[str, float], ...]
+    constant: float
+    law: Piecewise
+    shown: str
+    inner: tuple[tuple[str, float], ...]
+    offset: float
+    meaning: str = ""
+    primes: int = 0
+    kind: str = "length"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,8 +178,8 @@ class LoopEquations:
     Parameters
     ----------
     unknowns, inputs : tuple of Variable
-    loops, linear, real : equations
-        Complex loops; linear relations; plain real equations.
+    loops, linear, real, laws : equations
+        Complex loops; linear relations; plain real equations; laws of cams and curves.
     symbols : Mapping[str, float]
         Values of the fixed lengths and dimensions that occur, by canonical name.
     dimensions : Mapping[str, float]
@@ -165,6 +192,8 @@ class LoopEquations:
     sliders : Mapping[str, str]
         Name of slider, slot or cylinder → variable.
     outputs : Mapping[str, Output]
+    outlines : Mapping[str, (body, point, (K,) complex)]
+        Cams and curves by name: points about a point of a body, in that body's frame.
     fixed : tuple of str
         Points that stand still.
     length_scale : float
@@ -177,6 +206,7 @@ class LoopEquations:
     loops: tuple[LoopEquation, ...] = ()
     linear: tuple[LinearEquation, ...] = ()
     real: tuple[RealEquation, ...] = ()
+    laws: tuple[LawEquation, ...] = ()
     symbols: Mapping[str, float] = FrozenDict()
     dimensions: Mapping[str, float] = FrozenDict()
     start: Array
@@ -184,6 +214,7 @@ class LoopEquations:
     links: Mapping[str, LinkAngle] = FrozenDict()
     sliders: Mapping[str, str] = FrozenDict()
     outputs: Mapping[str, Output] = FrozenDict()
+    outlines: Mapping[str, tuple[str, str, ComplexArray]] = FrozenDict()
     fixed: tuple[str, ...] = ()
     length_scale: float = 1.0
 
@@ -194,10 +225,11 @@ class LoopEquations:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Names of all equations: loops, linear, real."""
-        named: tuple[LoopEquation | LinearEquation | RealEquation, ...] = (
+        """Names of all equations: loops, linear, real, laws."""
+        named: tuple[LoopEquation | LinearEquation | RealEquation | LawEquation, ...] = (
             *self.loops,
             *self.linear,
             *self.real,
+            *self.laws,
         )
         return tuple(equation.label for equation in named)

@@ -37,6 +37,9 @@ class Notation(Protocol):
     def function(self, name: str, angle: str) -> str:
         """cos or sin of an angle."""
 
+    def law(self, name: str, primes: int, argument: str) -> str:
+        """A named function, or a derivative of it."""
+
     def product(self, factors: Sequence[str]) -> str:
         """Factors in a row."""
 
@@ -78,6 +81,10 @@ class PlainText:
         """cos or sin of an angle."""
         return f"{name}({angle})" if _compound(angle) else f"{name} {angle}"
 
+    def law(self, name: str, primes: int, argument: str) -> str:
+        """A named function, or a derivative of it."""
+        return f"{pretty(name)}{primes * chr(39)}({argument})"
+
     def product(self, factors: Sequence[str]) -> str:
         """Factors in a row."""
         return "·".join(factors)
@@ -115,6 +122,13 @@ class Latex:
     def function(self, name: str, angle: str) -> str:
         """cos or sin of an angle."""
         return rf"\{name}({angle})" if _compound(angle) else rf"\{name} {angle}"
+
+    def law(self, name: str, primes: int, argument: str) -> str:
+        """A named function, or a derivative of it."""
+        shown = latex_name(name)
+        if primes:
+            shown = f"{{{shown}}}{primes * chr(39)}"
+        return rf"{shown}\left({argument}\right)"
 
     def product(self, factors: Sequence[str]) -> str:
         """Factors in a row."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from linkwork.equations.model import LoopEquation, LoopEquations, Variable
+from linkwork.equations.model import LawEquation, LoopEquation, LoopEquations, Variable
 from linkwork.equations.notation import Latex, Notation, PlainText
 from linkwork.equations.term_writing import Signed, TermWriter, joined
 from linkwork.expression.derivative import derivative
@@ -44,7 +44,7 @@ class EquationSheet:
         return f"{left} = {right}"
 
     def real_rows(self, notation: Notation) -> list[str]:
-        """Every real equation F_k = …: real parts, imaginary parts, linear, plain."""
+        """Every real equation F_k = …: real parts, imaginary parts, linear, plain, laws."""
         write = self._writer(notation)
         rows = []
         for imaginary in (False, True):
@@ -52,17 +52,50 @@ class EquationSheet:
                 forms = [write.real_form(term, imaginary=imaginary) for term in loop.terms]
                 rows.append(joined(signed for form in forms for signed in form))
         for line in self.equations.linear:
-            parts = [
-                Signed(-1 if w < 0 else 1, self._weighted(abs(w), notation.name(self._names[n])))
-                for n, w in line.terms
-            ]
-            if line.constant:
-                parts.append(
-                    Signed(-1 if line.constant < 0 else 1, notation.degrees(abs(line.constant)))
-                )
+            parts = self._sum(line.terms, line.constant, notation, angle=line.kind == "angle")
             rows.append(joined(parts))
         rows += [notation.formula(_difference(e.left, e.right)) for e in self.equations.real]
+        for law in self.equations.laws:
+            parts = self._sum(law.terms, law.constant, notation, angle=law.kind == "angle")
+            rows.append(joined([*parts, Signed(-1, self._law(law, notation))]))
         return rows
+
+    def _sum(
+        self,
+        terms: tuple[tuple[str, float], ...],
+        constant: float,
+        notation: Notation,
+        *,
+        angle: bool,
+    ) -> list[Signed]:
+        """Σ weight · name + constant."""
+        parts = [
+            Signed(-1 if w < 0 else 1, self._weighted(abs(w), notation.name(self._names[n])))
+            for n, w in terms
+        ]
+        if constant:
+            size = abs(constant)
+            shown = notation.degrees(size) if angle else number_text(float(f"{size:.10g}"))
+            parts.append(Signed(-1 if constant < 0 else 1, shown))
+        return parts
+
+    def _law(self, law: LawEquation, notation: Notation, primes: int = 0) -> str:
+        """The function of a law equation, or its derivative, at its argument."""
+        angle = {v.symbol: v.kind for v in self.equations.variables}[law.inner[0][0]] == "angle"
+        argument = joined(self._sum(law.inner, law.offset, notation, angle=angle))
+        return notation.law(law.shown, law.primes + primes, argument)
+
+    def _law_entry(self, law: LawEquation, symbol: str, notation: Notation) -> str:
+        """∂/∂symbol of a law equation."""
+        straight, turned = dict(law.terms).get(symbol, 0.0), dict(law.inner).get(symbol, 0.0)
+        parts = []
+        if straight:
+            parts.append(Signed(-1 if straight < 0 else 1, number_text(abs(straight))))
+        if turned:
+            slope = self._law(law, notation, primes=1)
+            weight = [] if abs(turned) == 1 else [number_text(abs(turned))]
+            parts.append(Signed(1 if turned < 0 else -1, notation.product([*weight, slope])))
+        return joined(parts)
 
     @staticmethod
     def _weighted(weight: float, name: str) -> str:
@@ -92,7 +125,7 @@ class EquationSheet:
         return rows
 
     def real_jacobian(self, notation: Notation) -> Matrix:
-        """∂F/∂x as real numbers: real parts, imaginary parts, linear, plain equations."""
+        """∂F/∂x as real numbers: real parts, imaginary parts, linear, plain equations, laws."""
         write = self._writer(notation)
         rows = []
         for imaginary in (False, True):
@@ -116,6 +149,13 @@ class EquationSheet:
                 except ValueError:
                     row.append("…")
             rows.append(row)
+        for law in self.equations.laws:
+            rows.append(
+                [
+                    self._law_entry(law, unknown.symbol, notation)
+                    for unknown in self.equations.unknowns
+                ]
+            )
         return rows
 
     def _real_entry(
@@ -156,6 +196,8 @@ class EquationSheet:
             yield f'Equation "{equations.labels[k]}"'
             row = self.real_rows(notation)[k + len(equations.loops)]
             yield from _wrapped("  ", f"{row} = 0", width, "      ")
+            if (law := k - len(equations.labels) + len(equations.laws)) >= 0:
+                yield from _wrapped("  where ", equations.laws[law].meaning, width, "      ")
         if equations.loops:
             yield from ("", "Real form")
             for k, row_text in enumerate(self.real_rows(notation)):

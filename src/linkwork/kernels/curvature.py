@@ -6,7 +6,8 @@ taken: with α = A_re - i A_im the row i of A·D²F along unit directions is at 
     Σ_g |Σ_l α_il C_lg| Ω_g² + 2 Σ_{j,g} |Σ_l α_il D_ljg| w_j Ω_g
 
 where C_lg sums c·s and D_ljg sums c over the terms of loop l with phase g (and variable length j).
-Linear rows do not bend; function rows have no bound here.
+Linear rows do not bend. A row Σ a v - f(Σ w v) bends along its own sum, |A_ir| sup|f''| |w|²; such
+rows count as further phases behind those of the loops. Rows of any formula have no bound.
 """
 
 from __future__ import annotations
@@ -29,14 +30,17 @@ _UNIT = np.finfo(float).eps / 2
 class Curvature:
     """Moduli of second derivatives behind a matrix A with n rows, for B positions.
 
-    ``loop_rows``: how many of the m equations belong to loops; linear rows follow.
-    ``phase`` (B, n, G): |Σ_l α_il C_lg|. ``slide`` (B, n, P): |Σ_l α_il D_lp| for every pair p of
-    a variable length and a phase. ``weights`` (N, G): |W|. ``pair_length``, ``pair_group`` (P,):
-    the pair's variable and phase. ``rounding`` (B, m): bounds of the error of computing F.
-    ``jacobian_rounding`` (B, m, N): of computing dF/dv and its products with m numbers of size 1.
+    ``loop_rows``: how many of the m equations belong to loops; other rows follow.
+    ``phase`` (B, n, G): |Σ_l α_il C_lg|, behind those of loops |A_ir| sup|f''| of the laws;
+    ``loop_phases`` tells how many belong to loops. ``slide`` (B, n, P): |Σ_l α_il D_lp| for every
+    pair p of a variable length and a phase. ``weights`` (N, G): |W|. ``pair_length``,
+    ``pair_group`` (P,): the pair's variable and phase. ``rounding`` (B, m): bounds of the error of
+    computing F. ``jacobian_rounding`` (B, m, N): of computing dF/dv and its products with m numbers
+    of size 1.
     """
 
     loop_rows: int
+    loop_phases: int
     phase: Array
     slide: Array
     weights: Array

@@ -6,7 +6,7 @@ A v + b = 0 (relative angles, gears), function rows. Columns: n unknowns, then t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
 
@@ -14,6 +14,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.kernels.curvature import Curvature, PhaseGroups
+from linkwork.kernels.law_row import LawRow
 from linkwork.kernels.phasor_rows import PhasorRows
 
 __all__ = ["FunctionRow", "LinearRows", "LoopTable", "TableSplitter"]
@@ -139,8 +140,23 @@ class LoopTable:
 
     @property
     def bends_boundedly(self) -> bool:
-        """Whether :meth:`curvature` knows a bound: not for function rows."""
-        return not self.functions
+        """Whether :meth:`curvature` knows a bound: not for rows of any formula."""
+        return len(self._bounded) == len(self.functions)
+
+    @property
+    def is_straight(self) -> bool:
+        """Whether no equation bends with the unknowns: lines, and laws of what is known."""
+        if self.loops.rows or not self.bends_boundedly:
+            return False
+        return not any(
+            weight and variable < self.unknowns
+            for row in self._bounded
+            for variable, weight in zip(row.variables, row.inner, strict=True)
+        )
+
+    @cached_property
+    def _bounded(self) -> list[LawRow]:
+        return [row for row in self.functions if isinstance(row, LawRow)]
 
     @cached_property
     def _groups(self) -> PhaseGroups:
@@ -166,8 +182,9 @@ class LoopTable:
         )
         lines = np.broadcast_to(_UNIT * (self.equations + 4) * a, (len(v), *a.shape))
         lengths, group, _ = groups.pairs
-        return Curvature(
+        found = Curvature(
             loop_rows=2 * count,
+            loop_phases=phase.shape[2],
             phase=phase,
             slide=slide,
             weights=groups.weights,
@@ -175,6 +192,33 @@ class LoopTable:
             pair_group=group,
             rounding=np.concatenate([error, error, line_error], axis=1),
             jacobian_rounding=np.concatenate([slopes, slopes, lines], axis=1),
+        )
+        return self._with_laws(found, v, matrix) if self.functions else found
+
+    def _with_laws(self, found: Curvature, v: Array, matrix: Array) -> Curvature:
+        """Every law bends along one sum of variables, as a phase does."""
+        first = self.equations - len(self.functions)
+        weights = np.zeros((self.variables, len(self._bounded)))
+        phase = np.empty((*matrix.shape[:2], len(self._bounded)))
+        errors, slopes = [], []
+        for k, row in enumerate(self._bounded):
+            variables = list(row.variables)
+            np.add.at(weights[:, k], variables, np.abs(row.inner))
+            phase[:, :, k] = np.abs(matrix[:, :, first + k]) * row.bend
+            error, slope = row.rounding(v)
+            errors.append(error)
+            whole = np.zeros((len(v), self.variables))
+            gradient = np.abs(row.value_and_gradient(v)[1])
+            whole[:, variables] = slope + _UNIT * (self.equations + 4) * gradient
+            slopes.append(whole)
+        return replace(
+            found,
+            phase=np.concatenate([found.phase, phase], axis=2),
+            weights=np.concatenate([found.weights, weights], axis=1),
+            rounding=np.concatenate([found.rounding, np.stack(errors, axis=1)], axis=1),
+            jacobian_rounding=np.concatenate(
+                [found.jacobian_rounding, np.stack(slopes, axis=1)], axis=1
+            ),
         )
 
     def _real_rows(self, v: Array) -> tuple[Array, Array]:

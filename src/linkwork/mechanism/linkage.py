@@ -8,14 +8,21 @@ from functools import cached_property
 
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical
+from linkwork.mechanism.contacts import Belt, Cam, Curve, Gear, Rack, Rolling, Weld
 from linkwork.mechanism.description import Description, Problems
 from linkwork.mechanism.linkage_checks import check_linkage
 from linkwork.mechanism.parts import Cylinder, Input, Number, Slider, Slot, replaced_names
 from linkwork.mechanism.shape import Shapes
 
-__all__ = ["GROUND", "Linkage"]
+__all__ = ["GROUND", "PART_KINDS", "Linkage"]
 
 GROUND = "ground"
+
+#: What a linkage is made of besides points and links: fields of the class, tables of a file.
+PART_KINDS = (
+    "slots", "sliders", "cylinders", "welds", "gears", "belts", "racks", "rolling", "cams",
+    "curves",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,13 +52,21 @@ class Linkage(Description):
     slots: tuple[Slot, ...] = ()
     sliders: tuple[Slider, ...] = ()
     cylinders: tuple[Cylinder, ...] = ()
+    welds: tuple[Weld, ...] = ()
+    gears: tuple[Gear, ...] = ()
+    belts: tuple[Belt, ...] = ()
+    racks: tuple[Rack, ...] = ()
+    rolling: tuple[Rolling, ...] = ()
+    cams: tuple[Cam, ...] = ()
+    curves: tuple[Curve, ...] = ()
     sketch: bool = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
         set_ = object.__setattr__
-        parts: list[Slot | Slider | Cylinder] = [*self.slots, *self.sliders, *self.cylinders]
-        named = (*self.points, *self.links, *(part.name for part in parts))
+        parts = [part for kind in PART_KINDS for part in getattr(self, kind)]
+        own = (part.name for part in parts if not isinstance(part, Weld))
+        named = (*self.points, *self.links, *own)
         spelled = {canonical(name): name for name in named}
 
         def same(name: str) -> str:
@@ -64,7 +79,7 @@ class Linkage(Description):
             table = getattr(self, field)
             folded = {" ".join(map(same, key.split())): number for key, number in table.items()}
             set_(self, field, FrozenDict(folded if len(folded) == len(table) else table))
-        for field in ("slots", "sliders", "cylinders"):
+        for field in PART_KINDS:
             same_kind = getattr(self, field)
             renamed = (replaced_names(part, spelled, canonical) for part in same_kind)
             set_(self, field, tuple(renamed))
@@ -91,6 +106,14 @@ class Linkage(Description):
         for link, points in self.links.items():
             if point in points:
                 yield link
+
+    @property
+    def turning_on_one_point(self) -> frozenset[str]:
+        """Links that one point is enough for: wheels and cams, which have no direction to see."""
+        found = [wheel for part in self.gears for wheel in part.wheels]
+        found += [wheel for part in self.belts for wheel in part.wheels]
+        found += [part.wheel for part in self.rolling] + [part.pinion for part in self.racks]
+        return frozenset([*found, *(part.cam for part in self.cams)])
 
     def carriers(self) -> dict[str, list[str]]:
         """For every point the links and cylinders that carry it, in the file's order."""

@@ -7,6 +7,8 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from linkwork.foundation.errors import choices
+from linkwork.mechanism.contact_checks import check_contacts, check_distances
+from linkwork.mechanism.contacts import names_of
 from linkwork.mechanism.description import Problems, declared
 from linkwork.mechanism.parts import Cylinder, Input, Number, Slider, Slot
 from linkwork.mechanism.shape import Shapes
@@ -36,6 +38,12 @@ def check_linkage(linkage: Linkage, problems: Problems) -> None:
                 (("cylinders", k, "name"), part.angle_name)
                 for k, part in enumerate(linkage.cylinders)
             ),
+            *(
+                ((kind, k, "name"), name)
+                for kind in ("gears", "belts", "racks", "rolling", "cams", "curves")
+                for k, part in enumerate(getattr(linkage, kind))
+                for name in names_of(part)
+            ),
         ],
     )
     _check_points(linkage, problems)
@@ -48,13 +56,16 @@ def check_linkage(linkage: Linkage, problems: Problems) -> None:
     _check_guided_once(linkage, problems)
     for k, cylinder in enumerate(linkage.cylinders):
         _check_cylinder(linkage, cylinder, ("cylinders", k), problems)
+    check_contacts(linkage, problems)
     _check_dimension_keys(linkage, problems)
     _check_inputs(linkage, problems)
     for k, point in enumerate(linkage.trace):
         if point not in linkage.points:
             problems.add(("trace", "points", k), _no_point(linkage, point))
     if not problems:
-        Shapes.of(linkage, problems)
+        shapes = Shapes.of(linkage, problems)
+    if not problems:
+        check_distances(linkage, shapes, problems)
 
 
 def _no_point(linkage: Linkage, point: str) -> str:
@@ -92,6 +103,7 @@ def _check_links(linkage: Linkage, problems: Problems) -> None:
     if GROUND not in linkage.links:
         problems.add(("links",), '"ground" is missing: the link that stands still')
     alone = {GROUND} | {slider.link for slider in linkage.sliders}
+    alone |= linkage.turning_on_one_point
     for link, points in linkage.links.items():
         key = ("links", link)
         for point in points:
@@ -104,7 +116,9 @@ def _check_links(linkage: Linkage, problems: Problems) -> None:
             problems.add(key, "has no points")
         elif len(points) == 1 and link not in alone:
             problems.add(
-                key, f"has only the point {points[0]}: a link needs two points, unless it slides"
+                key,
+                f"has only the point {points[0]}: a link needs two points, "
+                "unless it slides or is a wheel",
             )
 
 
@@ -306,7 +320,10 @@ def _check_input(
     if kind == "cylinder":
         names = [part.name for part in linkage.cylinders]
     else:
-        names = [*(s.name for s in linkage.sliders), *(s.name for s in linkage.slots)]
+        names = [part.name for part in linkage.sliders]
+        names += [part.name for part in linkage.slots]
+        names += [part.name for part in linkage.rolling if part.line is not None]
+        names += [part.name for part in linkage.curves if not part.closed]
     if name not in names:
         known = choices("cylinders" if kind == "cylinder" else "sliders and slots", names, name)
         problems.add((*key, kind), f'{kind} "{name}" is not defined {known}')

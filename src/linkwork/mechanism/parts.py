@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["Cylinder", "Input", "Number", "Slider", "Slot"]
+__all__ = ["Cylinder", "Input", "Number", "Slider", "Slot", "as_tuples", "replaced_names"]
 
 #: Wherever a number is expected, a formula of the named dimensions may stand.
 Number = float | int | str
 
 
-def _names(part: object, *fields: str) -> None:
-    """Turn lists of names into tuples, so that parts compare and cannot change."""
+def as_tuples(part: object, *fields: str) -> None:
+    """Turn lists into tuples, so that parts compare and cannot change."""
     for field in fields:
         entry = getattr(part, field)
         if entry is not None and not isinstance(entry, str):
@@ -81,7 +81,7 @@ class Slot:
     line: tuple[str, str]
 
     def __post_init__(self) -> None:
-        _names(self, "line")
+        as_tuples(self, "line")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,7 +101,7 @@ class Slider:
     angle: Number | None = None
 
     def __post_init__(self) -> None:
-        _names(self, "points", "line")
+        as_tuples(self, "points", "line")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +112,7 @@ class Cylinder:
     between: tuple[str, str]
 
     def __post_init__(self) -> None:
-        _names(self, "between")
+        as_tuples(self, "between")
 
     @property
     def angle_name(self) -> str:
@@ -121,11 +121,20 @@ class Cylinder:
         return f"{stem}_angle{self.name[len(stem) :]}"  # primes stand at the end of a name
 
 
+#: Fields that hold numbers, words or labels: no name of a part of the mechanism.
+_NOT_NAMES = frozenset(
+    {
+        "name", "start", "stop", "step", "speed", "offset", "angle", "radii", "teeth", "phase",
+        "radius", "circle_radius", "contact", "base", "segments", "profile", "through",
+    }
+)  # fmt: skip
+
+
 def replaced_names(part: Any, spelled: dict[str, str], canonical: Any) -> Any:
     """A copy of a part in which every name has the spelling of its declaration."""
     changed: dict[str, object] = {}
     for field, entry in vars(part).items():
-        if field in ("name", "start", "stop", "step", "speed", "offset", "angle"):
+        if field in _NOT_NAMES:
             continue
         if isinstance(entry, str):
             changed[field] = spelled.get(canonical(entry), entry)

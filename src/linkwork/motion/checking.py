@@ -15,6 +15,8 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["check", "grubler_count"]
 
+_TWO_FREEDOMS = ("slots", "gears", "belts", "racks", "cams", "curves")
+_JOINTS = ("sliders", "rolling", *_TWO_FREEDOMS)
 _LARGEST = 100  # unknowns up to which a singular mechanism is looked at as one matrix
 _RANK_TOLERANCE = 1e-9  # relative to the largest singular value of the scaled Jacobian
 
@@ -36,7 +38,7 @@ def check(model: Model) -> CheckReport:
             (m.link, " ".join(m.points), m.length) for m in description.shapes.measured
         )
         links = len(description.links) + len(description.cylinders)
-        joints = _pins(description) + len(description.sliders) + len(description.slots)
+        joints = _pins(description) + sum(len(getattr(description, k)) for k in _JOINTS)
     else:
         form = "loops" if isinstance(description, Loops) else "equations"
     units = model.units
@@ -76,13 +78,17 @@ def _pins(linkage: Linkage) -> int:
 
 
 def grubler_count(linkage: Linkage) -> int:
-    """Grübler's mobility 3(n - 1) - 2·(pins and sliders) - (slots).
+    """Grübler's mobility 3(n - 1) - 2·(pins and sliders) - (joints of two freedoms).
 
-    A cylinder counts as its two links and their sliding joint: one body with one freedom more.
+    A cylinder counts as its two links and their sliding joint: one body with one freedom more. A
+    slot, a curve, a cam and the teeth of gears and racks leave two freedoms; a belt ties two angles
+    as teeth do. A wheel that rolls without slipping has one freedom; a weld has none, of its two
+    links' pin.
     """
     bodies = len(linkage.links) + len(linkage.cylinders)
-    lower_pairs = _pins(linkage) + len(linkage.sliders)
-    return 3 * (bodies - 1) - 2 * lower_pairs - len(linkage.slots) + len(linkage.cylinders)
+    one = _pins(linkage) + len(linkage.sliders) + len(linkage.rolling)
+    two = sum(len(getattr(linkage, kind)) for kind in _TWO_FREEDOMS)
+    return 3 * (bodies - 1) - 2 * one - two - len(linkage.welds) + len(linkage.cylinders)
 
 
 def _rank(model: Model, v: Array) -> int | None:

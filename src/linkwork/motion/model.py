@@ -160,7 +160,7 @@ def model_of(description: Description) -> Model:
     match description:
         case Linkage():
             equations = write_loops(description)
-            skeleton = Skeleton.of_linkage(description)
+            skeleton = Skeleton.of_linkage(description, equations.outlines)
         case Loops():
             equations = read_loops(description)
             fixed = description.links.get("ground", equations.fixed)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from linkwork.foundation.arrays import Array
+from linkwork.kernels.law_row import LawRow
+from linkwork.kernels.loop_table import LoopTable
 from linkwork.motion.model import Model
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.track import InputPath, Node, Progress, Track, TrackOptions, follow
@@ -25,20 +28,51 @@ def leading_scale(model: Model, lead: int) -> float:
 
 
 def turns_freely(model: Model) -> bool:
-    """Whether adding a whole turn to the input changes nothing in the equations."""
+    """Whether adding a whole turn to the input changes nothing but other angles by whole turns."""
     inputs = model.equations.inputs
     if len(inputs) != 1 or inputs[0].kind != "angle":
         return False
-    if model.equations.linear and any(
-        name == inputs[0].symbol and weight != round(weight)
-        for equation in model.equations.linear
-        for name, weight in equation.terms
-    ):
-        return False
-    loops = model.compiled.table.loops
-    mine = loops.phase_variable == len(model.equations.unknowns)
-    weights = loops.phase_weight[mine]
-    return bool(np.all(weights == np.round(weights)))
+    table = model.compiled.table
+    turns = np.zeros(table.variables)  # what one turn of the input adds to every variable
+    lead = len(model.equations.unknowns)
+    turns[lead] = 1.0
+    given = np.zeros(table.variables, dtype=bool)
+    given[lead] = True
+    for weights in _straight_parts(table):
+        left = float(weights @ turns)
+        if not left:
+            continue
+        free = np.flatnonzero((weights != 0.0) & table.turns & ~given)
+        whole = [k for k in free.tolist() if (left / weights[k]).is_integer()]
+        if not whole:
+            return False
+        turns[whole[0]] = -left / weights[whole[0]]
+        given[weights != 0.0] = True
+    phases = np.zeros((table.variables, len(table.loops.row)))
+    loops = table.loops
+    np.add.at(phases, (loops.phase_variable, loops.phase_term), loops.phase_weight)
+    laws = [
+        float(row.inner @ turns[list(row.variables)])
+        for row in table.functions
+        if isinstance(row, LawRow)
+    ]
+    moved = np.concatenate([turns @ phases, np.array(laws)])
+    straight = [float(weights @ turns) for weights in _straight_parts(table)]
+    return bool(np.all(moved == np.round(moved)) and not any(straight))
+
+
+def _straight_parts(table: LoopTable) -> Iterator[Array]:
+    """The weights (N,) of every equation that is linear in some variables."""
+    for row in range(len(table.linear.constant)):
+        weights = np.zeros(table.variables)
+        mine = table.linear.row == row
+        np.add.at(weights, table.linear.variable[mine], table.linear.weight[mine])
+        yield weights
+    for law in table.functions:
+        if isinstance(law, LawRow):
+            weights = np.zeros(table.variables)
+            np.add.at(weights, list(law.variables), law.weights)
+            yield weights
 
 
 def track_to(

@@ -144,11 +144,12 @@ def _as_a_whole(
     turned: Array,
 ) -> Array:
     """The same by the moduli alone; better where a phase turns far."""
-    n, loops = matrix.shape[1], bend.loop_rows
+    n, loops, count = matrix.shape[1], bend.loop_rows, bend.loop_phases
     lines = np.abs(matrix[:, :, loops:] @ jacobian[:, loops:, n:])
     lines += np.abs(matrix[:, :, loops:]) @ bend.jacobian_rounding[:, loops:, n:]
-    change = _apply(bend.phase, turned) + _apply(pairs.known, pairs.spread)
-    return change + _apply(lines, known)
+    change = _apply(bend.phase[:, :, :count], turned[:, :count])
+    change += 0.5 * _apply(bend.phase[:, :, count:], turned[:, count:] ** 2)
+    return change + _apply(pairs.known, pairs.spread) + _apply(lines, known)
 
 
 def _apply(matrix: Array, vector: Array) -> Array:

@@ -56,11 +56,15 @@ class Curvature(Protocol):
 
     @property
     def loop_rows(self) -> int:
-        """How many of the m equations belong to loops; rows behind do not bend."""
+        """How many of the m equations belong to loops."""
+
+    @property
+    def loop_phases(self) -> int:
+        """How many of the phases belong to loops; those behind bend along one sum each."""
 
     @property
     def phase(self) -> Array:
-        """(B, n, G) moduli of the grouped coefficients behind the matrix."""
+        """(B, n, G) second derivatives behind the matrix: |coefficients| of the phases."""
 
     @property
     def slide(self) -> Array:

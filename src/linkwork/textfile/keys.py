@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from linkwork.mechanism.motion_laws import LAWS
+
 __all__ = [
     "EQUATIONS", "FORMAT", "FORMS", "LINKAGE", "LOOPS",
     "Constant", "Flag", "Form", "Formula", "Key", "Kind", "ListOf", "Named", "Number", "Speed",
@@ -199,6 +201,79 @@ _CYLINDER = (
     Key("between", _POINT_PAIR, "The two points it connects", required=True),
 )
 
+_NUMBER_PAIR = ListOf(Number(), "number", 2, 2)
+_COORDINATES = ListOf(ListOf(Number(), "coordinate", 2, 2), "point", 3)
+_WELD = (
+    Key("links", ListOf(Text(), "link", 2, 2), "Two links that share a point", required=True),
+    Key("angle", Number(), "From the first link's direction to the second's"),
+)
+_WHEELS = (
+    Key("wheels", ListOf(Text(), "link", 2, 2), "The two links that turn", required=True),
+    Key("centers", ListOf(Text(), "point", 2, 2), "The points at which they turn", required=True),
+    Key("arm", Text(), "The link that carries both centres; ground if left out"),
+    Key("radii", _NUMBER_PAIR, "Pitch radii"),
+    Key("teeth", _NUMBER_PAIR, "Numbers of teeth, instead of radii"),
+    Key("phase", Number(), "Angle of the second wheel where the first one's is zero"),
+)
+_GEAR = (
+    Key("name", Text(), "Name of the gear pair", required=True),
+    *_WHEELS,
+    Key("internal", Flag(), "The larger wheel is a ring around the smaller one"),
+)
+_BELT = (
+    Key("name", Text(), "Name of the belt or chain", required=True),
+    *_WHEELS,
+    Key("crossed", Flag(), "The belt crosses itself: the wheels turn against each other"),
+)
+_RACK = (
+    Key("name", Text(), "Name of the rack and pinion", required=True),
+    Key("pinion", Text(), "The link that turns", required=True),
+    Key("center", Text(), "The point at which it turns", required=True),
+    Key("slider", Text(), "The slider of the rack", required=True),
+    Key("radius", Number(), "Pitch radius of the pinion", required=True),
+)
+_ROLLING = (
+    Key(
+        "name", Text(), "Way of the point of contact along the line, or angle of the centres", True
+    ),
+    Key("wheel", Text(), "The link that rolls", required=True),
+    Key("center", Text(), "Its centre", required=True),
+    Key("radius", Number(), "Its radius", required=True),
+    Key("on", Text(), "The link on which it rolls; ground if left out"),
+    Key("line", _POINT_PAIR, "Two points of that link: it rolls along this line"),
+    Key("circle", Text(), "Or the centre of the circle on which it rolls"),
+    Key("circle_radius", Number(), "The radius of that circle"),
+    Key("inside", Flag(), "One of wheel and circle runs inside the other"),
+)
+_SEGMENT = (
+    Key("law", Text(LAWS), "How the follower moves", required=True),
+    Key("over", Number(), "The angle by which the cam turns meanwhile", required=True),
+    Key("lift", Number(), "How far the follower moves; away from the centre is positive"),
+)
+_CAM = (
+    Key("name", Text(), "Name of the cam", required=True),
+    Key("cam", Text(), "The link that turns", required=True),
+    Key("center", Text(), "The point about which it turns", required=True),
+    Key("slider", Text(), "The slider that it moves"),
+    Key("link", Text(), "Or the link that it swings"),
+    Key("pivot", Text(), "With link: the point about which that swings"),
+    Key("point", Text(), "With link: its edge, its roller's centre or the end of its face"),
+    Key("contact", Text(("knife", "roller", "flat")), "Kind of the follower; knife if left out"),
+    Key("radius", Number(), "Radius of the roller"),
+    Key("base", Number(), "Radius of the base circle, with segments"),
+    Key("start", Number(), "Angle of the cam at which the segments begin; 0 if left out"),
+    Key("segments", Tables(_SEGMENT), "What the follower does in one turn of the cam"),
+    Key("profile", _COORDINATES, "Or the outline, in the cam's frame about its centre"),
+)
+_CURVE = (
+    Key("name", Text(), "Name of the place on the curve", required=True),
+    Key("point", Text(), "The point that runs along it, of another link", required=True),
+    Key("on", Text(), "The link that carries the curve", required=True),
+    Key("origin", Text(), "The point of that link about which coordinates are given", True),
+    Key("through", _COORDINATES, "Points of the curve in that link's own frame", required=True),
+    Key("closed", Flag(), "Whether the curve leads back to its first point"),
+)
+
 LINKAGE = Form(
     "points-and-links",
     "A mechanism by its points and the links that carry them",
@@ -228,6 +303,13 @@ LINKAGE = Form(
         Key("slots", Tables(_SLOT), "Pin in slot: a point runs along a line of another link"),
         Key("sliders", Tables(_SLIDER), "A link slides along a line of another without turning"),
         Key("cylinders", Tables(_CYLINDER), "A link of variable length between two points"),
+        Key("welds", Tables(_WELD), "Two links that share a point and turn together"),
+        Key("gears", Tables(_GEAR), "Two wheels in mesh, external or internal, on a common arm"),
+        Key("belts", Tables(_BELT), "A belt or chain around two wheels, open or crossed"),
+        Key("racks", Tables(_RACK), "A rack that slides and the pinion that drives it"),
+        Key("rolling", Tables(_ROLLING), "A wheel that rolls without slipping"),
+        Key("cams", Tables(_CAM), "A cam and its follower"),
+        Key("curves", Tables(_CURVE), "A point runs along a curve of another link"),
         Key("input", Tables(_DRIVES, single=True), "What is driven, and over which values"),
         _TRACE,
         _OUTPUTS,

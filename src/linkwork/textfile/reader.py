@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from linkwork.foundation.errors import MechanismError, MechanismFileError, Problem
+from linkwork.mechanism.contacts import Belt, Cam, Curve, Gear, Rack, Rolling, Segment, Weld
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
@@ -133,14 +134,31 @@ def _description(content: dict[str, Any], form: Form) -> Linkage | Loops | Plain
         return Loops(**fields, **own)
     if form is EQUATIONS:
         return PlainEquations(**fields, equations=content["equations"], guess=content["guess"])
+    fields |= {key: content.get(key, {}) for key in ("points", "links", "lengths", "angles")}
+    for kind, part in _PARTS.items():
+        fields[kind] = tuple(part(**table) for table in content.get(kind, ()))
     return Linkage(
         **fields,
-        **{key: content.get(key, {}) for key in ("points", "links", "lengths", "angles")},
-        slots=tuple(Slot(**table) for table in content.get("slots", ())),
-        sliders=tuple(Slider(**table) for table in content.get("sliders", ())),
-        cylinders=tuple(Cylinder(**table) for table in content.get("cylinders", ())),
         sketch=content.get("sketch", False),
     )
+
+
+def _cam(*, segments: tuple[dict[str, Any], ...] = (), **fields: Any) -> Cam:
+    return Cam(**fields, segments=tuple(Segment(**table) for table in segments))
+
+
+_PARTS: dict[str, Callable[..., Any]] = {
+    "slots": Slot,
+    "sliders": Slider,
+    "cylinders": Cylinder,
+    "welds": Weld,
+    "gears": Gear,
+    "belts": Belt,
+    "racks": Rack,
+    "rolling": Rolling,
+    "cams": _cam,
+    "curves": Curve,
+}
 
 
 def _input(table: dict[str, Any]) -> Input:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import secrets
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.linkage import PART_KINDS, Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.parts import Input
 from linkwork.textfile.keys import FORMAT
@@ -96,7 +97,7 @@ def _tables(description: Description) -> _Tables:
         case Linkage():
             for name in ("points", "links", "lengths", "angles"):
                 found[name] = dict(getattr(description, name))
-            for name in ("slots", "sliders", "cylinders"):
+            for name in PART_KINDS:
                 found[name] = [_given(part) for part in getattr(description, name)]
             found |= _inputs(description)
         case Loops():
@@ -127,8 +128,14 @@ def _input(which: Input) -> dict[str, Any]:
     return {renamed.get(key, key): entry for key, entry in _given(which).items()}
 
 
-def _given(part: object) -> dict[str, Any]:
-    return {key: entry for key, entry in vars(part).items() if entry is not None}
+def _given(part: Any) -> dict[str, Any]:
+    """What a part says, without fields that are left open or as they are anyway."""
+    usual = {field.name: field.default for field in fields(part)}
+    return {
+        key: [_given(each) for each in entry] if key == "segments" else entry
+        for key, entry in vars(part).items()
+        if entry is not None and entry != usual[key]
+    }
 
 
 def _add(document: TOMLDocument, name: str, table: dict[str, Any] | list[dict[str, Any]]) -> None:
@@ -153,6 +160,15 @@ def _filled(entries: Mapping[str, Any]) -> Any:
     return table
 
 
+def _inline(entries: Mapping[str, Any]) -> Any:
+    import tomlkit
+
+    table = tomlkit.inline_table()
+    for key, entry in entries.items():
+        table.add(key, _plain(entry))
+    return table
+
+
 def _plain(entry: Any) -> Any:
     """Lists for tuples, and plain numbers for those of other packages."""
     match entry:
@@ -160,5 +176,7 @@ def _plain(entry: Any) -> Any:
             return entry
         case list() | tuple():
             return [_plain(each) for each in entry]
+        case dict():
+            return _inline(entry)
         case _:
             return float(entry)

@@ -26,7 +26,7 @@ from linkwork.motion.assembly.turned_slides import TurnedSlide, turned_slides
 from linkwork.motion.model import Model
 from linkwork.numerics.bilinear import proved_roots
 from linkwork.numerics.bilinear_family import bilinear_roots
-from linkwork.numerics.block_solver import Block, linearised
+from linkwork.numerics.block_solver import Block, Linearised, linearised
 from linkwork.numerics.newton import newton
 from linkwork.numerics.polynomial_system import Roots
 from linkwork.numerics.proof import Proof, prove_block, rounding_of_inputs
@@ -138,6 +138,9 @@ class _Assembly:
         table = block.system
         if not isinstance(table, LoopTable):
             raise NoDirectionForm("are not loops")
+        if table.is_straight and (table.functions or not table.turns[: table.unknowns].all()):
+            self._follow(block)
+            return
         form = direction_form(table)
         found = _block_configurations(self.model, block, form, self.v, self.proof.each)
         self.completeness = self.completeness.and_then(found.completeness)
@@ -153,6 +156,23 @@ class _Assembly:
         v, rows, double = v[keep], found.rows[keep], found.multiple[keep]
         part = linearised(block, v)
         order, labels = ordered(block, form, v, rows, part.sign, double, bool(slides))
+        self.iterations = np.maximum(self.iterations[rows], found.iterations[keep])[order]
+        self._place(block, part, v, rows, np.array(order, dtype=np.intp))
+        self.labels = [(*self.labels[rows[k]], labels[k]) for k in order]
+
+    def _follow(self, block: Block) -> None:
+        """A block that a cam or a rack determines: one configuration for each of those before."""
+        done = newton(block.system, self.v[:, block.variables], self.solver.options)
+        v = self.v.copy()
+        v[:, block.unknowns] = done.v[:, : len(block.unknowns)]
+        every = np.arange(len(v))
+        self.paths.append(replace(_FOLLOWS.paths, unknowns=self._names(block)))
+        self._place(block, linearised(block, v), v, every, every)
+
+    def _place(
+        self, block: Block, part: Linearised, v: Array, rows: IndexArray, order: IndexArray
+    ) -> None:
+        """Take over a block's positions v with their proof, in a new order."""
         before = _rows_of(self.proof, rows)
         radii = prove_block(block, part, v, before.each)
         each = before.each
@@ -163,9 +183,7 @@ class _Assembly:
             unique=np.concatenate([before.unique, radii.unique[:, None]], axis=1),
             each=each,
         )
-        self.v, self.proof = v[order], _rows_of(proof, np.array(order, dtype=np.intp))
-        self.iterations = np.maximum(self.iterations[rows], found.iterations[keep])[order]
-        self.labels = [(*self.labels[rows[k]], labels[k]) for k in order]
+        self.v, self.proof = v[order], _rows_of(proof, order)
 
     def _fold_note(self, slide: TurnedSlide) -> str:
         unknowns = self.model.equations.unknowns

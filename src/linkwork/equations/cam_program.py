@@ -1,0 +1,109 @@
+"""The motion of a cam's follower over one turn of the cam, and the outline that makes it so."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.kernels.piecewise import Piecewise
+from linkwork.mechanism.motion_laws import pieces_of
+
+__all__ = ["FollowerPath", "Undercut", "program"]
+
+_SAMPLES = 1440  # positions of the cam at which its outline is looked at
+
+
+def program(segments: Sequence[tuple[str, float, float]]) -> Piecewise:
+    """The follower's motion as a function of the cam's angle from 0 to 2π.
+
+    ``segments``: law, angle of the cam [rad] and lift, one after the other.
+    """
+    breaks, powers, sines, height = [0.0], [], [], 0.0
+    for law, over, lift in segments:
+        begin = breaks[-1]
+        done = 0.0
+        for piece in pieces_of(law):
+            done += piece.over
+            breaks.append(begin + over * min(done, 1.0))
+            row = np.zeros(8)
+            scaled = [lift * c / over**k for k, c in enumerate(piece.powers)]
+            row[: len(scaled)] = scaled
+            row[0] += height
+            powers.append(row)
+            a, w, p = piece.sine
+            sines.append((lift * a, w / over, p))
+        height += lift
+    breaks[-1] = 2.0 * math.pi
+    return Piecewise(breaks=np.array(breaks), powers=np.array(powers), sines=np.array(sines))
+
+
+class Undercut(Exception):
+    """The outline would cut into itself; ``where`` [rad] of the cam's turn, ``radius`` there."""
+
+    def __init__(self, where: float, radius: float) -> None:
+        super().__init__(where, radius)
+        self.where, self.radius = where, radius
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FollowerPath:
+    """How a follower moves around a cam that turns by φ, seen from the cam's centre on the frame.
+
+    Parameters
+    ----------
+    motion : Piecewise
+        The follower's displacement or angle over the cam's turn.
+    place : callable
+        From motion, its first and second derivative by φ (K,): point w and its derivatives w', w''
+        (K,), for a flat face also its direction and that one's derivative.
+    roller : float
+        Radius of the roller, 0 for a knife edge.
+    flat : bool
+    """
+
+    motion: Piecewise
+    place: Callable[[Array, Array, Array], tuple[ComplexArray, ...]]
+    roller: float = 0.0
+    flat: bool = False
+
+    def outline(self) -> ComplexArray:
+        """The cam's outline in its own frame about its centre, as it stands at φ = 0.
+
+        Raises
+        ------
+        Undercut
+            If no outline makes the follower move like that.
+        """
+        phi = np.linspace(0.0, 2.0 * np.pi, _SAMPLES, endpoint=False)
+        back = np.exp(-1j * phi)
+        if self.flat:
+            return self._face(phi, back)
+        w, w1, w2 = self.place(*self.motion.jet(phi))
+        z, z1 = w * back, (w1 - 1j * w) * back
+        z2 = (w2 - 2j * w1 - w) * back
+        # the path runs clockwise around the centre: it is convex where it bends clockwise
+        bend = -(z1.conj() * z2).imag / np.abs(z1) ** 3
+        if self.roller:
+            worst = int(bend.argmax())
+            if bend[worst] * self.roller >= 1.0:
+                raise Undercut(float(phi[worst]), 1.0 / float(bend[worst]))
+        surface: ComplexArray = z - self.roller * 1j * z1 / np.abs(z1)
+        return surface
+
+    def _face(self, phi: Array, back: ComplexArray) -> ComplexArray:
+        """What a straight face leaves uncut: its envelope."""
+        w, w1, _, d, d1 = self.place(*self.motion.jet(phi))
+        z1 = w1 - 1j * w
+        turned = d1 - 1j * d
+        along = -(d.conj() * z1).imag / (d.conj() * turned).imag
+        surface: ComplexArray = (w + along * d) * back
+        ways = ((np.roll(surface, -1) - np.roll(surface, 1)) * (d * back).conj()).real
+        majority = np.sign(np.median(ways))
+        wrong = np.flatnonzero(ways * majority <= 0.0)
+        if len(wrong):
+            raise Undercut(float(phi[wrong[0]]), 0.0)
+        return surface

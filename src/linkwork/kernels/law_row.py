@@ -1,0 +1,77 @@
+"""Rows that tie variables by a function of one sum: Σ a v + constant - f(Σ w v + offset) = 0."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.kernels.piecewise import Piecewise
+
+__all__ = ["LawRow"]
+
+_UNIT = np.finfo(float).eps / 2
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LawRow:
+    """One real equation with a function whose bend is bounded.
+
+    Parameters
+    ----------
+    variables : tuple of int
+    weights, constant
+        a (k,) and the constant of the straight part.
+    law : Piecewise
+    inner, offset
+        w (k,) and the offset of the function's argument.
+    """
+
+    variables: tuple[int, ...]
+    weights: Array
+    constant: float
+    law: Piecewise
+    inner: Array
+    offset: float
+
+    def moved(self, new_index: dict[int, int]) -> LawRow:
+        """The same row over renumbered variables."""
+        return replace(self, variables=tuple(new_index[k] for k in self.variables))
+
+    def _argument(self, v: Array) -> Array:
+        argument: Array = v[:, list(self.variables)] @ self.inner + self.offset
+        return argument
+
+    def value_and_gradient(self, v: Array) -> tuple[Array, Array]:
+        """Value (B,) and derivatives by ``variables`` (B, k)."""
+        value, slope, _ = self.law.jet(self._argument(v))
+        straight = v[:, list(self.variables)] @ self.weights + self.constant
+        return straight - value, self.weights - slope[:, None] * self.inner
+
+    def second(self, v: Array, d: Array) -> Array:
+        """Second derivative along d, (B,)."""
+        turned = d[:, list(self.variables)] @ self.inner
+        second: Array = -self.law.jet(self._argument(v))[2] * turned**2
+        return second
+
+    @property
+    def bend(self) -> float:
+        """No smaller than the second derivative of the function anywhere."""
+        return self.law.bend
+
+    def rounding(self, v: Array) -> tuple[Array, Array]:
+        """Bounds of the error of the value (B,) and of its derivatives (B, k)."""
+        x = v[:, list(self.variables)]
+        value, slope = self.law.rounding(self._argument(v))
+        argument = np.abs(x) @ np.abs(self.inner) + abs(self.offset)
+        count = len(self.variables) + 3.0
+        moved = count * _UNIT * argument
+        straight = np.abs(x) @ np.abs(self.weights) + abs(self.constant)
+        steepest = np.abs(self.law.jet(self._argument(v))[1]) + self.law.bend * moved
+        size = np.abs(self.law(self._argument(v)))
+        error = value + steepest * moved + _UNIT * (count * straight + 2.0 * size)
+        slopes = (slope + self.law.bend * moved + 2.0 * _UNIT * steepest)[:, None] * np.abs(
+            self.inner
+        )
+        return error, slopes + 2.0 * _UNIT * np.abs(self.weights)

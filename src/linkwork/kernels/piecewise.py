@@ -1,0 +1,141 @@
+"""Real functions given piece by piece: polynomials plus one sine, joined smoothly.
+
+    f(x) = Σ_k c_k t^k + A sin(ω t + ψ),     t = x - b,  b ≤ x < next b
+
+Motion laws of cams and cubic splines are of this kind. A function either repeats itself after its
+period, or goes on straight beyond its ends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import comb
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, IndexArray
+
+__all__ = ["Piecewise"]
+
+_UNIT = np.finfo(float).eps / 2
+_PARTS = 32  # of each piece, in which its bend is bounded
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Piecewise:
+    """A function with continuous slope, K pieces.
+
+    Parameters
+    ----------
+    breaks : (K + 1,)
+        Where pieces begin and the last one ends, increasing.
+    powers : (K, D + 1)
+        c_k of every piece, lowest power first.
+    sines : (K, 3)
+        A, ω, ψ of every piece.
+    periodic : bool
+        Whether it repeats itself after ``breaks[-1] - breaks[0]``.
+    """
+
+    breaks: Array
+    powers: Array
+    sines: Array
+    periodic: bool = True
+
+    @property
+    def period(self) -> float:
+        """How long all pieces are together."""
+        return float(self.breaks[-1] - self.breaks[0])
+
+    def slope(self) -> Piecewise:
+        """The derivative as a function of its own; beyond open ends it goes on as a straight line.
+
+        Its slope is continuous only if the second derivative of this one is.
+        """
+        k = np.arange(1, self.powers.shape[1])
+        a, w, p = self.sines.T
+        return Piecewise(
+            breaks=self.breaks,
+            powers=self.powers[:, 1:] * k,
+            sines=np.stack([a * w, w, p + np.pi / 2.0], axis=1),
+            periodic=self.periodic,
+        )
+
+    def times(self, factor: float) -> Piecewise:
+        """The function with all values multiplied."""
+        return replace(
+            self, powers=factor * self.powers, sines=self.sines * np.array([factor, 1.0, 1.0])
+        )
+
+    def _placed(self, x: Array) -> tuple[IndexArray, Array, Array]:
+        """Piece of each x, t inside it, and how far x lies beyond an open end."""
+        low, high = self.breaks[0], self.breaks[-1]
+        if self.periodic:
+            inside = low + np.mod(x - low, self.period)
+            beyond = np.zeros_like(x)
+        else:
+            inside = np.clip(x, low, high)
+            beyond = x - inside
+        piece = np.clip(np.searchsorted(self.breaks, inside, side="right") - 1, 0, None)
+        piece = np.minimum(piece, len(self.breaks) - 2)
+        return piece, inside - self.breaks[piece], beyond
+
+    def jet(self, x: Array) -> tuple[Array, Array, Array]:
+        """Value, first and second derivative at any x; the second from the right at a joint."""
+        shape, x = np.shape(x), np.ravel(np.asarray(x, dtype=float))
+        piece, t, beyond = self._placed(x)
+        c = self.powers[piece]
+        value, first, second = np.zeros_like(t), np.zeros_like(t), np.zeros_like(t)
+        for k in range(c.shape[1] - 1, -1, -1):
+            second = second * t + 2.0 * first
+            first = first * t + value
+            value = value * t + c[:, k]
+        a, w, p = self.sines[piece].T
+        sine, cosine = a * np.sin(w * t + p), a * w * np.cos(w * t + p)
+        first = first + cosine
+        value = value + sine + first * beyond
+        second = np.where(beyond == 0.0, second - w**2 * sine, 0.0)
+        return value.reshape(shape), first.reshape(shape), second.reshape(shape)
+
+    def __call__(self, x: Array) -> Array:
+        """The value at any x."""
+        return self.jet(x)[0]
+
+    @cached_property
+    def bend(self) -> float:
+        """No smaller than |f''| anywhere."""
+        count = self.powers.shape[1]
+        lengths = np.diff(self.breaks)
+        half = lengths / (2.0 * _PARTS)
+        largest = 0.0
+        for part in range(_PARTS):
+            middle = (2 * part + 1) * half
+            total = np.zeros(len(lengths))
+            for j in range(count - 2):  # Taylor coefficients of f'' about the middle of the part
+                coefficient = np.zeros(len(lengths))
+                for k in range(count - 1, j + 1, -1):
+                    coefficient = coefficient * middle + self.powers[:, k] * (
+                        k * (k - 1) * comb(k - 2, j)
+                    )
+                total += np.abs(coefficient) * half**j
+            largest = max(largest, float(total.max(initial=0.0)))
+        largest_sine = float((np.abs(self.sines[:, 0]) * self.sines[:, 1] ** 2).max(initial=0.0))
+        return (largest + largest_sine) * (1.0 + 1e-9)
+
+    def rounding(self, x: Array) -> tuple[Array, Array]:
+        """Bounds of the error of computing the value and the first derivative at x (B,)."""
+        piece, t, beyond = self._placed(x)
+        c, degrees = np.abs(self.powers[piece]), np.arange(self.powers.shape[1])
+        t = np.abs(t)
+        powers = t[:, None] ** degrees
+        a, w, p = np.abs(self.sines[piece].T)
+        phase = 8.0 + w * t + p
+        slope_powers = (c[:, 1:] * degrees[1:]) * powers[:, :-1]
+        first = slope_powers.sum(axis=1) + a * w
+        moved = 2.0 * (np.abs(x) + self.period + np.abs(self.breaks).max())
+        factor = 2.0 * self.powers.shape[1] + 8.0
+        value_error = factor * (c * powers).sum(axis=1) + a * phase + first * moved
+        value_error += factor * first * np.abs(beyond)
+        slope_error = factor * slope_powers.sum(axis=1) + a * w * phase + self.bend * moved
+        return _UNIT * value_error, _UNIT * slope_error
