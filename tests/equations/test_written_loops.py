@@ -163,17 +163,20 @@ TOO_MANY = [
     (
         FOUR_BAR,
         both("crank", "rocker"),
-        "1 condition too many: remove an input or a link among crank, rocker, coupler",
+        "1 condition too many: remove an input or a link among crank, rocker, coupler "
+        "(as assembled it has 1 degree of freedom for 2 inputs)",
     ),
     (
         FOUR_BAR | {"rod": "B D"},
         both("crank"),
-        "1 condition too many: remove an input or a link among crank, rod",
+        "1 condition too many: remove an input or a link among crank, rod "
+        "(as assembled it has 0 degrees of freedom for 1 input)",
     ),
     (
         FOUR_BAR | {"rod": "B D"},
         both("crank", "rocker"),
-        "2 conditions too many: remove an input or a link among crank, rocker, rod, coupler",
+        "2 conditions too many: remove an input or a link among crank, rocker, rod, coupler "
+        "(as assembled it has 0 degrees of freedom for 2 inputs)",
     ),
 ]
 

@@ -11,6 +11,7 @@ from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.motion_page import limit_text
 from linkwork.cli.options import debug_option, file_argument, json_option, set_option
 from linkwork.cli.output_file import check_outputs
+from linkwork.cli.position_page import listed_links, redundant_lines
 from linkwork.cli.terminal import (
     bad,
     fields,
@@ -121,6 +122,9 @@ def _circuit_lines(found: Circuits, circuit: Circuit) -> list[str]:
 
 def _facts(found: Circuits, circuit: Circuit) -> Iterator[tuple[str, str]]:
     proof = "proved" if circuit.certified else "not proved"
+    redundant = circuit.motion.redundant
+    if redundant and circuit.certified:
+        proof += f" without {listed_links(redundant)}"
     yield ("closed" if circuit.closed else "not closed"), f"{circuit.end.story}; {proof}"
     if circuit.closed:
         yield from _turning(circuit)
@@ -133,6 +137,7 @@ def _facts(found: Circuits, circuit: Circuit) -> Iterator[tuple[str, str]]:
         yield "input at rest", f"along {', '.join(resting)} {CircuitEnd.INPUT_CONSTANT.story}"
     for limit in (*circuit.dead_points, *circuit.change_points):
         yield limit.kind.word, limit_text(limit, found.input, found.input_unit)
+    yield from redundant_lines(redundant)
     if not (circuit.dead_points or circuit.change_points):
         where = f"{found.input} = {circuit.weakest:.3g} {found.input_unit}".rstrip()
         yield (

@@ -31,7 +31,9 @@ from linkwork.cli.terminal import (
 from linkwork.cli.text_table import Column, short, table_lines
 from linkwork.drawing.sheet import configuration_sheet
 from linkwork.everyday import Mechanism
+from linkwork.foundation.certification import Certification
 from linkwork.results.configurations import Configurations, PathCount
+from linkwork.results.position import Certificate
 from linkwork.results.quantity import Kind
 
 __all__ = ["configurations", "configurations_lines"]
@@ -107,6 +109,8 @@ def configurations_lines(mechanism: Mechanism, found: Configurations) -> list[st
 def _table(mechanism: Mechanism, found: Configurations) -> list[str]:
     columns = [Column(header="name", cells=found.names)]
     for variable in mechanism.loop_equations.unknowns:
+        if variable.name not in found.positions[0].unknowns:
+            continue  # a redundant link's length
         kind = Kind(variable.kind)
         unit = found.positions[0].units.of(kind)
         rows = [
@@ -115,7 +119,7 @@ def _table(mechanism: Mechanism, found: Configurations) -> list[str]:
         ]
         header = f"{variable.name} [{unit}]" if unit else variable.name
         columns.append(Column(header=header, cells=value_cells(rows), align="point"))
-    certified = ["yes" if p.certificate.certified else "no" for p in found]
+    certified = [_certified(p.certificate) for p in found]
     columns.append(Column(header="certified", cells=certified))
     return table_lines(columns)
 
@@ -145,3 +149,9 @@ def path_sentence(count: PathCount, *, several: bool) -> str:
     ]
     times = f", for {count.solved} positions before" if count.solved > 1 else ""
     return f"{who}{count.paths} solutions{times}: {', '.join(parts)}"
+
+
+def _certified(certificate: Certificate) -> str:
+    if certificate.certification is Certification.SUBSET_CERTIFIED:
+        return "partly"
+    return "yes" if certificate.certified else "no"

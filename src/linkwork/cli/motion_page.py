@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from linkwork.cli.position_page import Row, value_cells
+from linkwork.cli.position_page import Row, listed_links, redundant_lines, value_cells
 from linkwork.cli.terminal import bad, fields, sentence, title_lines
 from linkwork.cli.text_table import Column, short, table_lines
 from linkwork.foundation.arrays import Array
@@ -163,12 +163,16 @@ def _certified(motion: Motion) -> Iterator[tuple[str, str]]:
     why = Counter(
         c.value
         for c, here in zip(motion.certification, motion.found, strict=True)
-        if here and c is not Certification.CERTIFIED
+        if here and c not in (Certification.CERTIFIED, Certification.SUBSET_CERTIFIED)
     )
-    if proved or not why:
+    partly = motion.certification.count(Certification.SUBSET_CERTIFIED)
+    if partly:
+        yield "certified", f"{partly}, without {listed_links(motion.redundant)}"
+    elif proved or not why:
         yield "certified", str(proved)
     for reason, count in why.items():
         yield "not certified", f"{count if count < found else 'all'}: {reason}"
+    yield from redundant_lines(motion.redundant)
 
 
 def _worst(motion: Motion, values: Array, measure: str) -> str:

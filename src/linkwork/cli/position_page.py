@@ -9,11 +9,20 @@ from dataclasses import dataclass
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
 from linkwork.cli.text_table import Column, fixed, lengths, short, significant, table_lines
 from linkwork.everyday import Mechanism
+from linkwork.foundation.certification import Certification
 from linkwork.motion.lock_step import lock_step
 from linkwork.results.position import Certificate, NewtonTrail, Position
 from linkwork.results.quantity import Kind, Units
 
-__all__ = ["Row", "inputs_text", "position_lines", "residual_measure", "value_cells"]
+__all__ = [
+    "Row",
+    "inputs_text",
+    "listed_links",
+    "position_lines",
+    "redundant_lines",
+    "residual_measure",
+    "value_cells",
+]
 
 _NOISE = 1e-13  # of the largest derivative: rounding, shown as 0
 _NUMBER_DIGITS = 10  # of a plain number, of which nothing is known
@@ -65,7 +74,7 @@ def value_cells(rows: Sequence[Row]) -> list[str]:
 def _tables(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, list[Row]]]:
     """The numbers of a position, by what they are."""
     equations = mechanism.loop_equations
-    unknowns = {v.name: Kind(v.kind) for v in equations.unknowns}
+    unknowns = {v.name: Kind(v.kind) for v in equations.unknowns if v.name in position.unknowns}
     outputs = {name: Kind(output.kind) for name, output in equations.outputs.items()}
     known = {*unknowns, *position.input}
     links = {
@@ -136,12 +145,29 @@ def _evidence(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, s
     yield "residual", significant(position.residual, 2) + residual_measure(mechanism)
     yield "iterations", str(position.iterations)
     yield "condition", significant(position.condition, 3)
-    yield "certificate", _certificate(position.certificate)
+    without = ""
+    if position.certificate.certification is Certification.SUBSET_CERTIFIED:
+        without = f"; without {listed_links(position.redundant)}"
+    yield "certificate", _certificate(position.certificate) + without
+    yield from redundant_lines(position.redundant)
+
+
+def listed_links(redundant: Mapping[str, float]) -> str:
+    """The redundant links as they are called in a sentence."""
+    return f"the redundant link{'s' if len(redundant) > 1 else ''} {', '.join(redundant)}"
+
+
+def redundant_lines(redundant: Mapping[str, float]) -> Iterator[tuple[str, str]]:
+    """How well redundant links fit."""
+    for link, gap in redundant.items():
+        size = significant(gap, 2)
+        yield "redundant", f"{link}: its length holds to {size} of the longest link, not proved"
 
 
 def _certificate(certificate: Certificate) -> str:
     """What is proved of the position, in a line, or why nothing is."""
-    if not certificate.certified or certificate.radius is None:
+    proved = certificate.certified or (certificate.certification is Certification.SUBSET_CERTIFIED)
+    if not proved or certificate.radius is None:
         return f"none: {certificate.certification.value}"
     radius = significant(certificate.radius, 2)
     alone = certificate.unique_within or 0.0

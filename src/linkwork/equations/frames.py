@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from linkwork.equations.model import LinkAngle, Term
+from linkwork.equations.model import LinkAngle, Redundant, Term
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, Node
 from linkwork.foundation.names import canonical
@@ -47,6 +47,7 @@ class Frames:
     lengths: list[str] = field(default_factory=list)
     start: dict[str, float] = field(default_factory=dict)
     symbols: dict[str, float] = field(default_factory=dict)
+    released: list[Redundant] = field(default_factory=list)
 
     @classmethod
     def of(cls, linkage: Linkage, problems: Problems) -> Frames:
@@ -113,6 +114,15 @@ class Frames:
             self.symbols[symbol] = length
             rod = self.turned(length + 0j, Name(symbol, symbol), name)
         self.places[name] = {a: Place(0j, base=a), b: Place(0j, (rod,), base=a)}
+
+    def release(self, link: str) -> None:
+        """Let the length of a link of two points be an unknown."""
+        a, b = self.linkage.links[link]
+        name = f"{link}_length"
+        length = abs(self.places[link][b].fixed - self.places[link][a].fixed)
+        self.places[link][b] = Place(0j, (self.turned(1.0 + 0j, None, link, name),), base=a)
+        self.start[name] = length
+        self.released.append(Redundant(variable=name, link=link, length=length))
 
     def now(self, angle: LinkAngle) -> float:
         """The variable part of an angle in the sketch [rad]."""

@@ -12,6 +12,7 @@ import numpy as np
 from linkwork.equations.contacts import Contacts
 from linkwork.equations.frames import Frames
 from linkwork.equations.model import (
+    LawEquation,
     LinearEquation,
     LoopEquation,
     LoopEquations,
@@ -21,8 +22,10 @@ from linkwork.equations.model import (
     Variable,
 )
 from linkwork.equations.outputs import read_outputs
+from linkwork.equations.redundancy import released_links
 from linkwork.equations.structure import Node, Structure, StructureBlock
 from linkwork.expression.tree import Name
+from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.names import canonical, pretty
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.linkage import GROUND, Linkage
@@ -47,6 +50,8 @@ def write_loops(linkage: Linkage) -> LoopEquations:
 @dataclass
 class _Writer:
     linkage: Linkage
+    released: tuple[str, ...] = ()
+    surplus: Problem | None = None
     problems: Problems = field(default_factory=Problems)
     inputs: list[Variable] = field(default_factory=list)
     start: dict[str, float] = field(default_factory=dict)
@@ -59,6 +64,8 @@ class _Writer:
         linkage = self.linkage
         where = f'mechanism "{linkage.name}"'
         self.frames = frames = Frames.of(linkage, self.problems)
+        for link in self.released:
+            frames.release(link)
         self.problems.raise_any(where)
         self.contacts = contacts = Contacts.of(frames, self.problems)
         self.problems.raise_any(where)
@@ -75,6 +82,10 @@ class _Writer:
         self._check_connected(structure)
         self.problems.raise_any(where)
         self._check_determined(structure)
+        if self.problems and not self.released:
+            without = self._without_surplus(structure, {v.symbol for v in unknowns})
+            if without is not None:
+                return without
         self.problems.raise_any(where)
         blocks = structure.blocks()
         loops = [
@@ -91,6 +102,8 @@ class _Writer:
             loops=(*loops, *contacts.loops),
             linear=tuple(self.linear),
             laws=tuple(contacts.laws),
+            redundant=tuple(frames.released),
+            surplus=self.surplus,
             outlines=contacts.outlines,
             symbols=dict(frames.symbols),
             dimensions=dict(linkage.numbers.known),
@@ -111,7 +124,8 @@ class _Writer:
     def _variables(self, angles: Sequence[str | None]) -> list[tuple[str, str]]:
         named = [(a, "angle") for a in angles if a is not None]
         lengths = [(length, "length") for length in self.frames.lengths]
-        return named + lengths + self.contacts.variables
+        released = [(part.variable, "length") for part in self.frames.released]
+        return named + lengths + released + self.contacts.variables
 
     def _drive(self, which: Input, key: tuple[str | int, ...]) -> None:
         """Turn an input into a variable: an angle, a relative angle or a length."""
@@ -217,6 +231,20 @@ class _Writer:
                 f"{form.surplus} condition{'s' if form.surplus > 1 else ''} too many: "
                 f"remove an input or a link among {', '.join(tied) or 'those joined to ground'}",
             )
+
+    def _without_surplus(self, structure: Structure, unknown: set[str]) -> LoopEquations | None:
+        """The equations with the lengths of some links released, if that makes them square."""
+        form, _ = structure.form()
+        if form.missing or not form.surplus:
+            return None
+        relations: list[LinearEquation | LawEquation] = [*self.linear, *self.contacts.laws]
+        links = released_links(self.frames, structure.incidences, relations, unknown, form.surplus)
+        if len(links) < form.surplus:
+            return None
+        try:
+            return _Writer(self.linkage, released=links, surplus=self.problems[0]).written()
+        except MechanismError:
+            return None
 
     def _order(self, walk: tuple[Node, ...]) -> list[int]:
         """Loops of one block are shown in the order in which the file names their links."""

@@ -11,6 +11,7 @@ import numpy as np
 from linkwork.expression.tree import Node
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.errors import Problem
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.kernels.piecewise import Piecewise
 
@@ -23,6 +24,7 @@ __all__ = [
     "Output",
     "PointPath",
     "RealEquation",
+    "Redundant",
     "Term",
     "Variable",
 ]
@@ -164,6 +166,18 @@ class LinkAngle:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Redundant:
+    """A condition more than needed: the link's length is an unknown and has to come out as given.
+
+    ``variable`` names the unknown, ``length`` is what was given.
+    """
+
+    variable: str
+    link: str
+    length: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Output:
     """A named formula; ``kind`` tells whether its value is an angle, a length or a number."""
 
@@ -192,6 +206,8 @@ class LoopEquations:
     sliders : Mapping[str, str]
         Name of slider, slot or cylinder → variable.
     outputs : Mapping[str, Output]
+    redundant : tuple of Redundant
+        Conditions that the others have to imply; ``surplus`` says that there are too many.
     outlines : Mapping[str, (body, point, (K,) complex)]
         Cams and curves by name: points about a point of a body, in that body's frame.
     fixed : tuple of str
@@ -214,6 +230,8 @@ class LoopEquations:
     links: Mapping[str, LinkAngle] = FrozenDict()
     sliders: Mapping[str, str] = FrozenDict()
     outputs: Mapping[str, Output] = FrozenDict()
+    redundant: tuple[Redundant, ...] = ()
+    surplus: Problem | None = None
     outlines: Mapping[str, tuple[str, str, ComplexArray]] = FrozenDict()
     fixed: tuple[str, ...] = ()
     length_scale: float = 1.0

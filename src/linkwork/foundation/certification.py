@@ -27,6 +27,10 @@ class Certification(Enum):
         "the position is proved; at a change point before it nothing but the chosen way of going "
         "on decides the branch"
     )
+    SUBSET_CERTIFIED = (
+        "proved for the mechanism without its redundant links; that these fit holds to rounding, "
+        "not proved"
+    )
     CONFIGURATION_CERTIFIED = (
         "a true position is proved to lie within the radius, and no other near it"
     )

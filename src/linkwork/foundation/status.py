@@ -40,6 +40,10 @@ class Status(Enum):
         "the branch could not be followed with safety up to this input value: "
         "ask for a value before the last one reached, or start from a guess beyond it"
     )
+    DOES_NOT_FIT = (
+        "a redundant link does not fit into the position of the others: "
+        "change its length, or leave the link out"
+    )
     NO_START = "no position was found at the guess, so there is no motion to follow: see the start"
 
     @property

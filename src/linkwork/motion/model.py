@@ -19,6 +19,7 @@ from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.skeleton import DrivenPart, Skeleton
 from linkwork.motion.lock_step import lock_step
+from linkwork.motion.redundancy import check_redundancy
 from linkwork.motion.speeds import input_speed
 from linkwork.results.quantity import Kind, Units
 
@@ -171,7 +172,9 @@ def model_of(description: Description) -> Model:
             skeleton = Skeleton()
         case _:
             raise TypeError(f"no equations are known for {type(description).__name__}")
-    model = Model(description, equations, compile_equations(equations, where), skeleton)
+    compiled = compile_equations(equations, where)
+    check_redundancy(compiled, where)
+    model = Model(description, equations, compiled, skeleton)
     _ = model.speed  # a speed that cannot be read is an error of the file, found with the others
     return model
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from linkwork.foundation.arrays import BoolArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
 from linkwork.motion.model import Model
 from linkwork.motion.reading import named_series
+from linkwork.motion.redundancy import FITS, largest_misfits, misfit
 from linkwork.motion.rows import SolvedRows
 from linkwork.results.motion import Limit, Motion, OutputLimit
 
@@ -25,6 +28,8 @@ def motion_of_rows(
     circuit: CircuitEnd | None = None,
 ) -> Motion:
     """Name the columns of solved rows; ``added`` marks rows that were not asked for."""
+    if model.equations.redundant:
+        rows = _fitting(model, rows)
     found = rows.status == Status.CONVERGED.code
     named = named_series(model, rows.v, rows.first, rows.second, rows.inputs, found)
     return Motion(
@@ -55,5 +60,18 @@ def motion_of_rows(
         limits=limits,
         output_limits=output_limits,
         circuit=circuit,
+        redundant=largest_misfits(model.equations, rows.v),
         q=rows.v[:, : model.compiled.solver.unknowns],
     )
+
+
+def _fitting(model: Model, rows: SolvedRows) -> SolvedRows:
+    """Rows at which redundant links fit; the others have no position."""
+    rows = rows.take(np.arange(len(rows)))
+    fits = misfit(model.equations, rows.v) <= FITS
+    lost = (rows.status == Status.CONVERGED.code) & ~fits
+    nothing = SolvedRows.blank(rows.inputs[lost], rows.v.shape[1], Status.DOES_NOT_FIT)
+    rows.put(np.flatnonzero(lost), nothing)
+    proved = rows.certification == Certification.CERTIFIED.code
+    rows.certification[proved] = Certification.SUBSET_CERTIFIED.code
+    return rows

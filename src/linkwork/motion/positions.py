@@ -12,6 +12,7 @@ from linkwork.foundation.status import Status
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.reading import Named
+from linkwork.motion.redundancy import largest_misfits
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Series
 from linkwork.results.position import Certificate, NewtonTrail, Position
@@ -121,7 +122,15 @@ def position_of(model: Model, named: Named, row: int, evidence: Evidence, q: Arr
         q=q,
         steps=evidence.trails,
         failure=evidence.failure,
+        redundant=_misfits(model, q),
     )
+
+
+def _misfits(model: Model, q: Array) -> dict[str, float]:
+    """How far redundant links are from their lengths; none where there is no position."""
+    if not model.equations.redundant or np.isnan(q).any():
+        return {}
+    return largest_misfits(model.equations, q[None, :])
 
 
 def _values(table: Mapping[str, Series], row: int) -> dict[str, float]:

@@ -72,9 +72,11 @@ def named_series(
             constant if angle.variable is None else jets[canonical(angle.variable)] + constant
         )
     points = _points(model, columns)
+    released = {part.variable for part in equations.redundant}
     own = {
         variable.name: series(variable.name, jets[variable.symbol], kinds[variable.symbol])
         for variable in equations.unknowns
+        if variable.name not in released
     }
     return Named(
         inputs={variable.name: inputs[:, k] for k, variable in enumerate(equations.inputs)},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from linkwork.motion.positions import (
     target_values,
 )
 from linkwork.motion.reading import named_series
+from linkwork.motion.redundancy import FITS, misfit, without_redundant
 from linkwork.motion.start import Start, first_position
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.proof import prove, rounding_of_inputs
@@ -157,6 +159,8 @@ def _position(
     """What was found, named and with its derivatives."""
     solver = model.compiled.solver
     v = found.v[None, :]
+    if found.status.ok and misfit(model.equations, v)[0] > FITS:
+        return _failed(model, target, Status.DOES_NOT_FIT, None, start)
     rates = solver.rates(v, input_rate(model))
     ok = np.array([found.status.ok])
     named = named_series(model, v, rates.first, rates.second, target[None, :], ok)
@@ -167,7 +171,10 @@ def _position(
         residual=found.residual,
         iterations=found.iterations,
         condition=condition,
-        certificate=found.certificate,
+        certificate=replace(
+            found.certificate,
+            certification=without_redundant(model.equations, found.certificate.certification),
+        ),
         trails=start.trails,
         failure=failure,
     )

@@ -157,6 +157,8 @@ class Motion:
     iterations : array (N,), int
     certification : tuple of Certification
         Whether each row is proved, or why not; ``certified`` has it as an array of bool.
+    redundant : Mapping[str, float]
+        How far each redundant link is from its length at most, of the longest link; not proved.
     radius, unique_within : array (N,)
         Where proved: a true position lies within ``radius`` of the row and no other within
         ``unique_within`` (largest norm; lengths relative to the longest link).
@@ -207,6 +209,7 @@ class Motion:
     limits: tuple[Limit, ...] = ()
     output_limits: tuple[OutputLimit, ...] = ()
     circuit: CircuitEnd | None = None
+    redundant: Mapping[str, float] = FrozenDict()
     q: Array
     failure: Failure | None = None
 

@@ -96,6 +96,8 @@ class Position:
         Largest closure error divided by the longest link.
     condition : float
         Largest condition number (largest norm, weighted) of a block's Jacobian.
+    redundant : Mapping[str, float]
+        How far each redundant link is from its length, of the longest link; not proved.
     configuration : str
         What this way to put the mechanism together is called, if it comes from a list of them.
     q : array, shape (n,)
@@ -125,6 +127,7 @@ class Position:
     iterations: int
     condition: float
     certificate: Certificate = Certificate()
+    redundant: Mapping[str, float] = FrozenDict()
     branch: str = ""
     configuration: str = ""
     q: Array
@@ -177,6 +180,7 @@ class Position:
                 "radius": self.certificate.radius,
                 "unique_within": _null_or_none(self.certificate.unique_within),
                 "reason": self.certificate.certification.value,
+                **({"redundant": dict(self.redundant)} if self.redundant else {}),
             },
             "branch": self.branch,
             "configuration": self.configuration,

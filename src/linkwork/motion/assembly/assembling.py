@@ -24,6 +24,7 @@ from linkwork.kernels.loop_table import LoopTable
 from linkwork.motion.assembly.configuration_names import combined_name, ordered
 from linkwork.motion.assembly.turned_slides import TurnedSlide, turned_slides
 from linkwork.motion.model import Model
+from linkwork.motion.redundancy import FITS, misfit
 from linkwork.numerics.bilinear import proved_roots
 from linkwork.numerics.bilinear_family import bilinear_roots
 from linkwork.numerics.block_solver import Block, Linearised, linearised
@@ -114,6 +115,9 @@ class _Assembly:
             if len(self.v) > _LARGEST:
                 self._give_up(f"there are more than {_LARGEST} of them")
                 break
+        if self.model.equations.redundant:
+            self._keep(misfit(self.model.equations, self.v) <= FITS)
+            self.notes.append("positions that a redundant link does not fit are left out")
         notes = [self.completeness.value, *self.notes]
         return Assemblies(
             v=self.v,
@@ -124,6 +128,12 @@ class _Assembly:
             message="; ".join(notes),
             paths=tuple(self.paths),
         )
+
+    def _keep(self, which: BoolArray) -> None:
+        rows = np.flatnonzero(which)
+        self.v, self.proof = self.v[rows], _rows_of(self.proof, rows)
+        self.iterations = self.iterations[rows]
+        self.labels = [self.labels[k] for k in rows]
 
     def _names(self, block: Block) -> tuple[str, ...]:
         return tuple(self.model.equations.unknowns[int(k)].name for k in block.unknowns)

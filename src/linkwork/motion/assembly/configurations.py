@@ -23,6 +23,7 @@ from linkwork.motion.positions import (
     target_values,
 )
 from linkwork.motion.reading import named_series
+from linkwork.motion.redundancy import without_redundant
 from linkwork.motion.solving import solve
 from linkwork.numerics.generic_roots import SEED
 from linkwork.results.configurations import Configurations
@@ -80,7 +81,9 @@ def _positions(model: Model, target: Array, found: Assemblies) -> tuple[Position
         certificate = Certificate(certification=Certification.POSITION_NOT_PROVED)
         if proof.holds[k]:
             certificate = Certificate(
-                certification=Certification.CONFIGURATION_CERTIFIED,
+                certification=without_redundant(
+                    model.equations, Certification.CONFIGURATION_CERTIFIED
+                ),
                 radius=float(proof.radius[k]),
                 unique_within=float(proof.alone_within[k]),
             )

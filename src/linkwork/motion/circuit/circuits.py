@@ -21,6 +21,7 @@ from linkwork.motion.limits import change_point_limit, dead_point_limit
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import motion_of_rows
+from linkwork.motion.redundancy import FITS, misfit
 from linkwork.motion.rows import SolvedRows
 from linkwork.numerics.change_point import Crossing
 from linkwork.numerics.curve import same_position
@@ -97,7 +98,7 @@ class _Circuits:
 
     def _groups(self) -> list[_Group]:
         """Arcs joined by the change points they share, in the order found."""
-        arcs, crossings = self.explorer.arcs, self.explorer.crossings
+        arcs, crossings = [a for a in self.explorer.arcs if self._fits(a)], self.explorer.crossings
         owner = list(range(len(arcs)))
 
         def root(k: int) -> int:
@@ -123,6 +124,11 @@ class _Circuits:
             )
             for members in groups.values()
         ]
+
+    def _fits(self, arc: Arc) -> bool:
+        """Whether redundant links fit all along an arc."""
+        equations = self.model.equations
+        return all((misfit(equations, branch.v) <= FITS).all() for branch in arc.branches)
 
     def _circuit(self, name: str, group: _Group) -> Circuit:
         model, p = self.model, self.leads.parameter

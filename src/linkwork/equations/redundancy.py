@@ -1,0 +1,150 @@
+"""Which links may be released where a linkage has more conditions than freedoms.
+
+An overconstrained linkage that moves nevertheless (parallel cranks, Dixon's mechanisms) satisfies
+some of its conditions by itself. Releasing the length of a link takes one condition away; it makes
+a difference only if the link carries force in a self-stress, which is a left null vector of the
+Jacobian of all joint conditions.
+"""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from linkwork.equations.frames import Frames
+from linkwork.equations.model import LawEquation, LinearEquation
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.names import canonical
+from linkwork.mechanism.linkage import GROUND
+
+__all__ = ["released_links"]
+
+_RANK = 1e-9  # relative: a smaller singular value counts as none
+_STRESSED = 1e-6  # of the largest: a link with less carries no force
+_ALIKE = 0.5  # of the largest: among such links the last one named is released
+
+
+def released_links(
+    frames: Frames,
+    incidences: Sequence[tuple[str, str]],
+    relations: Sequence[LinearEquation | LawEquation],
+    unknown: set[str],
+    count: int,
+) -> tuple[str, ...]:
+    """Links of two points whose lengths to release, at most ``count``.
+
+    Parameters
+    ----------
+    incidences : sequence of (body, point)
+        Every place where a body carries a point that another one needs.
+    unknown : set of str
+        Symbols of the unknowns; inputs are not among them.
+    """
+    joined = {point for _, point in incidences}
+    bars = [
+        link
+        for link, points in frames.linkage.links.items()
+        if link != GROUND
+        and len(points) == 2
+        and joined.issuperset(points)
+        and frames.angle[link].variable == link
+        and canonical(link) in unknown
+        and not any(place.sliding for place in frames.places[link].values())
+    ]
+    stress = _stresses(frames, incidences, relations, unknown, bars)
+    if not stress.size:
+        return ()
+    found: list[str] = []
+    largest = float(np.linalg.norm(stress, axis=0).max())
+    for _ in range(count):
+        size = np.linalg.norm(stress, axis=0)
+        if size.max() <= _STRESSED * largest:
+            break
+        chosen = int(np.flatnonzero(size >= _ALIKE * size.max())[-1])
+        found.append(bars[chosen])
+        direction = stress[:, chosen] / size[chosen]
+        stress = stress - np.outer(direction, direction @ stress)
+    return tuple(found)
+
+
+def _stresses(
+    frames: Frames,
+    incidences: Sequence[tuple[str, str]],
+    relations: Sequence[LinearEquation | LawEquation],
+    unknown: set[str],
+    bars: Sequence[str],
+) -> Array:
+    """How every self-stress loads each bar, (stresses, bars)."""
+    columns: dict[str, int] = {}
+    entries: list[tuple[int, str, complex]] = []
+    elongations = np.zeros((2 * len(incidences) + len(relations), len(bars)))
+    scale = max((abs(z) for places in _fixed(frames) for z in places), default=1.0) or 1.0
+    for k, (body, point) in enumerate(incidences):
+        entries += [(k, f"point {point} x", 1.0), (k, f"point {point} y", 1j)]
+        if body != GROUND:
+            entries += [(k, f"body {body} x", -1.0), (k, f"body {body} y", -1j)]
+        for name, slope in _slopes(frames, body, point, scale).items():
+            if name in unknown:
+                entries.append((k, name, -slope))
+        if body in bars and point == frames.linkage.links[body][1]:
+            along = cmath.exp(1j * (frames.angle[body].constant + frames.now(frames.angle[body])))
+            elongations[k, bars.index(body)] = along.real
+            elongations[len(incidences) + k, bars.index(body)] = along.imag
+    for _, name, _ in entries:
+        columns.setdefault(name, len(columns))
+    for equation in relations:
+        for name in _gradient(frames, equation):
+            if name in unknown:
+                columns.setdefault(name, len(columns))
+    matrix = np.zeros((len(elongations), len(columns)))
+    for k, name, value in entries:
+        matrix[k, columns[name]] += complex(value).real
+        matrix[len(incidences) + k, columns[name]] += complex(value).imag
+    for row, equation in enumerate(relations, 2 * len(incidences)):
+        for name, value in _gradient(frames, equation).items():
+            if name in unknown:
+                matrix[row, columns[name]] += value
+    u, sizes, _ = np.linalg.svd(matrix)
+    rank = int((sizes > _RANK * sizes[0]).sum()) if len(sizes) else 0
+    stress: Array = u[:, rank:].T @ elongations
+    return stress
+
+
+def _fixed(frames: Frames) -> list[list[complex]]:
+    return [[place.fixed for place in places.values()] for places in frames.places.values()]
+
+
+def _slopes(frames: Frames, body: str, point: str, scale: float) -> dict[str, complex]:
+    """Derivatives of a point's place in a body by its variables, lengths measured by ``scale``."""
+    place, angle = frames.places[body][point], frames.angle[body]
+    found: dict[str, complex] = {}
+
+    def add(name: str, value: complex) -> None:
+        found[name] = found.get(name, 0j) + value
+
+    values = {canonical(name): value for name, value in frames.start.items()}
+    fixed = place.fixed / scale * cmath.exp(1j * (angle.constant + frames.now(angle)))
+    if angle.variable is not None:
+        add(canonical(angle.variable), 1j * fixed)
+    for term in place.sliding:
+        turned = term.value * cmath.exp(1j * sum(w * values[n] for n, w in term.phase))
+        length = 1.0 / scale if term.length is None else values[term.length] / scale
+        for name, weight in term.phase:
+            add(name, 1j * weight * turned * length)
+        if term.length is not None:
+            add(term.length, turned)
+    return found
+
+
+def _gradient(frames: Frames, equation: LinearEquation | LawEquation) -> Mapping[str, float]:
+    """Derivatives of a relation by its variables."""
+    found = dict(equation.terms)
+    if isinstance(equation, LawEquation):
+        values = {canonical(name): value for name, value in frames.start.items()}
+        argument = sum(w * values[n] for n, w in equation.inner) + equation.offset
+        slope = float(equation.law.jet(np.array([argument]))[1][0])
+        for name, weight in equation.inner:
+            found[name] = found.get(name, 0.0) - slope * weight
+    return found
