@@ -8,6 +8,7 @@ import click
 
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.options import debug_option, file_argument, json_option, set_option
+from linkwork.cli.position_page import redundant_lines
 from linkwork.cli.terminal import bad, fields, good, print_json, print_lines, sentence, title_lines
 from linkwork.cli.text_table import Column, lengths, short, significant, table_lines
 from linkwork.results.check import CheckReport
@@ -73,6 +74,7 @@ def _understood(report: CheckReport) -> Iterator[tuple[str, str]]:
                 yield "", f"{k}. {', '.join(block.unknowns)} from {together}"
     if report.form != "equations":
         yield "mobility", _mobility(report)
+    yield from redundant_lines({link: gap for link, _, gap in report.redundant})
 
 
 def _blocks_sentence(report: CheckReport) -> str:
@@ -87,15 +89,7 @@ def _mobility(report: CheckReport) -> str:
     if count is None:
         return by_rank
     both = f"{count} by Grübler's count, {by_rank}"
-    if rank is None or rank == count:
-        return both
-    if rank > count:
-        return (
-            f"{both}. They differ: at this position the constraints repeat each other, "
-            "because of special lengths (parallel or equal links) or because it is a "
-            "dead point or change point"
-        )
-    return f"{both}. They differ: some links move in ways that the equations do not ask for"
+    return f"{both}. They differ: {report.mobility_why}" if report.mobility_why else both
 
 
 def _start(report: CheckReport) -> list[str]:

@@ -2,43 +2,38 @@
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Iterator
 
 from linkwork.foundation.arrays import Array
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
+from linkwork.motion.mobility import mobility_of, pins
 from linkwork.motion.model import Model
+from linkwork.motion.redundancy import largest_misfits
 from linkwork.motion.start import first_position
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.check import BlockSummary, CheckReport
 from linkwork.results.quantity import Kind
 
-__all__ = ["check", "grubler_count"]
+__all__ = ["check"]
 
-_TWO_FREEDOMS = ("slots", "gears", "belts", "racks", "cams", "curves")
-_JOINTS = ("sliders", "rolling", *_TWO_FREEDOMS)
-_LARGEST = 100  # unknowns up to which a singular mechanism is looked at as one matrix
-_RANK_TOLERANCE = 1e-9  # relative to the largest singular value of the scaled Jacobian
+_JOINTS = ("sliders", "rolling", "slots", "gears", "belts", "racks", "cams", "curves")
 
 
 def check(model: Model) -> CheckReport:
     """Report what was understood of a mechanism and try its start position."""
     description, equations = model.description, model.equations
     start = first_position(model, model.start_inputs, NewtonOptions())
-    rank = None
-    if start.status.ok:
-        found = _rank(model, start.v)
-        rank = None if found is None else len(equations.variables) - found
+    mobility = mobility_of(model, start.v if start.status.ok else None)
     measured: tuple[tuple[str, str, float], ...] = ()
     links = joints = 0
-    count = None
     if isinstance(description, Linkage):
-        form, count = "points and links", grubler_count(description)
+        form = "points and links"
         measured = tuple(
             (m.link, " ".join(m.points), m.length) for m in description.shapes.measured
         )
         links = len(description.links) + len(description.cylinders)
-        joints = _pins(description) + sum(len(getattr(description, k)) for k in _JOINTS)
+        joints = pins(description) + sum(len(getattr(description, k)) for k in _JOINTS)
     else:
         form = "loops" if isinstance(description, Loops) else "equations"
     units = model.units
@@ -58,8 +53,10 @@ def check(model: Model) -> CheckReport:
             )
             for block in model.compiled.solver.blocks
         ),
-        mobility_count=count,
-        mobility_rank=rank,
+        mobility_count=mobility.count,
+        mobility_rank=mobility.rank,
+        mobility_why=mobility.why,
+        redundant=() if not start.status.ok else tuple(_redundant(model, start.v)),
         measured=measured,
         start=start.status,
         start_message=start.message,
@@ -72,48 +69,8 @@ def check(model: Model) -> CheckReport:
     )
 
 
-def _pins(linkage: Linkage) -> int:
-    """Revolute joints, a pin of k bodies counting k - 1."""
-    return sum(max(len(bodies) - 1, 0) for bodies in linkage.carriers().values())
-
-
-def grubler_count(linkage: Linkage) -> int:
-    """Grübler's mobility 3(n - 1) - 2·(pins and sliders) - (joints of two freedoms).
-
-    A cylinder counts as its two links and their sliding joint: one body with one freedom more. A
-    slot, a curve, a cam and the teeth of gears and racks leave two freedoms; a belt ties two angles
-    as teeth do. A wheel that rolls without slipping has one freedom; a weld has none, of its two
-    links' pin.
-    """
-    bodies = len(linkage.links) + len(linkage.cylinders)
-    one = _pins(linkage) + len(linkage.sliders) + len(linkage.rolling)
-    two = sum(len(getattr(linkage, kind)) for kind in _TWO_FREEDOMS)
-    return 3 * (bodies - 1) - 2 * one - two - len(linkage.welds) + len(linkage.cylinders)
-
-
-def _rank(model: Model, v: Array) -> int | None:
-    """Rank of all equations by all variables, inputs included, scaled.
-
-    Regular blocks have full rank together. Otherwise all equations are looked at as one matrix,
-    unless that would be very large.
-    """
-    solver = model.compiled.solver
-    full = True
-    for block in solver.blocks:
-        n = len(block.unknowns)
-        system = block.system
-        j = system.jacobian(v[None, block.variables])[0, :, :n]
-        full &= _rank_of(j * system.variable_scale[:n] / system.equation_scale[:, None]) == n
-    if full:
-        return solver.unknowns
-    if solver.unknowns > _LARGEST:
-        return None
-    table = model.compiled.table
-    jacobian = table.jacobian(v[None, :])[0]
-    return _rank_of(jacobian * table.variable_scale / table.equation_scale[:, None])
-
-
-def _rank_of(scaled: Array) -> int:
-    if not scaled.size:
-        return 0
-    return int(np.linalg.matrix_rank(scaled, tol=_RANK_TOLERANCE * np.linalg.norm(scaled, 2)))
+def _redundant(model: Model, v: Array) -> Iterator[tuple[str, float, float]]:
+    """Every redundant link with its length and how far it is from that."""
+    gaps = largest_misfits(model.equations, v[None, :])
+    for part in model.equations.redundant:
+        yield part.link, part.length, gaps[part.link]

@@ -31,6 +31,11 @@ class CheckReport:
         Grübler's count, for points-and-links mechanisms.
     mobility_rank : int or None
         Variables minus the rank of the full Jacobian at the start position, if one was found.
+    mobility_why : str
+        Why the two differ, "" if they do not.
+    redundant : tuple of (link, length, gap)
+        Links whose length follows from the others: what was given, and how far it is from that at
+        the start, of the longest link.
     measured : tuple of (link, "A B", length)
         Dimensions that were measured between sketched points.
     start : Status, str
@@ -57,6 +62,8 @@ class CheckReport:
     start_input: dict[str, float]
     residual: float
     failure: Failure | None = None
+    mobility_why: str = ""
+    redundant: tuple[tuple[str, float, float], ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """The report as JSON-ready data."""
@@ -72,7 +79,14 @@ class CheckReport:
             "blocks": [
                 {"equations": list(b.equations), "unknowns": list(b.unknowns)} for b in self.blocks
             ],
-            "mobility": {"count": self.mobility_count, "rank": self.mobility_rank},
+            "mobility": {
+                "count": self.mobility_count,
+                "rank": self.mobility_rank,
+                **({"why": self.mobility_why} if self.mobility_why else {}),
+            },
+            "redundant": [
+                {"link": link, "length": length, "gap": gap} for link, length, gap in self.redundant
+            ],
             "measured": [{"link": k, "points": p, "length": v} for k, p, v in self.measured],
             "start": {
                 "status": self.start.name,

@@ -1,0 +1,125 @@
+"""Degrees of freedom: counted by Grübler's formula, and by rank at a position; why they differ."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.status import Status
+from linkwork.mechanism.linkage import Linkage
+from linkwork.motion.model import Model
+from linkwork.motion.redundancy import FITS, misfit, mobility_by_rank
+
+__all__ = ["Mobility", "grubler_count", "mobility_of", "pins"]
+
+_TWO_FREEDOMS = ("slots", "gears", "belts", "racks", "cams", "curves")
+_LARGEST = 100  # unknowns up to which a singular mechanism is looked at as one matrix
+_RANK_TOLERANCE = 1e-9  # relative to the largest singular value of the scaled Jacobian
+_BESIDE = 1e-3  # how far beside a position its neighbour is sought, in weighted variables
+_TRIES = 6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mobility:
+    """Grübler's count (for linkages), the mobility by rank (at a position), and why they differ."""
+
+    count: int | None
+    rank: int | None
+    why: str = ""
+
+
+def mobility_of(model: Model, v: Array | None) -> Mobility:
+    """The mobility of a mechanism at a position (N,), if there is one."""
+    description = model.description
+    count = grubler_count(description) if isinstance(description, Linkage) else None
+    rank = None if v is None else _by_rank(model, v)
+    if count is None or rank is None or v is None or rank == count:
+        return Mobility(count=count, rank=rank)
+    return Mobility(count=count, rank=rank, why=_why(model, v, count, rank))
+
+
+def pins(linkage: Linkage) -> int:
+    """Revolute joints, a pin of k bodies counting k - 1."""
+    return sum(max(len(bodies) - 1, 0) for bodies in linkage.carriers().values())
+
+
+def grubler_count(linkage: Linkage) -> int:
+    """Grübler's mobility 3(n - 1) - 2·(pins and sliders) - (joints of two freedoms).
+
+    A cylinder counts as its two links and their sliding joint: one body with one freedom more. A
+    slot, a curve, a cam and the teeth of gears and racks leave two freedoms; a belt ties two angles
+    as teeth do. A wheel that rolls without slipping has one freedom; a weld has none, of its two
+    links' pin.
+    """
+    bodies = len(linkage.links) + len(linkage.cylinders)
+    one = pins(linkage) + len(linkage.sliders) + len(linkage.rolling)
+    two = sum(len(getattr(linkage, kind)) for kind in _TWO_FREEDOMS)
+    return 3 * (bodies - 1) - 2 * one - two - len(linkage.welds) + len(linkage.cylinders)
+
+
+def _why(model: Model, v: Array, count: int, rank: int) -> str:
+    """Why a rank and a count are not the same, from what the rank is beside the position."""
+    if rank < count:
+        return "some links move in ways that the equations do not ask for"
+    beside = _rank_beside(model, v)
+    redundant = len(model.equations.redundant)
+    if redundant and beside == rank:
+        several = "conditions follow" if redundant > 1 else "condition follows"
+        return (
+            f"{redundant} {several} from the others, because of special lengths such as parallel "
+            "or equal links: it is overconstrained and moves all the same"
+        )
+    if beside is not None and beside < rank:
+        return (
+            "at this position alone the constraints repeat each other, as they do at dead points "
+            f"and change points; beside it the rank gives {beside}"
+        )
+    return (
+        "at this position the constraints repeat each other, and no position was found beside it: "
+        "it may be able to move no more than infinitely little"
+    )
+
+
+def _rank_beside(model: Model, v: Array) -> int | None:
+    """The mobility by rank at a position near by, if one is found."""
+    compiled = model.compiled
+    scale, n = compiled.solver.variable_scale, compiled.solver.unknowns
+    rng = np.random.default_rng(0)  # any direction will do, the same every time
+    for _ in range(_TRIES):
+        guess = v + _BESIDE * scale * rng.uniform(-1.0, 1.0, len(v))
+        guess[n:] = v[n:] + _BESIDE * scale[n:] * rng.choice([-1.0, 1.0], len(v) - n)
+        done = compiled.solver.solve(guess[None, :])
+        near = np.abs((done.v[0] - v) / scale).max() < 100.0 * _BESIDE
+        if done.status[0] == Status.CONVERGED.code and near:
+            if misfit(model.equations, done.v)[0] > FITS:
+                return None
+            return _by_rank(model, done.v[0])
+    return None
+
+
+def _by_rank(model: Model, v: Array) -> int | None:
+    """Variables, inputs included, minus the rank of all equations, scaled.
+
+    Regular blocks have full rank together. Otherwise all equations are looked at as one matrix,
+    unless that would be very large.
+    """
+    solver = model.compiled.solver
+    full = not model.equations.redundant
+    for block in solver.blocks if full else ():
+        n = len(block.unknowns)
+        system = block.system
+        j = system.jacobian(v[None, block.variables])[0, :, :n]
+        full &= _rank_of(j * system.variable_scale[:n] / system.equation_scale[:, None]) == n
+    if full:
+        return len(model.equations.variables) - solver.unknowns
+    if solver.unknowns > _LARGEST:
+        return None
+    return mobility_by_rank(model.compiled, v)
+
+
+def _rank_of(scaled: Array) -> int:
+    if not scaled.size:
+        return 0
+    return int(np.linalg.matrix_rank(scaled, tol=_RANK_TOLERANCE * np.linalg.norm(scaled, 2)))
