@@ -142,6 +142,26 @@ def no_start() -> Reached:
     )
 
 
+def does_not_fit() -> Reached:
+    # a third bar on a parallelogram that is no parallel crank: it fits where it stands upright
+    points = {"O": (0, 0), "P": (50, 0), "A": (0, 30), "B": (50, 30), "Q": (25, -20), "C": (25, 30)}
+    links = {
+        "ground": ("O", "P", "Q"),
+        "first": ("O", "A"),
+        "second": ("P", "B"),
+        "coupler": ("A", "B", "C"),
+        "third": ("Q", "C"),
+    }
+    mechanism = lw.linkage(points=points, links=links, inputs=lw.Input(link="first"))
+    turned = math.radians(85)
+    length = math.hypot(30 * math.cos(turned), 30 * math.sin(turned) + 20)
+    return mechanism.solve(at=85), (
+        "a redundant link does not fit into the position of the others: change its length, or "
+        f'leave the link out; it just closes with "Q C" = {length:.6g} mm '
+        f"({50 - length:.6g} shorter)"
+    )
+
+
 CASES: dict[lw.Status, Callable[[], Reached]] = {
     lw.Status.CONVERGED: converged,
     lw.Status.SINGULAR_JACOBIAN: singular_jacobian,
@@ -152,6 +172,7 @@ CASES: dict[lw.Status, Callable[[], Reached]] = {
     lw.Status.CHANGE_POINT: change_point,
     lw.Status.START_SINGULAR: start_singular,
     lw.Status.LOST: lost,
+    lw.Status.DOES_NOT_FIT: does_not_fit,
     lw.Status.NO_START: no_start,
 }
 

@@ -21,6 +21,7 @@ __all__ = [
     "FITS",
     "check_redundancy",
     "largest_misfits",
+    "lengths_found",
     "misfit",
     "mobility_by_rank",
     "without_redundant",
@@ -38,6 +39,12 @@ def misfit(equations: LoopEquations, v: Array) -> Array:
         return np.zeros(len(v))
     gaps: Array = np.abs(v[:, columns] - lengths).max(axis=1) / equations.length_scale
     return gaps
+
+
+def lengths_found(equations: LoopEquations, v: Array) -> list[float]:
+    """What the lengths of the redundant links come out as at a position (N,)."""
+    columns, _ = _redundant(equations)
+    return [float(length) for length in v[columns]]
 
 
 def largest_misfits(equations: LoopEquations, v: Array) -> dict[str, float]:

@@ -23,11 +23,11 @@ from linkwork.motion.positions import (
     target_values,
 )
 from linkwork.motion.reading import named_series
-from linkwork.motion.redundancy import FITS, misfit, without_redundant
+from linkwork.motion.redundancy import FITS, lengths_found, misfit, without_redundant
 from linkwork.motion.start import Start, first_position
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.proof import prove, rounding_of_inputs
-from linkwork.results.failure import Failure
+from linkwork.results.failure import Failure, Remedy
 from linkwork.results.position import Certificate, Position
 
 __all__ = ["solve"]
@@ -153,6 +153,18 @@ def _failed(
     return position_of(model, named, 0, evidence, nothing[0, : model.compiled.solver.unknowns])
 
 
+def _does_not_fit(model: Model, v: Array) -> Failure:
+    """Which redundant links would have to be how long at a position (N,) of the others."""
+    lengths = lengths_found(model.equations, v)
+    links = getattr(model.description, "links", {})
+    remedies = [
+        Remedy(length=" ".join(links[part.link]), now=part.length, needed=length, exact=True)
+        for part, length in zip(model.equations.redundant, lengths, strict=True)
+        if abs(length - part.length) > FITS * model.equations.length_scale
+    ]
+    return Failure(what=Status.DOES_NOT_FIT.value, remedies=tuple(remedies), units=model.units)
+
+
 def _position(
     model: Model, target: Array, found: Found, start: Start, failure: Failure | None = None
 ) -> Position:
@@ -160,7 +172,7 @@ def _position(
     solver = model.compiled.solver
     v = found.v[None, :]
     if found.status.ok and misfit(model.equations, v)[0] > FITS:
-        return _failed(model, target, Status.DOES_NOT_FIT, None, start)
+        return _failed(model, target, Status.DOES_NOT_FIT, _does_not_fit(model, found.v), start)
     rates = solver.rates(v, input_rate(model))
     ok = np.array([found.status.ok])
     named = named_series(model, v, rates.first, rates.second, target[None, :], ok)
