@@ -115,14 +115,15 @@ class Frames:
             rod = self.turned(length + 0j, Name(symbol, symbol), name)
         self.places[name] = {a: Place(0j, base=a), b: Place(0j, (rod,), base=a)}
 
-    def release(self, link: str) -> None:
-        """Let the length of a link of two points be an unknown."""
-        a, b = self.linkage.links[link]
+    def release(self, link: str, a: str, b: str) -> None:
+        """Let the distance between two points of a link be an unknown."""
         name = f"{link}_length"
-        length = abs(self.places[link][b].fixed - self.places[link][a].fixed)
-        self.places[link][b] = Place(0j, (self.turned(1.0 + 0j, None, link, name),), base=a)
-        self.start[name] = length
-        self.released.append(Redundant(variable=name, link=link, length=length))
+        first = self.places[link][a].fixed
+        span = self.places[link][b].fixed - first
+        along = self.turned(span / abs(span), None, link, name)
+        self.places[link][b] = Place(first, (along,), base=a)
+        self.start[name] = abs(span)
+        self.released.append(Redundant(variable=name, link=link, points=(a, b), length=abs(span)))
 
     def now(self, angle: LinkAngle) -> float:
         """The variable part of an angle in the sketch [rad]."""

@@ -22,7 +22,7 @@ from linkwork.equations.model import (
     Variable,
 )
 from linkwork.equations.outputs import read_outputs
-from linkwork.equations.redundancy import released_links
+from linkwork.equations.redundancy import Bar, released_links
 from linkwork.equations.structure import Node, Structure, StructureBlock
 from linkwork.expression.tree import Name
 from linkwork.foundation.errors import MechanismError, Problem
@@ -50,7 +50,7 @@ def write_loops(linkage: Linkage) -> LoopEquations:
 @dataclass
 class _Writer:
     linkage: Linkage
-    released: tuple[str, ...] = ()
+    released: tuple[Bar, ...] = ()
     surplus: Problem | None = None
     problems: Problems = field(default_factory=Problems)
     inputs: list[Variable] = field(default_factory=list)
@@ -64,8 +64,8 @@ class _Writer:
         linkage = self.linkage
         where = f'mechanism "{linkage.name}"'
         self.frames = frames = Frames.of(linkage, self.problems)
-        for link in self.released:
-            frames.release(link)
+        for bar in self.released:
+            frames.release(*bar)
         self.problems.raise_any(where)
         self.contacts = contacts = Contacts.of(frames, self.problems)
         self.problems.raise_any(where)
@@ -238,11 +238,11 @@ class _Writer:
         if form.missing or not form.surplus:
             return None
         relations: list[LinearEquation | LawEquation] = [*self.linear, *self.contacts.laws]
-        links = released_links(self.frames, structure.incidences, relations, unknown, form.surplus)
-        if len(links) < form.surplus:
+        bars = released_links(self.frames, structure.incidences, relations, unknown, form.surplus)
+        if len(bars) < form.surplus:
             return None
         try:
-            return _Writer(self.linkage, released=links, surplus=self.problems[0]).written()
+            return _Writer(self.linkage, released=bars, surplus=self.problems[0]).written()
         except MechanismError:
             return None
 

@@ -167,13 +167,14 @@ class LinkAngle:
 
 @dataclass(frozen=True, kw_only=True)
 class Redundant:
-    """A condition more than needed: the link's length is an unknown and has to come out as given.
+    """A condition more than needed: a link's length is an unknown and has to come out as given.
 
-    ``variable`` names the unknown, ``length`` is what was given.
+    ``variable`` names the unknown, ``length`` is what was given for the distance of two points.
     """
 
     variable: str
     link: str
+    points: tuple[str, str]
     length: float
 
 

@@ -19,7 +19,10 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.linkage import GROUND
 
-__all__ = ["released_links"]
+__all__ = ["Bar", "released_links"]
+
+#: A link, and the two of its points that are joints.
+Bar = tuple[str, str, str]
 
 _RANK = 1e-9  # relative: a smaller singular value counts as none
 _STRESSED = 1e-6  # of the largest: a link with less carries no force
@@ -32,8 +35,8 @@ def released_links(
     relations: Sequence[LinearEquation | LawEquation],
     unknown: set[str],
     count: int,
-) -> tuple[str, ...]:
-    """Links of two points whose lengths to release, at most ``count``.
+) -> tuple[Bar, ...]:
+    """Links of two joints whose distance to release, at most ``count``.
 
     Parameters
     ----------
@@ -43,20 +46,17 @@ def released_links(
         Symbols of the unknowns; inputs are not among them.
     """
     joined = {point for _, point in incidences}
-    bars = [
-        link
-        for link, points in frames.linkage.links.items()
-        if link != GROUND
-        and len(points) == 2
-        and joined.issuperset(points)
-        and frames.angle[link].variable == link
-        and canonical(link) in unknown
-        and not any(place.sliding for place in frames.places[link].values())
-    ]
+    bars = []
+    for link, points in frames.linkage.links.items():
+        joints = [point for point in points if point in joined]
+        own = link != GROUND and len(joints) == 2 and frames.angle[link].variable == link
+        slides = any(place.sliding for place in frames.places[link].values())
+        if own and canonical(link) in unknown and not slides:
+            bars.append((link, joints[0], joints[1]))
     stress = _stresses(frames, incidences, relations, unknown, bars)
     if not stress.size:
         return ()
-    found: list[str] = []
+    found: list[Bar] = []
     largest = float(np.linalg.norm(stress, axis=0).max())
     for _ in range(count):
         size = np.linalg.norm(stress, axis=0)
@@ -74,9 +74,10 @@ def _stresses(
     incidences: Sequence[tuple[str, str]],
     relations: Sequence[LinearEquation | LawEquation],
     unknown: set[str],
-    bars: Sequence[str],
+    bars: Sequence[Bar],
 ) -> Array:
     """How every self-stress loads each bar, (stresses, bars)."""
+    ends = {(link, end): k for k, (link, _, end) in enumerate(bars)}
     columns: dict[str, int] = {}
     entries: list[tuple[int, str, complex]] = []
     elongations = np.zeros((2 * len(incidences) + len(relations), len(bars)))
@@ -88,10 +89,14 @@ def _stresses(
         for name, slope in _slopes(frames, body, point, scale).items():
             if name in unknown:
                 entries.append((k, name, -slope))
-        if body in bars and point == frames.linkage.links[body][1]:
-            along = cmath.exp(1j * (frames.angle[body].constant + frames.now(frames.angle[body])))
-            elongations[k, bars.index(body)] = along.real
-            elongations[len(incidences) + k, bars.index(body)] = along.imag
+        if (body, point) in ends:
+            bar = ends[body, point]
+            first = frames.places[body][bars[bar][1]].fixed
+            along = frames.places[body][point].fixed - first
+            turned = frames.angle[body].constant + frames.now(frames.angle[body])
+            along *= cmath.exp(1j * turned) / abs(along)
+            elongations[k, bar] = along.real
+            elongations[len(incidences) + k, bar] = along.imag
     for _, name, _ in entries:
         columns.setdefault(name, len(columns))
     for equation in relations:

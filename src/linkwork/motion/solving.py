@@ -156,9 +156,8 @@ def _failed(
 def _does_not_fit(model: Model, v: Array) -> Failure:
     """Which redundant links would have to be how long at a position (N,) of the others."""
     lengths = lengths_found(model.equations, v)
-    links = getattr(model.description, "links", {})
     remedies = [
-        Remedy(length=" ".join(links[part.link]), now=part.length, needed=length, exact=True)
+        Remedy(length=" ".join(part.points), now=part.length, needed=length, exact=True)
         for part, length in zip(model.equations.redundant, lengths, strict=True)
         if abs(length - part.length) > FITS * model.equations.length_scale
     ]
