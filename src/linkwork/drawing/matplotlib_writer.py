@@ -262,7 +262,7 @@ class _Brush:
     def draw(self, primitive: Primitive) -> None:
         match primitive:
             case Polyline() | Arc():
-                self._line([primitive.points], primitive)
+                self._line([primitive.shaft], primitive)
                 if primitive.arrow_head:
                     self._area(primitive.arrow_head, primitive, width=0.3)
             case Hatch():
@@ -276,8 +276,8 @@ class _Brush:
 
     def _common(self, primitive: Primitive) -> dict[str, Any]:
         # The group id names role and part in an SVG file, for whoever edits or tests it.
-        gid = f"{primitive.role.name.lower()}:{primitive.of}"
-        return {"zorder": 10 + primitive.role.layer, "gid": gid, "clip_on": False}
+        gid = f"{'faint-' if primitive.fade else ''}{primitive.role.name.lower()}:{primitive.of}"
+        return {"zorder": 100 + primitive.layer, "gid": gid, "clip_on": False}
 
     def _line(self, lines: tuple[tuple[XY, ...], ...] | list[Any], primitive: Primitive) -> None:
         from matplotlib.collections import LineCollection
@@ -287,7 +287,7 @@ class _Brush:
             LineCollection(
                 list(lines),
                 colors=self.theme.line(primitive),
-                linewidths=style.width * self.stroke,
+                linewidths=style.width * self.stroke * (1 - 0.5 * primitive.fade),
                 linestyles=[(0, (0.01, 2.2))] if style.dotted else "solid",
                 capstyle="round",
                 joinstyle="round",
@@ -314,7 +314,7 @@ class _Brush:
         style = self.theme.styles[primitive.role]
         line, fill = self.theme.line(primitive), self.theme.fill(primitive)
         return {
-            "facecolor": to_rgba(fill, style.opacity) if fill else "none",
+            "facecolor": to_rgba(fill, style.opacity ** (1 + primitive.fade)) if fill else "none",
             "edgecolor": line or "none",
             "linewidth": style.width * width * self.stroke if line else 0.0,
             **self._common(primitive),
