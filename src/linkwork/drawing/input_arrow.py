@@ -82,9 +82,7 @@ def _boxes(arrow: Arc | Polyline, measures: Measures) -> list[Box]:
     return [*boxes, Box.around(arrow.arrow_head).grown(0.2 * room)]
 
 
-def _along_track(
-    part: DrivenPart, track: Track, measures: Measures, turn: int
-) -> Iterator[_Place]:
+def _along_track(part: DrivenPart, track: Track, measures: Measures, turn: int) -> Iterator[_Place]:
     """Beside a block or slot: on the side away from its rail, or behind the rail's hatching."""
     side = measures.block[1] if track.block else measures.slot
     behind = side + (measures.hatch if track.fixed else 0.0)

@@ -47,6 +47,8 @@ class SceneOptions:
         change points are marked.
     title : str, optional
         Instead of the mechanism's name; an empty one leaves it out.
+    larger : float
+        How much larger than usual names are, for small pictures; symbols grow by its root.
     within : Box, optional
         What the picture shows at least, and what the sizes of symbols are measured by: give all
         pictures of one animation the same, from :func:`reach_of`.
@@ -55,6 +57,7 @@ class SceneOptions:
     link_names: bool = False
     arrows: bool = True
     further: int = 0
+    larger: float = 1.0
     title: str | None = None
     within: Box | None = None
 
@@ -102,7 +105,7 @@ def scene_of(
     if motion is not None and chosen.further:
         further = further_positions(pose, motion, chosen.further)
     within = chosen.within or _drawn_box(pose, names, further)
-    measures = Measures.of(within, pose.gaps)
+    measures = Measures.of(within, pose.gaps, chosen.larger)
     found = tracks(pose, measures, tones(pose))
     sense = -1.0 if motion is not None and (motion.speed or 0.0) < 0 else 1.0
     marks, limit_names = limit_marks(further, motion, measures)
