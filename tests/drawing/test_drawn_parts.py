@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import linkwork as lw
 from linkwork.drawing import (
     Arc,
     Disc,
@@ -21,7 +20,6 @@ from linkwork.drawing import (
     reach_of,
     scene_of,
 )
-from linkwork.drawing.chart import circuit_chart
 from linkwork.drawing.link_symbols import convex_outline, uncovered
 from linkwork.drawing.trace_path import drawn_once, thinned
 from linkwork.foundation.status import Status
@@ -498,25 +496,3 @@ def test_a_scaled_mechanism_has_the_same_picture_scaled(ternary):
     assert other.measures.stroke == pytest.approx(1000 * one.measures.stroke)
     for p, q in zip(one.primitives, other.primitives, strict=True):
         np.testing.assert_allclose(1000 * np.array(p.outline), q.outline, rtol=1e-9, atol=1e-6)
-
-
-def test_a_constant_angle_of_zero_is_one_line_and_limits_stand_at_both_edges() -> None:
-    parallel = lw.linkage(
-        name="parallelogram",
-        points={"O2": (0, 0), "A": (35, 20), "B": (135, 20), "O4": (100, 0)},
-        links={
-            "ground": ["O2", "O4"],
-            "crank": ["O2", "A"],
-            "coupler": ["A", "B"],
-            "rocker": ["O4", "B"],
-        },
-        lengths={"O2 A": 40, "A B": 100, "O4 B": 40},
-        inputs=lw.Input(link="crank"),
-    )
-    coupler, rocker = circuit_chart(parallel.circuits()).panels
-    still = [curve for curve in coupler.curves if np.nanmax(np.abs(curve.y)) < 1.0]
-    assert len(still) == 2
-    assert all((curve.y == 0.0).all() for curve in still)
-    corners = {(mark.x, mark.y) for mark in rocker.marks}
-    assert {(0, 0), (0, 360), (360, 0), (360, 360)} <= corners
-    assert (360, 360) not in {(mark.x, mark.y) for mark in coupler.marks}

@@ -11,6 +11,7 @@ import numpy as np
 from linkwork.drawing.captions import printed_name
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.frozen import read_only
 from linkwork.results.circuits import Circuits
@@ -27,6 +28,7 @@ _ORIGINS = (0.0, -0.5, -0.25, -0.75)  # of a turn: where the turn that a panel s
 _STEPS = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0)  # degrees between ticks, less than a turn shown
 _RADIAN_STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, np.pi / 4)
 _MOST_STEPS = 5
+_TAIL = 0.1  # of the input's range at either end of the values, where curves run to infinity
 _NEAR = 0.004  # of the panel's sides: curves as near as this hide each other
 _LOOKED_AT = 100  # points of a curve, to see whether another one hides it
 _HIDDEN = 0.4  # share of a curve that another one hides, from which on it is drawn wider
@@ -65,8 +67,9 @@ class Mark:
 class Axis:
     """What an axis is called, what it shows, and the distance of its ticks.
 
-    Without ``ends`` it shows all of its curves, with ticks at round numbers. ``turn`` is a full
-    turn in the unit of an angle, 0 if it is none.
+    Without ``ends`` it shows all of its curves; with them, curves may leave it if it is no angle.
+    Without ``step`` ticks stand at round numbers. ``turn`` is a full turn in the unit of an
+    angle, 0 if it is none.
     """
 
     label: str
@@ -162,6 +165,8 @@ def _panel(circuits: Circuits, name: str, x_turn: float) -> Panel:
     axis = Axis(label=_label(name, units.of(quantity.kind)), turn=turn)
     if turn:
         axis = _angle_axis(axis, [curve.y for curve in curves], low, units.angle)
+    elif any(circuit.end is CircuitEnd.RUNS_TO_INFINITY for circuit in circuits):
+        axis = replace(axis, ends=_finite_ends(curves))
     return Panel(axis=axis, curves=tuple(_layered(curves)), marks=tuple(marks))
 
 
@@ -175,19 +180,22 @@ def _rounded(values: Array, turn: float) -> Array:
 
 
 def _origin(lines: Sequence[Array], turn: float) -> float:
-    """Where the turn begins that cuts lines of angles least often; 0 unless another cuts less."""
+    """Where the turn begins that cuts lines of angles least often; 0 unless another cuts less.
+
+    Of turns that cut as often, the one along whose edges fewest positions lie.
+    """
+    if not turn:
+        return 0.0
     return turn * min(
-        _ORIGINS, key=lambda low: sum(_cuts(line - low * turn, turn) for line in lines)
+        _ORIGINS, key=lambda low: _cuts([np.round(line / turn - low, 9) for line in lines])
     )
 
 
-def _cuts(values: Array, turn: float) -> int:
-    """How often a line of angles passes a whole turn."""
-    if not turn:
-        return 0
-    low = np.minimum(values[:-1], values[1:]) / turn
-    high = np.maximum(values[:-1], values[1:]) / turn
-    return int(np.maximum(np.ceil(high) - np.floor(low) - 1, 0).sum())
+def _cuts(lines: Sequence[Array]) -> tuple[int, int]:
+    """How often lines of angles [turns] pass a whole turn, and how many positions lie on one."""
+    ends = [(np.minimum(y[:-1], y[1:]), np.maximum(y[:-1], y[1:])) for y in lines]
+    passed = sum(int(np.maximum(np.ceil(b) - np.floor(a) - 1, 0).sum()) for a, b in ends)
+    return passed, sum(int((y == np.round(y)).sum()) for y in lines)
 
 
 def _angle_axis(axis: Axis, lines: Sequence[Array], low: float, unit: AngleUnit) -> Axis:
@@ -203,6 +211,19 @@ def _angle_axis(axis: Axis, lines: Sequence[Array], low: float, unit: AngleUnit)
     return replace(axis, ends=(low, low + turn), step=turn / 4)
 
 
+def _finite_ends(curves: Sequence[Curve]) -> tuple[float, float] | None:
+    """What to show of curves that run to infinity: twice what most of the input's range takes."""
+    y = np.concatenate([0.5 * (curve.y[1:] + curve.y[:-1]) for curve in curves])
+    share = np.concatenate([np.abs(np.diff(curve.x)) for curve in curves])
+    order = np.argsort(y)[: int(np.isfinite(y * share).sum())]
+    passed = np.cumsum(share[order])
+    if not passed.size or not passed[-1]:
+        return None
+    low, high = np.interp([_TAIL, 1 - _TAIL], passed / passed[-1], y[order])
+    room = 0.5 * (high - low)
+    return (float(low - room), float(high + room)) if room else None
+
+
 @dataclass(frozen=True, kw_only=True)
 class _Window:
     """The turn of either coordinate that is shown, 0 where it is no angle; y begins at ``low``."""
@@ -214,7 +235,7 @@ class _Window:
     def folded(self, x: Array, y: Array) -> tuple[Array, Array]:
         """Both coordinates inside the turn; the line goes on at the other side of the panel."""
         x_turn, y_turn = self.x_turn, self.y_turn
-        y = y - self.low
+        y = _rounded(y - self.low, y_turn)
         cuts = [(x[0], y[0])] if len(x) else []
         for k in range(len(x) - 1):
             places = {1.0}
@@ -252,7 +273,7 @@ def _edges(value: float, turn: float) -> tuple[float, ...]:
     """Where a value lies inside one turn: a whole turn at both of its edges."""
     if not turn:
         return (value,)
-    folded = float(np.mod(value, turn))
+    folded = float(np.mod(_rounded(np.array(value), turn), turn))
     return (folded,) if folded else (0.0, turn)
 
 
@@ -269,14 +290,15 @@ def _marks(
     ends = np.concatenate([np.stack(line, axis=1) for line in lines])
     reach = np.array([window.x_turn, window.y_turn])
     near = _ROUNDING * np.where(reach > 0.0, reach, np.maximum(1.0, np.nanmax(np.abs(ends), 0)))
-    found = [
-        Mark(x=at_x, y=at_y, tone=tone, kind=kind)
-        for k, kind in enumerate(motion.limit)
-        if kind
-        for at_x, at_y in window.places(float(x[k]), float(y[k]))
-        if (np.abs(ends - [at_x, at_y]) < near).all(axis=1).any()
-    ]
-    return list(dict.fromkeys(found))
+    found: list[Mark] = []
+    for k in (k for k, kind in enumerate(motion.limit) if kind):
+        for place in window.places(float(x[k]), float(y[k])):
+            on_curve = (np.abs(ends - place) < near).all(axis=1).any()
+            # a dead point is the end of two branches: it is marked once
+            marked = any((np.abs(np.subtract(place, (m.x, m.y))) < near).all() for m in found)
+            if on_curve and not marked:
+                found.append(Mark(x=place[0], y=place[1], tone=tone, kind=motion.limit[k]))
+    return found
 
 
 def _layered(curves: Sequence[Curve]) -> list[Curve]:

@@ -67,17 +67,24 @@ def chart_figure(chart: Chart, theme: Theme) -> Figure:
 
 def _draw(ax: Axes, chart: Chart, panel: Panel, theme: Theme) -> None:
     ax.set_facecolor(theme.background)
+    leaves = panel.axis.ends is not None and not panel.axis.turn
     for curve in panel.curves:
         width = _LINE + _WIDER * curve.below
         ax.plot(
-            curve.x, curve.y, linewidth=width, gid=f"curve:{curve.name}", **_pen(theme, curve.tone)
+            curve.x,
+            curve.y,
+            linewidth=width,
+            gid=f"curve:{curve.name}",
+            clip_on=leaves,  # else half of a line along an edge would be cut off
+            zorder=3,
+            **_pen(theme, curve.tone),
         )
     for mark in panel.marks:
         ax.plot(
             [mark.x],
             [mark.y],
             gid=mark.kind.replace(" ", "-"),
-            clip_on=False,
+            clip_on=leaves,
             zorder=5,
             **_symbol(theme, mark.kind, _colour(theme, mark.tone)),
         )

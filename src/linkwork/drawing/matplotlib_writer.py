@@ -29,7 +29,7 @@ from linkwork.drawing.scene import (
     Scene,
     Text,
 )
-from linkwork.drawing.sheet import Sheet
+from linkwork.drawing.sheet import TALLEST, Sheet
 from linkwork.drawing.theme import LIGHT, Theme
 from linkwork.foundation.errors import InputError, MissingPackageError
 
@@ -139,7 +139,7 @@ def _sheet_figure(sheet: Sheet, theme: Theme) -> Figure:
     names = [_name_lines(scene.title, wide * 72 / _SMALL) for scene in sheet.scenes]
     size = max(scene.measures.size for scene in sheet.scenes)
     view = sheet.view.grown(0.03 * size)
-    tall = min(max(wide * view.height / view.width, 0.35 * wide), 1.6 * wide)
+    tall = min(max(wide * view.height / view.width, 0.35 * wide), TALLEST * wide)
     scale = max(view.width / wide, view.height / tall)
     (x, y), half, rise = view.centre, 0.5 * scale * wide, 0.5 * scale * tall
     view = Box(x - half, y - rise, x + half, y + rise)

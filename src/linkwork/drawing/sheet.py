@@ -11,10 +11,14 @@ from linkwork.drawing.scene import Box, Scene
 from linkwork.foundation.errors import InputError
 from linkwork.results.configurations import Configurations
 
-__all__ = ["Sheet", "configuration_sheet"]
+__all__ = ["TALLEST", "Sheet", "configuration_sheet"]
 
 _WIDTH, _SMALLEST_CELL = 7.5, 2.2  # inches
-_USUAL = 5.2  # inches: in narrower cells names and symbols are larger than usual
+_USUAL = 5.2  # inches: in smaller pictures names and symbols are larger than usual
+_LARGEST = 2.0
+
+#: The height of a picture over its width, at most.
+TALLEST = 1.6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +61,7 @@ def configuration_sheet(found: Configurations) -> Sheet:
     within, *others = (scene_of(position).within for position in found)
     for other in others:
         within = within.with_box(other)
-    larger = min(max(_USUAL / _cell(len(found)), 1.0), 2.0)
+    larger = min(max(_USUAL / _printed(within, _cell(len(found))), 1.0), _LARGEST)
     scenes = [
         replace(
             scene_of(
@@ -76,6 +80,12 @@ def configuration_sheet(found: Configurations) -> Sheet:
         caption=f"{what} at {where}" if where else what,
         scenes=tuple(scenes),
     )
+
+
+def _printed(box: Box, cell: float) -> float:
+    """The longer side of a box in inches, where it fills a cell."""
+    width, height = max(box.width, 1e-9), max(box.height, 1e-9)
+    return max(width, height) * min(cell / width, TALLEST * cell / height)
 
 
 def _columns(count: int) -> int:
