@@ -121,9 +121,9 @@ class Seeding:
     def completeness(self) -> tuple[Completeness, str]:
         """Of the list of circuits."""
         if self.dead is None:
+            what = "only the circuit of the guess" if self.explorer.arcs else "only the guess"
             return Completeness.NOT_LISTED, (
-                "only the circuit of the guess: the configurations of these equations cannot be "
-                "listed"
+                f"{what}: the configurations of these equations cannot be listed"
             )
         count = self.seeded
         if self.dead.cover_all and not self.unclear:
