@@ -204,15 +204,36 @@ class Mechanism:
         """All circuits with their branches; see :func:`linkwork.motion.circuits`."""
         return motion.circuits(self.model, certify=certify, progress=progress)
 
-    def scene(self, at: float | Mapping[str, float] | None = None) -> drawing.Scene:
-        """A picture of one position with the traces of the traced points over the cycle."""
-        position = self.solve(at, throw=True)
-        cycle = self.sweep() if self.description.inputs else None
-        return drawing.scene_of(position, cycle)
+    def scene(
+        self,
+        at: float | Mapping[str, float] | None = None,
+        *,
+        configuration: str | None = None,
+        progress: Callable[[float], None] | None = None,
+    ) -> drawing.Scene:
+        """A picture of one position with the traces of the traced points over the cycle.
 
-    def draw(self, path: str | Path, at: float | Mapping[str, float] | None = None) -> None:
-        """Draw one position to a PNG, SVG or PDF file."""
-        drawing.write(self.scene(at), Path(path))
+        Parameters
+        ----------
+        at, configuration
+            Which position, as in :meth:`solve`; the cycle is the one through it.
+        """
+        position = self.solve(at, configuration=configuration, throw=True)
+        if not self.description.inputs:
+            return drawing.scene_of(position)
+        model = self.model if configuration is None else self.model.from_position(position)
+        cycle = motion.sweep(model, progress=progress)
+        return drawing.scene_of(position, cycle if cycle.found.any() else None)
+
+    def draw(
+        self,
+        path: str | Path,
+        at: float | Mapping[str, float] | None = None,
+        *,
+        configuration: str | None = None,
+    ) -> None:
+        """Draw one position to a PNG, SVG or PDF file; see :meth:`scene`."""
+        drawing.write(self.scene(at, configuration=configuration), Path(path))
 
     def save(self, path: str | Path) -> None:
         """Write the mechanism as a TOML file."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import linkwork as lw
 from linkwork.cli.configurations import path_sentence
@@ -98,13 +97,6 @@ def test_solve_and_sweep_take_a_name(run: Run) -> None:
     swept = run("sweep", "four-bar.toml", "--configuration", "crossed", "--step", "10", "--json")
     rocker = json.loads(swept.stdout)["columns"]["rocker"]
     assert abs(rocker[6] + 111.769930) < 1e-6
-
-
-def test_a_drawn_sweep_shows_the_configuration_it_started_in(run: Run, folder: Path) -> None:
-    options = ("--step", "90", "--draw")
-    run("sweep", "four-bar.toml", *options, "a.svg")
-    run("sweep", "four-bar.toml", "--configuration", "crossed", *options, "b.svg")
-    assert (folder / "a.svg").read_text() != (folder / "b.svg").read_text()
 
 
 def test_names_that_do_not_exist_are_wrong_input(run: Run) -> None:

@@ -195,29 +195,6 @@ def test_at_takes_one_value_for_each_of_several_inputs(run: Run) -> None:
     assert run("solve", "five-bar.toml", "--at", "left=100").exit_code == 2
 
 
-@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
-def test_draw_writes_a_picture(run: Run, folder: Path, suffix: str) -> None:
-    done = run("draw", "four-bar.toml", "-o", f"x.{suffix}", "--at", "90")
-    assert (done.exit_code, done.stdout) == (0, f"Wrote x.{suffix}.\n")
-    begin = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[suffix]
-    assert (folder / f"x.{suffix}").read_bytes().startswith(begin)
-
-
-def test_draw_shows_the_position_that_was_asked(run: Run, folder: Path) -> None:
-    for name, at in (("a", "90"), ("b", "90"), ("c", "100")):
-        assert run("draw", "four-bar.toml", "-o", f"{name}.svg", "--at", at).exit_code == 0
-    a, b, c = ((folder / f"{name}.svg").read_bytes() for name in "abc")
-    assert a == b
-    assert a != c
-
-
-def test_sweep_draws_the_start_with_its_traces(run: Run, folder: Path) -> None:
-    done = run("sweep", "four-bar.toml", "--csv", "a.csv", "--draw", "a.svg")
-    assert done.stdout.endswith("\nWrote a.csv: 361 rows.\nWrote a.svg: the start position.\n")
-    assert run("draw", "four-bar.toml", "-o", "b.svg").exit_code == 0
-    assert (folder / "a.svg").read_bytes() == (folder / "b.svg").read_bytes()
-
-
 def test_a_dash_reads_standard_input(run: Run, folder: Path) -> None:
     text = (folder / "four-bar.toml").read_text(encoding="utf-8")
     assert run("solve", "-", stdin=text).stdout == run("solve", "four-bar.toml").stdout

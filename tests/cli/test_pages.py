@@ -22,6 +22,7 @@ PAGES = (
     ("solve", "--show-steps"),
     ("sweep",),
     ("configurations",),
+    ("circuits", "--no-certificates"),
     ("equations",),
 )
 

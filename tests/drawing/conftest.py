@@ -47,6 +47,7 @@ class Sample:
             status=status,
             message=status.value,
             input={self.input_name: value},
+            input_units={self.input_name: self.input_unit},
             unknowns={},
             points={name: (z.real, z.imag) for name, z in (places or {}).items()},
             residual=0.0,

@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import linkwork as lw
 from linkwork.drawing import (
     Arc,
     Disc,
@@ -21,9 +20,8 @@ from linkwork.drawing import (
     reach_of,
     scene_of,
 )
-from linkwork.drawing.chart import circuit_chart
 from linkwork.drawing.link_symbols import convex_outline, uncovered
-from linkwork.drawing.trace_path import drawn_once, found_runs
+from linkwork.drawing.trace_path import drawn_once, thinned
 from linkwork.foundation.status import Status
 
 MECHANISMS = [
@@ -429,9 +427,9 @@ def test_a_row_that_failed_is_not_traced_even_if_it_holds_numbers(four_bar):
 
 def test_runs_of_a_path_keep_lone_points_and_drop_nan():
     nan = complex(math.nan, math.nan)
-    runs = found_runs(np.array([nan, 1j, 2j, nan, nan, 3j, nan]))
-    assert [list(run) for run in runs] == [[1j, 2j], [3j]]
-    assert found_runs(np.array([nan, nan])) == []
+    runs = drawn_once(np.array([nan, 1j, 2j, nan, nan, 5j, nan]), 0.05)
+    assert [list(run) for run in runs] == [[1j, 2j], [5j]]
+    assert drawn_once(np.array([nan, nan]), 0.05) == []
 
 
 def test_a_path_that_runs_back_over_itself_is_drawn_once():
@@ -443,6 +441,28 @@ def test_a_path_that_runs_back_over_itself_is_drawn_once():
     loop = np.exp(1j * np.linspace(0, 2 * math.pi, 61))
     [whole] = drawn_once(loop, 0.005)
     assert len(whole) == 61
+
+
+def test_a_stretch_beyond_a_gap_is_not_drawn_over_the_one_before_it():
+    out = np.linspace(0, 10, 41) + 0j
+    nan = complex(math.nan, math.nan)
+    lone = np.array([nan, 4 + 0j, nan, 4 + 3j])
+    runs = drawn_once(np.concatenate((out, [nan], out[::-1], lone)), 0.05)
+    assert [len(run) for run in runs] == [41, 1]
+    assert runs[1][0] == 4 + 3j
+
+
+def test_a_path_of_tiny_steps_is_thinned_and_one_of_large_steps_is_not():
+    fine = np.exp(1j * np.linspace(0, 2, 100_001))
+    few = thinned(fine, 0.01)
+    assert 190 < len(few) < 210
+    assert (few[0], few[-1]) == (fine[0], fine[-1])
+    assert np.abs(np.diff(few)).max() < 0.0101
+    nan = complex(math.nan, math.nan)
+    gaps = np.array([0j, 1e-4, 2e-4, nan, 2e-4, 3e-4, nan, 1, 2, 3])
+    np.testing.assert_array_equal(
+        thinned(gaps, 0.01), np.array([0j, 2e-4, nan, 2e-4, 3e-4, nan, 1, 2, 3])
+    )
 
 
 def test_pictures_of_one_motion_share_their_sizes(four_bar):
@@ -476,25 +496,3 @@ def test_a_scaled_mechanism_has_the_same_picture_scaled(ternary):
     assert other.measures.stroke == pytest.approx(1000 * one.measures.stroke)
     for p, q in zip(one.primitives, other.primitives, strict=True):
         np.testing.assert_allclose(1000 * np.array(p.outline), q.outline, rtol=1e-9, atol=1e-6)
-
-
-def test_a_constant_angle_of_zero_is_one_line_and_limits_stand_at_both_edges() -> None:
-    parallel = lw.linkage(
-        name="parallelogram",
-        points={"O2": (0, 0), "A": (35, 20), "B": (135, 20), "O4": (100, 0)},
-        links={
-            "ground": ["O2", "O4"],
-            "crank": ["O2", "A"],
-            "coupler": ["A", "B"],
-            "rocker": ["O4", "B"],
-        },
-        lengths={"O2 A": 40, "A B": 100, "O4 B": 40},
-        inputs=lw.Input(link="crank"),
-    )
-    coupler, rocker = circuit_chart(parallel.circuits()).panels
-    still = [curve for curve in coupler.curves if np.nanmax(np.abs(curve.y)) < 1.0]
-    assert len(still) == 2
-    assert all((curve.y == 0.0).all() for curve in still)
-    corners = {(mark.x, mark.y) for mark in rocker.marks}
-    assert {(0, 0), (0, 360), (360, 0), (360, 360)} <= corners
-    assert (360, 360) not in {(mark.x, mark.y) for mark in coupler.marks}

@@ -7,7 +7,7 @@ from itertools import combinations
 import pytest
 
 from linkwork.drawing import Box, Disc, Polyline, Role, SceneOptions, Text, scene_of
-from linkwork.drawing.label_placement import printed_name
+from linkwork.drawing.captions import printed_name
 
 MECHANISMS = [
     "four_bar", "slider_crank", "inverted_slider_crank", "collar", "six_link", "jansen", "flat",

@@ -31,6 +31,8 @@ def test_inputs_and_points_too() -> None:
     turned = crank.sweep(stop=3)
     np.testing.assert_array_equal(turned["Omega.y"], turned["Ω.y"])
     np.testing.assert_array_equal(turned.trace("Omega"), turned.trace("Ω"))
+    limits = [crank.sweep(limits_of=[name]).output_limits for name in ("Omega.y", "Ω.y")]
+    assert [[limit.value for limit in found] for found in limits] == [pytest.approx([40, -40])] * 2
 
 
 def test_a_table_shows_its_size_and_first_columns() -> None:

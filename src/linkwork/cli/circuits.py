@@ -21,11 +21,15 @@ from linkwork.cli.terminal import (
     progress,
     sentence,
     title_lines,
+    wrapped,
 )
 from linkwork.cli.text_table import Column, short, table_lines
-from linkwork.drawing.chart import circuit_chart
+from linkwork.drawing.chart import MOST_PANELS, circuit_chart
+from linkwork.everyday import Mechanism
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.names import canonical
+from linkwork.motion import check_quantities
 from linkwork.results.circuits import Circuit, Circuits
 
 __all__ = ["circuits", "circuits_lines"]
@@ -71,17 +75,38 @@ def circuits(
         picture.check_picture(draw)
     check_outputs(file, draw)
     mechanism = read_mechanism(file, changes)
+    _check_quantities(mechanism, names)
     with progress("following circuits") as tell:
         found = mechanism.circuits(certify=not no_certificates, progress=tell)
-    if draw is not None:
-        picture.write(circuit_chart(found, names), draw)
+    written = [] if draw is None else ["", *wrapped(_drawn(mechanism, found, names, draw))]
     if as_json:
         print_json(found.to_dict())
     else:
-        written = [] if draw is None else ["", f"Wrote {draw}."]
         print_lines([*circuits_lines(found), *written])
     if not len(found):
         context.exit(1)
+
+
+def _check_quantities(mechanism: Mechanism, names: tuple[str, ...]) -> None:
+    """Refuse what cannot be drawn over the input before anything is computed."""
+    for name in names:
+        if canonical(name) in [canonical(v.name) for v in mechanism.loop_equations.inputs]:
+            raise InputError(
+                f"--of {name}: everything is drawn over the input: name an unknown, a link, "
+                "an output or the coordinate of a point"
+            )
+    check_quantities(mechanism.model, names)
+
+
+def _drawn(mechanism: Mechanism, found: Circuits, names: tuple[str, ...], draw: str) -> str:
+    """Draw all circuits, if there are any, and say so."""
+    if not len(found):
+        return f"Did not write {draw}: there is nothing to draw."
+    picture.write(circuit_chart(found, names), draw)
+    every = len(mechanism.loop_equations.unknowns)
+    if names or every <= MOST_PANELS:
+        return f"Wrote {draw}."
+    return f"Wrote {draw}: the first {MOST_PANELS} of {every} unknowns; --of NAME chooses."
 
 
 def circuits_lines(found: Circuits) -> list[str]:
@@ -94,7 +119,8 @@ def circuits_lines(found: Circuits) -> list[str]:
     ]
     for circuit in found:
         lines += ["", *_circuit_lines(found, circuit)]
-    return [*lines, "", *fields([("complete", found.message)])]
+    reason = [] if found.failure is None else list(found.failure.sentences())
+    return [*lines, "", *fields([*reason, ("complete", found.message)])]
 
 
 def _circuit_lines(found: Circuits, circuit: Circuit) -> list[str]:

@@ -68,6 +68,8 @@ def configurations(
         picture.check_picture(draw)
     check_outputs(file, draw)
     mechanism = read_mechanism(file, changes)
+    if draw is not None:
+        picture.check_points(mechanism)
     found = mechanism.configurations(input_values(mechanism, at))
     if draw is not None and len(found):
         picture.write(configuration_sheet(found), draw)

@@ -56,7 +56,7 @@ __all__ = ["sweep"]
 )
 @click.option("--no-certificates", is_flag=True, help="Prove nothing: faster.")
 @click.option("--csv", metavar="PATH", help="Write the whole table; - is standard output.")
-@click.option("--draw", metavar="PATH", help="Draw the start position: .png, .svg or .pdf.")
+@click.option("--draw", metavar="PATH", help="Draw the motion: .png, .svg or .pdf.")
 @set_option
 @json_option
 @debug_option
@@ -94,6 +94,8 @@ def sweep(
         picture.check_picture(draw)
     check_outputs(file, csv, draw)
     mechanism = read_mechanism(file, changes)
+    if draw is not None:
+        picture.check_points(mechanism)
     with progress("sweeping") as tell:
         motion = mechanism.sweep(
             start=start,
@@ -106,7 +108,7 @@ def sweep(
             certify=not no_certificates,
             progress=tell,
         )
-    page = None if draw is None else _start_scene(mechanism, motion, configuration)
+    page = None if draw is None else _scene(mechanism, motion, configuration)
     written = _written(motion, page, csv, draw)
     if as_json:
         print_json(_data(motion))
@@ -119,10 +121,10 @@ def sweep(
         context.exit(1)
 
 
-def _start_scene(mechanism: Mechanism, motion: Motion, configuration: str | None) -> Scene | None:
-    """The picture of the start; None if there is no start to draw."""
+def _scene(mechanism: Mechanism, motion: Motion, configuration: str | None) -> Scene | None:
+    """The picture of the motion; None if there is no start to draw."""
     position = mechanism.solve(configuration=configuration)
-    return picture.scene(position, motion) if position.status.ok else None
+    return picture.sweep_scene(position, motion) if position.status.ok else None
 
 
 def _written(motion: Motion, page: Scene | None, csv: str | None, draw: str | None) -> list[str]:
@@ -136,7 +138,8 @@ def _written(motion: Motion, page: Scene | None, csv: str | None, draw: str | No
         said.append(f"Wrote {csv}: {len(motion)} rows.")
     if draw is not None and page is not None:
         picture.write(page, draw)
-        said.append(f"Wrote {draw}: the start position.")
+        moving = ", and the motion faintly" if motion.found.any() else ""
+        said.append(f"Wrote {draw}: the start position{moving}.")
     elif draw is not None:
         said.append(f"Did not write {draw}: there is no position to draw.")
     return said

@@ -1,92 +1,140 @@
-"""What is driven: a curved arrow around a pivot, a straight one along a slider or cylinder."""
+"""What is driven: a curved arrow around a pivot, a straight one along a slider or cylinder.
+
+An arrow may stand in several places beside what it drives; it takes the one where it covers least
+of what is drawn, the usual one where nothing is in its way.
+"""
 
 from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise, product
 
+import numpy as np
+
+from linkwork.drawing.box import Box
 from linkwork.drawing.guide_symbols import Track
 from linkwork.drawing.measures import Measures
+from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, xy
-from linkwork.mechanism.skeleton import Bar, DrivenPart
+from linkwork.mechanism.skeleton import Bar, DrivenPart, Strut
 
 __all__ = ["input_arrows"]
 
 _SWEEP = math.radians(110)
+_TURNED = 0.5  # what it costs to turn an arrow around its pivot away from the usual place [1/rad]
+_OTHER_SIDE = 2.0  # what it costs to stand on the other side of a slider or cylinder
+_FURTHER = 2.0  # and further away from it
+_MOVED = 0.3  # and to be moved along it by a pin's radius
+
+
+@dataclass(frozen=True)
+class _Place:
+    """An arrow where it may stand, and what it costs to stand there and not at the usual place."""
+
+    arrow: Arc | Polyline
+    cost: float
 
 
 def input_arrows(
-    pose: Pose, found: list[Track], measures: Measures, sense: float
-) -> Iterator[Primitive]:
-    """An arrow for every input, pointing where it grows, backwards if ``sense`` is negative."""
+    pose: Pose, found: list[Track], measures: Measures, sense: float, drawn: Sequence[Primitive]
+) -> list[Primitive]:
+    """An arrow for every input, pointing where it grows, backwards if ``sense`` is negative.
+
+    ``drawn`` is what the arrows should not cover.
+    """
     guided = {track.name: track for track in found}
     struts = {strut.name: strut for strut in pose.skeleton.struts}
     bars = {bar.name: bar for bar in pose.skeleton.bars}
+    arrows: list[Primitive] = []
     for part in pose.skeleton.driven:
         turn = -1 if sense < 0 or part.backwards else 1
+        places: list[_Place] = []
         if part.name in guided:
-            track = guided[part.name]
-            side = measures.block[1] if track.block else measures.slot
-            middle = track.places[0] - (side + 1.7 * measures.pin) * track.away
-            yield _straight(part, middle, turn * track.along, measures)
+            places = list(_along_track(part, guided[part.name], measures, turn))
         elif part.name in struts:
-            base, tip = (pose.points[name] for name in struts[part.name].between)
-            along = (tip - base) / abs(tip - base)
-            middle = base + 0.4 * (tip - base) + (measures.barrel + 1.7 * measures.pin) * along * 1j
-            yield _straight(part, middle, turn * along, measures)
+            places = list(_along_strut(pose, struts[part.name], measures, turn))
         elif part.name in bars and len(bars[part.name].points) > 1:
-            yield _curved(pose, part, bars[part.name], measures, turn)
+            places = list(_around_pivot(pose, part, bars[part.name], measures, turn))
+        if places:
+            arrows.append(_freest(places, Obstacles.of([*drawn, *arrows]), measures))
+    return arrows
 
 
-def _straight(part: DrivenPart, middle: complex, along: complex, measures: Measures) -> Polyline:
+def _freest(places: Sequence[_Place], obstacles: Obstacles, measures: Measures) -> Primitive:
+    """The arrow that covers least; the first of several."""
+    return min(
+        places, key=lambda place: place.cost + obstacles.cost(_boxes(place.arrow, measures))
+    ).arrow
+
+
+def _boxes(arrow: Arc | Polyline, measures: Measures) -> list[Box]:
+    """Small boxes along an arrow that together cover it, with a little room."""
+    room = 0.45 * measures.pin
+    places = [complex(*arrow.points[0])]
+    for start, end in pairwise(complex(*point) for point in arrow.points):
+        pieces = max(1, math.ceil(abs(end - start) / (2 * room)))
+        places += [start + (end - start) * k / pieces for k in range(1, pieces + 1)]
+    boxes = [Box(z.real, z.imag, z.real, z.imag).grown(room) for z in places]
+    return [*boxes, Box.around(arrow.arrow_head).grown(0.2 * room)]
+
+
+def _along_track(part: DrivenPart, track: Track, measures: Measures, turn: int) -> Iterator[_Place]:
+    """Beside a block or slot: on the side away from its rail, or behind the rail's hatching."""
+    side = measures.block[1] if track.block else measures.slot
+    behind = side + (measures.hatch if track.fixed else 0.0)
+    gap = 1.7 * measures.pin
+    for further, moved in product(range(3), (0.0, 3.0, -3.0, 8.0, -8.0)):
+        cost = _FURTHER * further + _MOVED * abs(moved)
+        along = moved * measures.pin * track.along
+        away = (1 + 0.8 * further) * gap
+        for off, extra in ((-side - away, 0.0), (behind + away, _OTHER_SIDE)):
+            middle = track.places[0] + along + off * track.away
+            yield _Place(_straight(part.name, middle, turn * track.along, measures), cost + extra)
+
+
+def _along_strut(pose: Pose, strut: Strut, measures: Measures, turn: int) -> Iterator[_Place]:
+    """Beside a cylinder: to the left of its barrel, elsewhere along it, or to the right."""
+    base, tip = (pose.points[name] for name in strut.between)
+    if base == tip:
+        return
+    length = abs(tip - base)
+    along = (tip - base) / length
+    for further, share in product(range(3), (0.4, 0.5, 0.6, 0.3, 0.7, 0.2, 0.8)):
+        cost = _FURTHER * further + _MOVED * abs(share - 0.4) * length / measures.pin
+        away = measures.barrel + (1 + 0.8 * further) * 1.7 * measures.pin
+        for off, extra in ((away, 0.0), (-away, _OTHER_SIDE)):
+            middle = base + (share * length + off * 1j) * along
+            yield _Place(_straight(strut.name, middle, turn * along, measures), cost + extra)
+
+
+def _straight(of: str, middle: complex, along: complex, measures: Measures) -> Polyline:
     reach = 3.6 * measures.pin * along
     return Polyline(
-        role=Role.INPUT,
-        of=part.name,
-        points=(xy(middle - reach), xy(middle + reach)),
-        head=measures.head,
+        role=Role.INPUT, of=of, points=(xy(middle - reach), xy(middle + reach)), head=measures.head
     )
 
 
-def _curved(pose: Pose, part: DrivenPart, bar: Bar, measures: Measures, turn: int) -> Arc:
-    """The arrow around the pivot, where the fewest links are in its way."""
+def _around_pivot(
+    pose: Pose, part: DrivenPart, bar: Bar, measures: Measures, turn: int
+) -> Iterator[_Place]:
+    """Around the pivot, usually ahead of the link."""
     name = part.pivot or bar.points[0]
     pivot = pose.points[name]
-    arms = [pose.points[other] - pivot for other in bar.points if other != name]
-    reach = max(arms, key=abs)
+    reach = max((pose.points[other] - pivot for other in bar.points if other != name), key=abs)
     radius = max(2.2 * measures.pin, min(4.6 * measures.pin, 0.6 * abs(reach)))
-    heading = cmath.phase(reach)
-    taken = [
-        cmath.phase(pose.points[other] - pivot)
-        for link in pose.skeleton.bars
-        if name in link.points
-        for other in link.points
-        if pose.points[other] != pivot
-    ]
-    if name in pose.skeleton.fixed:
-        taken += [math.radians(degrees) for degrees in (-125, -105, -75, -55)]
-    middles = [heading + math.radians(75) * turn + math.tau * k / 24 for k in range(24)]
-    best = min(middles, key=lambda middle: _crowding(middle, taken, middles[0]))
-    return Arc(
-        role=Role.INPUT,
-        of=part.name,
-        centre=xy(pivot),
-        radius=radius,
-        start=best - turn * _SWEEP / 2,
-        sweep=turn * _SWEEP,
-        head=measures.head,
-    )
-
-
-def _crowding(middle: float, taken: list[float], wanted: float) -> float:
-    """How many arms an arc around ``middle`` meets; ties go to the arc nearest the wanted one."""
-    room = _SWEEP / 2 + math.radians(12)
-    met = sum(_between(middle, angle) < room for angle in taken)
-    return met + _between(middle, wanted) / 10
-
-
-def _between(a: float, b: float) -> float:
-    """The angle between two directions, 0 to π."""
-    return abs(math.remainder(a - b, math.tau))
+    usual = cmath.phase(reach) + math.radians(75) * turn
+    for away in np.linspace(0.0, math.tau, 24, endpoint=False).tolist():
+        arrow = Arc(
+            role=Role.INPUT,
+            of=part.name,
+            centre=xy(pivot),
+            radius=radius,
+            start=usual + away - turn * _SWEEP / 2,
+            sweep=turn * _SWEEP,
+            head=measures.head,
+        )
+        yield _Place(arrow, _TURNED * abs(math.remainder(away, math.tau)))

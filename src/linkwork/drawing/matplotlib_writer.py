@@ -12,9 +12,9 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
+from linkwork.drawing.captions import lines_within
 from linkwork.drawing.chart import Chart
 from linkwork.drawing.matplotlib_chart import chart_figure
 from linkwork.drawing.scene import (
@@ -29,7 +29,7 @@ from linkwork.drawing.scene import (
     Scene,
     Text,
 )
-from linkwork.drawing.sheet import Sheet
+from linkwork.drawing.sheet import TALLEST, Sheet
 from linkwork.drawing.theme import LIGHT, Theme
 from linkwork.foundation.errors import InputError, MissingPackageError
 
@@ -47,7 +47,7 @@ _SHORT_SIDE = 1.5  # at least, so that ticks and the title have room
 _LEFT, _RIGHT, _BELOW, _LINE = 0.75, 0.2, 0.6, 0.19  # around the drawing, and a title line
 _TITLE, _SMALL = 11.0, 9.0  # font sizes in points
 _TICK_EVERY = 1.0  # inch, about
-_SHEET_WIDTH, _SMALLEST_CELL = 7.5, 2.2  # of pictures side by side, in inches
+_MARGIN, _BETWEEN = 0.15, 0.15  # around and between pictures side by side, in inches
 _DATELESS: dict[str, dict[str, str | None]] = {
     "png": {"Software": "Linkwork"},
     "svg": {"Date": None, "Creator": "Linkwork"},
@@ -129,38 +129,64 @@ def figure(scene: Scene, ax: Axes | None = None, *, theme: Theme = LIGHT) -> Fig
 
 
 def _sheet_figure(sheet: Sheet, theme: Theme) -> Figure:
-    """Scenes side by side without axes, all of one scale."""
+    """Scenes side by side in frames without ticks, all of one scale."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    columns = sheet.columns
-    rows = max(1, math.ceil(len(sheet.scenes) / columns))
+    columns, cell = sheet.columns, sheet.cell
+    rows = math.ceil(len(sheet.scenes) / columns)
+    wide = cell - _BETWEEN
+    names = [_name_lines(scene.title, wide * 72 / _SMALL) for scene in sheet.scenes]
     size = max(scene.measures.size for scene in sheet.scenes)
     view = sheet.view.grown(0.03 * size)
-    cell = max(_SMALLEST_CELL, _SHEET_WIDTH / columns)
-    wide = 0.97 * cell
-    tall = min(max(wide * view.height / view.width, 0.6 * wide), 1.6 * wide)
+    tall = min(max(wide * view.height / view.width, 0.35 * wide), TALLEST * wide)
     scale = max(view.width / wide, view.height / tall)
     (x, y), half, rise = view.centre, 0.5 * scale * wide, 0.5 * scale * tall
     view = Box(x - half, y - rise, x + half, y + rise)
-    head = 0.35 + 2 * _LINE
-    width, height = columns * cell + 0.3, rows * (tall + 0.3) + head
+    width = columns * cell + 2 * _MARGIN - _BETWEEN
+    heading = _heading(sheet.title, sheet.caption, width - 2 * _MARGIN, theme)
+    above = _MARGIN + _LINE * len(heading)
+    step = tall + _BETWEEN + _LINE * max(map(len, names))
+    height = above + rows * step + _MARGIN
     page = Figure(figsize=(width, height), facecolor=theme.background)
     FigureCanvasAgg(page)
-    for k, (line, ink) in enumerate(((sheet.title, theme.ink), (sheet.caption, theme.faint))):
-        place = (0.15 / width, 1 - (0.26 + k * _LINE) / height)
-        page.text(*place, line, fontsize=(_TITLE, _SMALL)[k], color=ink, parse_math=False)
-    for k, scene in enumerate(sheet.scenes):
+    _write_heading(page, heading, _MARGIN)
+    for k, (scene, name) in enumerate(zip(sheet.scenes, names, strict=True)):
         row, column = divmod(k, columns)
-        corner = (0.15 + column * cell, height - head - (row + 1) * (tall + 0.3))
+        corner = (_MARGIN + column * cell, height - above - (row + 1) * step)
         ax = page.add_axes((corner[0] / width, corner[1] / height, wide / width, tall / height))
         _dress(ax, scene, theme, view)
-        ax.set_axis_off()
-        ax.set_title(scene.title, fontsize=_SMALL, color=theme.ink, parse_math=False)
+        ax.tick_params(bottom=False, left=False, labelbottom=False, labelleft=False)
+        ax.set(xlabel="", ylabel="")
+        for spine in ax.spines.values():
+            spine.set_visible(True)
+        text = "\n".join(name)
+        ax.set_title(text, fontsize=_SMALL, color=theme.ink, loc="left", pad=3.0, parse_math=False)
         brush = _Brush(ax, scene, theme)
         for primitive in scene.primitives:
             brush.draw(primitive)
     return page
+
+
+def _name_lines(name: str, width: float) -> list[str]:
+    """The name of a configuration in lines of at most ``width`` [em], broken at its hyphens."""
+    lines = lines_within(name.replace("-", "- "), width)
+    return [line.replace("- ", "-") for line in lines] or [""]
+
+
+def _heading(title: str, caption: str, width: float, theme: Theme) -> list[tuple[str, float, str]]:
+    """Lines of a title and a caption with their font sizes and colours; ``width`` in inches."""
+    heading = [(line, _TITLE, theme.ink) for line in lines_within(title, width * 72 / _TITLE)]
+    small = lines_within(caption, width * 72 / _SMALL)
+    return heading + [(line, _SMALL, theme.faint) for line in small]
+
+
+def _write_heading(page: Figure, heading: list[tuple[str, float, str]], left: float) -> None:
+    """The lines of a heading below each other, ``left`` inches from the edge."""
+    width, height = page.get_size_inches()
+    for k, (line, size, colour) in enumerate(heading):
+        place = (left / width, 1 - (0.26 + k * _LINE) / height)
+        page.text(*place, line, fontsize=size, color=colour, parse_math=False)
 
 
 @contextmanager
@@ -188,24 +214,16 @@ def _page(scene: Scene, theme: Theme) -> Axes:
     half, rise = width / scale / 2, height / scale / 2
     view = Box(x - half, y - rise, x + half, y + rise)
     page = width + _LEFT + _RIGHT
-    title = _lines(scene.title, (page - 0.4) * 72 / (0.6 * _TITLE))
-    caption = _lines(scene.caption, (page - 0.4) * 72 / (0.6 * _SMALL))
-    above = 0.2 + _LINE * (len(title) + len(caption))
+    left = _LEFT if page > 4 else 0.2
+    heading = _heading(scene.title, scene.caption, page - left - 0.2, theme)
+    above = 0.2 + _LINE * len(heading)
     total = height + _BELOW + above
     drawing = Figure(figsize=(page, total), facecolor=theme.background)
     FigureCanvasAgg(drawing)
     ax = drawing.add_axes((_LEFT / page, _BELOW / total, width / page, height / total))
     _dress(ax, scene, theme, view)
-    heading = [(line, _TITLE, theme.ink) for line in title]
-    heading += [(line, _SMALL, theme.faint) for line in caption]
-    for k, (line, size, colour) in enumerate(heading):
-        place = (_LEFT / page if page > 4 else 0.2 / page, 1 - (0.26 + k * _LINE) / total)
-        drawing.text(*place, line, fontsize=size, color=colour, parse_math=False)
+    _write_heading(drawing, heading, left)
     return ax
-
-
-def _lines(text: str, letters: float) -> list[str]:
-    return wrap(text, math.floor(letters), break_on_hyphens=False)
 
 
 def _dress(ax: Axes, scene: Scene, theme: Theme, view: Box) -> None:
@@ -262,7 +280,7 @@ class _Brush:
     def draw(self, primitive: Primitive) -> None:
         match primitive:
             case Polyline() | Arc():
-                self._line([primitive.points], primitive)
+                self._line([primitive.shaft], primitive)
                 if primitive.arrow_head:
                     self._area(primitive.arrow_head, primitive, width=0.3)
             case Hatch():
@@ -276,8 +294,8 @@ class _Brush:
 
     def _common(self, primitive: Primitive) -> dict[str, Any]:
         # The group id names role and part in an SVG file, for whoever edits or tests it.
-        gid = f"{primitive.role.name.lower()}:{primitive.of}"
-        return {"zorder": 10 + primitive.role.layer, "gid": gid, "clip_on": False}
+        gid = f"{'faint-' if primitive.fade else ''}{primitive.role.name.lower()}:{primitive.of}"
+        return {"zorder": 100 + primitive.layer, "gid": gid, "clip_on": False}
 
     def _line(self, lines: tuple[tuple[XY, ...], ...] | list[Any], primitive: Primitive) -> None:
         from matplotlib.collections import LineCollection
@@ -287,7 +305,7 @@ class _Brush:
             LineCollection(
                 list(lines),
                 colors=self.theme.line(primitive),
-                linewidths=style.width * self.stroke,
+                linewidths=style.width * self.stroke * (1 - 0.5 * primitive.fade),
                 linestyles=[(0, (0.01, 2.2))] if style.dotted else "solid",
                 capstyle="round",
                 joinstyle="round",
@@ -314,7 +332,7 @@ class _Brush:
         style = self.theme.styles[primitive.role]
         line, fill = self.theme.line(primitive), self.theme.fill(primitive)
         return {
-            "facecolor": to_rgba(fill, style.opacity) if fill else "none",
+            "facecolor": to_rgba(fill, style.opacity ** (1 + primitive.fade)) if fill else "none",
             "edgecolor": line or "none",
             "linewidth": style.width * width * self.stroke if line else 0.0,
             **self._common(primitive),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -24,21 +25,26 @@ class Measures:
         The larger side of what is drawn.
     pin : float
         The radius of a pin; every other symbol is a multiple of it.
+    larger : float
+        How much larger than usual names are, for small pictures; symbols grow by its root.
     """
 
     size: float
     pin: float
+    larger: float = 1.0
 
     @classmethod
-    def of(cls, box: Box, gaps: Iterable[float]) -> Measures:
+    def of(cls, box: Box, gaps: Iterable[float], larger: float = 1.0) -> Measures:
         """Measures for what fills a box, with gaps between pins that do not change in the motion.
 
         A mechanism of a single point counts as one unit long.
         """
         size = max(box.width, box.height) or 1.0
         shortest = min((gap for gap in gaps if gap > 1e-6 * size), default=size)
-        pin = min(_PIN_OF_SIZE * size, max(_PIN_OF_GAP * shortest, _SMALLEST_OF_SIZE * size))
-        return cls(size=size, pin=pin)
+        least, most = (
+            share * size * math.sqrt(larger) for share in (_SMALLEST_OF_SIZE, _PIN_OF_SIZE)
+        )
+        return cls(size=size, pin=min(most, max(_PIN_OF_GAP * shortest, least)), larger=larger)
 
     @property
     def stroke(self) -> float:
@@ -53,7 +59,7 @@ class Measures:
     @property
     def text(self) -> float:
         """The font size (one em) of names: readable however small the pins are."""
-        return 0.0275 * self.size
+        return 0.0275 * self.larger * self.size
 
     @property
     def block(self) -> tuple[float, float]:

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
 
+from linkwork.drawing.captions import inputs_caption, reached_caption
 from linkwork.drawing.cylinder_symbol import cylinder_symbols
+from linkwork.drawing.further_positions import (
+    Further,
+    faint_symbols,
+    further_positions,
+    limit_marks,
+)
 from linkwork.drawing.ground_symbols import ground_symbols
 from linkwork.drawing.guide_symbols import guide_symbols, track_gaps, tracks
 from linkwork.drawing.input_arrow import input_arrows
-from linkwork.drawing.label_placement import link_names, placed, point_names, printed_name
+from linkwork.drawing.label_placement import link_names, placed, point_names
 from linkwork.drawing.link_symbols import link_symbols, pin_symbols, tones
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
@@ -35,8 +42,13 @@ class SceneOptions:
         Write the names of links beside them.
     arrows : bool
         Show by arrows what is driven.
+    further : int
+        About how many more positions of the motion to show, faintly; if any, its dead points and
+        change points are marked.
     title : str, optional
         Instead of the mechanism's name; an empty one leaves it out.
+    larger : float
+        How much larger than usual names are, for small pictures; symbols grow by its root.
     within : Box, optional
         What the picture shows at least, and what the sizes of symbols are measured by: give all
         pictures of one animation the same, from :func:`reach_of`.
@@ -44,6 +56,8 @@ class SceneOptions:
 
     link_names: bool = False
     arrows: bool = True
+    further: int = 0
+    larger: float = 1.0
     title: str | None = None
     within: Box | None = None
 
@@ -87,23 +101,30 @@ def scene_of(
     chosen = options or SceneOptions()
     pose = Pose.of(position, motion)
     names = _traced(pose, traces)
-    within = chosen.within or _drawn_box(pose, names)
-    measures = Measures.of(within, pose.gaps)
+    further: list[Further] = []
+    if motion is not None and chosen.further:
+        further = further_positions(pose, motion, chosen.further)
+    within = chosen.within or _drawn_box(pose, names, further)
+    measures = Measures.of(within, pose.gaps, chosen.larger)
     found = tracks(pose, measures, tones(pose))
     sense = -1.0 if motion is not None and (motion.speed or 0.0) < 0 else 1.0
+    marks, limit_names = limit_marks(further, motion, measures)
     primitives: list[Primitive] = [
+        *faint_symbols(further, measures),
         *ground_symbols(pose, measures),
         *guide_symbols(found, measures),
         *link_symbols(pose, track_gaps(found, measures)),
         *cylinder_symbols(pose, measures),
         *trace_symbols(pose, names, measures),
         *pin_symbols(pose, measures),
+        *marks,
     ]
     if chosen.arrows:
-        primitives += input_arrows(pose, found, measures, sense)
+        primitives += input_arrows(pose, found, measures, sense, primitives)
     wanted = [
         *(point_names(pose, measures) if labels else []),
         *(link_names(pose, measures) if chosen.link_names else []),
+        *limit_names,
     ]
     primitives += placed(wanted, primitives)
     return Scene(
@@ -112,7 +133,7 @@ def scene_of(
         within=within,
         unit=position.units.length,
         title=position.mechanism if chosen.title is None else chosen.title,
-        caption=_caption(position, {} if motion is None else motion.input_units),
+        caption=_caption(position, motion if further else None),
     )
 
 
@@ -159,24 +180,18 @@ def _traced(pose: Pose, wanted: Sequence[str] | None) -> tuple[str, ...]:
     return tuple(dict.fromkeys(wanted))
 
 
-def _drawn_box(pose: Pose, traces: tuple[str, ...]) -> Box:
-    """The box of what is drawn: points now, traces, and the travel along fixed guides."""
-    now = [place for name, place in pose.points.items() if name not in pose.construction]
+def _drawn_box(pose: Pose, traces: tuple[str, ...], further: Sequence[Further]) -> Box:
+    """The box of what is drawn: points now and at further positions, traces, fixed guides."""
+    poses = [pose, *(other.pose for other in further)]
+    drawn = [name for name in pose.points if name not in pose.construction]
+    places = (one.points[name] for one in poses for name in drawn)
     along = {guide.point for guide in pose.skeleton.guides if pose.on_ground(guide)}
     paths = [pose.paths[name] for name in (*traces, *along) if name in pose.paths]
     travelled = chain.from_iterable(path[np.isfinite(path)] for path in paths)
-    return Box.around((float(z.real), float(z.imag)) for z in chain(now, travelled))
+    return Box.around((float(z.real), float(z.imag)) for z in chain(places, travelled))
 
 
-def _caption(position: Position, units: Mapping[str, str]) -> str:
-    """The input values with units: ``crank = 60°``. Without a motion what is driven tells them."""
-    angle, length = position.units.angle, position.units.length
-    of_kind = {"link": angle.value, "slider": length, "cylinder": length}
-    driven = [of_kind.get(part.kind, "") for part in position.skeleton.driven]
-    known = dict(zip(position.input, driven, strict=False)) | dict(units)
-    parts = []
-    for name, value in position.input.items():
-        unit = known.get(name, "")
-        sign = angle.sign if unit == angle.value else f" {unit}"
-        parts.append(f"{printed_name(name)} = {value:.6g}{sign}".rstrip())
-    return ", ".join(parts)
+def _caption(position: Position, motion: Motion | None) -> str:
+    """The input values with units, and where a motion is shown faintly: ``crank = 60°``."""
+    here = inputs_caption(position.input, position.input_units, position.units)
+    return here if motion is None else f"{here}; faint: {reached_caption(motion)}"

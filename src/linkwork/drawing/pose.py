@@ -15,7 +15,7 @@ from linkwork.mechanism.skeleton import Guide, Skeleton, Strut
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
-__all__ = ["Pose", "Travel"]
+__all__ = ["Pose", "Travel", "no_points"]
 
 Path = ComplexArray
 Real = Array
@@ -100,6 +100,13 @@ class Pose:
         return lines - used
 
 
+def no_points(mechanism: str) -> InputError:
+    """What to say of a mechanism that is nothing but equations."""
+    return InputError(
+        f'"{mechanism}" has no points to draw: add [points] with the coordinates of its pins'
+    )
+
+
 def _check(position: Position, motion: Motion | None) -> None:
     if not position.status.ok:
         raise InputError(
@@ -107,10 +114,7 @@ def _check(position: Position, motion: Motion | None) -> None:
             f"{position.message or position.status.value}"
         )
     if not position.points:
-        raise InputError(
-            f'"{position.mechanism}" has no points to draw: '
-            "add [points] with the coordinates of its pins"
-        )
+        raise no_points(position.mechanism)
     bad = [name for name, place in position.points.items() if not np.isfinite(place).all()]
     if bad:
         raise InputError(f"points without coordinates cannot be drawn: {', '.join(bad)}")

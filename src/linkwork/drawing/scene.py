@@ -31,6 +31,9 @@ __all__ = [
 ]
 
 
+_COVERED = 0.7  # of an arrow head's length is where its line ends, so that its tip stays sharp
+
+
 class Role(Enum):
     """What a primitive stands for. Its style follows from it; later members lie on top."""
 
@@ -45,9 +48,11 @@ class Role(Enum):
     PIN = "a pin joint"
     POINT = "a named point that joins nothing"
     TRACED = "a point whose path is shown"
+    LIMIT = "where a motion ends or branches cross"
     INPUT = "the arrow of what is driven"
     LINK_NAME = "the name of a link"
     LABEL = "the name of a point"
+    LIMIT_NAME = "what a limit is, and where"
 
     @property
     def layer(self) -> int:
@@ -61,16 +66,24 @@ class Primitive:
 
     ``of`` names the part of the mechanism that is shown. ``tone`` tells links apart: 0 for what
     is driven and for everything that has no colour of its own, 1, 2, … for the other links.
+    ``fade`` mixes its colours with the page, 0 not at all, 1 away: for further positions of a
+    motion, which lie below everything that is not faint.
     """
 
     role: Role
     of: str = ""
     tone: int = 0
+    fade: float = 0.0
 
     @property
     def outline(self) -> tuple[XY, ...]:
         """Points whose bounding box is that of the primitive (line widths left out)."""
         raise NotImplementedError
+
+    @property
+    def layer(self) -> float:
+        """The height of the primitive in the stack: that of its role, or the fainter the lower."""
+        return self.role.layer - (len(Role) * (1.0 + self.fade) if self.fade else 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,6 +96,15 @@ class Polyline(Primitive):
     @property
     def outline(self) -> tuple[XY, ...]:
         return self.points + self.arrow_head
+
+    @property
+    def shaft(self) -> tuple[XY, ...]:
+        """The line as it is drawn: with a head it ends inside it, not at its tip."""
+        if not self.head:
+            return self.points
+        tip, before = complex(*self.points[-1]), complex(*self.points[-2])
+        end = tip - (tip - before) / abs(tip - before) * _COVERED * self.head
+        return (*self.points[:-1], xy(end))
 
     @property
     def arrow_head(self) -> tuple[XY, ...]:
@@ -127,9 +149,19 @@ class Arc(Primitive):
     @property
     def points(self) -> tuple[XY, ...]:
         """The arc as a line of short pieces."""
-        pieces = max(8, round(abs(self.sweep) / 0.1))
+        return self._pieces(self.sweep)
+
+    @property
+    def shaft(self) -> tuple[XY, ...]:
+        """The line as it is drawn: with a head it ends inside it, not at its tip."""
+        return self._pieces(
+            self.sweep - math.copysign(_COVERED * self.head / self.radius, self.sweep)
+        )
+
+    def _pieces(self, sweep: float) -> tuple[XY, ...]:
+        count = max(8, round(abs(sweep) / 0.1))
         (x, y), r = self.centre, self.radius
-        angles = [self.start + self.sweep * k / pieces for k in range(pieces + 1)]
+        angles = [self.start + sweep * k / count for k in range(count + 1)]
         return tuple((x + r * math.cos(a), y + r * math.sin(a)) for a in angles)
 
     @property
@@ -220,7 +252,7 @@ class Scene:
     caption: str = ""
 
     def __post_init__(self) -> None:
-        ordered = tuple(sorted(self.primitives, key=lambda primitive: primitive.role.layer))
+        ordered = tuple(sorted(self.primitives, key=lambda primitive: primitive.layer))
         object.__setattr__(self, "primitives", ordered)
 
     @cached_property

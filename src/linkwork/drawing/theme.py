@@ -50,16 +50,23 @@ class Theme:
 
     def line(self, primitive: Primitive) -> str:
         """The line colour of a primitive; empty for none."""
-        return self._colour(self.styles[primitive.role].line, primitive.tone)
+        return self._colour(self.styles[primitive.role].line, primitive)
 
     def fill(self, primitive: Primitive) -> str:
         """The fill colour of a primitive; empty for none."""
-        return self._colour(self.styles[primitive.role].fill, primitive.tone)
+        return self._colour(self.styles[primitive.role].fill, primitive)
 
-    def _colour(self, colour: str, tone: int) -> str:
-        if colour != "tone":
-            return colour
-        return self.tones[(tone - 1) % len(self.tones)] if tone else self.driven
+    def _colour(self, colour: str, primitive: Primitive) -> str:
+        if colour == "tone":
+            tone = primitive.tone
+            colour = self.tones[(tone - 1) % len(self.tones)] if tone else self.driven
+        return self._mixed(colour, primitive.fade) if colour and primitive.fade else colour
+
+    def _mixed(self, colour: str, fade: float) -> str:
+        """A colour #RRGGBB with the page shining through: opaque, so that crossings stay faint."""
+        ink, page = ([int(c[k : k + 2], 16) for k in (1, 3, 5)] for c in (colour, self.background))
+        mixed = (round((1.0 - fade) * i + fade * p) for i, p in zip(ink, page, strict=True))
+        return "#" + "".join(f"{part:02X}" for part in mixed)
 
 
 _INK, _GREY, _PAPER = "#1A1A1A", "#5A5A5A", "#FFFFFF"
@@ -83,9 +90,11 @@ LIGHT = Theme(
             Role.PIN: Style(line=_INK, width=1.4, fill=_PAPER),
             Role.POINT: Style(fill=_INK),
             Role.TRACED: Style(fill=_INK),
+            Role.LIMIT: Style(line=_INK, width=2.2, fill=_PAPER),
             Role.INPUT: Style(line=_VERMILLION, width=1.7, fill=_VERMILLION),
             Role.LINK_NAME: Style(fill="tone"),
             Role.LABEL: Style(fill=_INK),
+            Role.LIMIT_NAME: Style(fill=_GREY),
         }
     ),
 )

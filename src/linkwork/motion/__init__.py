@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     )
     from linkwork.motion.checking import check
     from linkwork.motion.circuit.circuits import branch_start, circuits
+    from linkwork.motion.extremes import check_quantities
     from linkwork.motion.model import Model, model_of
     from linkwork.motion.solving import solve
     from linkwork.motion.sweeping import sweep
@@ -24,6 +25,7 @@ else:
             "assembly.configurations": ("configurations", "solve_configuration", "started_in"),
             "checking": ("check",),
             "circuit.circuits": ("branch_start", "circuits"),
+            "extremes": ("check_quantities",),
             "model": ("Model", "model_of"),
             "solving": ("solve",),
             "sweeping": ("sweep",),
@@ -34,6 +36,7 @@ __all__ = [
     "Model",
     "branch_start",
     "check",
+    "check_quantities",
     "circuits",
     "configurations",
     "model_of",

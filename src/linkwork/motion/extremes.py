@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import UnknownNameError, choices
-from linkwork.foundation.names import canonical
+from linkwork.foundation.names import canonical, spelled
 from linkwork.foundation.status import Status
 from linkwork.motion.model import Model
 from linkwork.motion.reading import Named, named_series
@@ -42,6 +42,7 @@ def _series(named: Named, name: str) -> Series:
             if canonical(known) == canonical(name):
                 return series
     point, _, axis = name.rpartition(".")
+    point = spelled(point, named.points)
     if point in named.points and axis in ("x", "y"):
         return named.points[point][axis == "y"]
     tables = (named.unknowns, named.links, named.sliders, named.outputs)

@@ -21,6 +21,7 @@ from linkwork.mechanism.skeleton import DrivenPart, Skeleton
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.redundancy import check_redundancy
 from linkwork.motion.speeds import input_speed
+from linkwork.results.position import Position
 from linkwork.results.quantity import Kind, Units
 
 __all__ = ["Model", "model_of"]
@@ -43,6 +44,13 @@ class Model:
         """The model with the guess of another one of the same equations."""
         equations = replace(self.equations, start=other.equations.start)
         return replace(self, equations=equations, branch=other.branch)
+
+    def from_position(self, position: Position) -> Model:
+        """The model with a position of this mechanism as its guess."""
+        values = [position.input[variable.name] for variable in self.equations.inputs]
+        start = np.concatenate([position.q, np.array(values) * self.input_scale])
+        equations = replace(self.equations, start=start)
+        return replace(self, equations=equations, branch=position.configuration or self.branch)
 
     @property
     def circuit(self) -> str:

@@ -13,6 +13,7 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit, Motion
 from linkwork.results.summary import circuits_summary
 
@@ -117,6 +118,8 @@ class Circuits:
     input_unit : str
     seeded : int
         At how many input values all configurations were listed to find the circuits.
+    failure : Failure, optional
+        Why there is no position at the guess, or no motion from it, if no circuit was found.
     """
 
     mechanism: str
@@ -126,6 +129,7 @@ class Circuits:
     input: str
     input_unit: str
     seeded: int
+    failure: Failure | None = None
 
     def __len__(self) -> int:
         return len(self.circuits)
@@ -167,6 +171,7 @@ class Circuits:
             "circuits": [_circuit_data(circuit) for circuit in self.circuits],
             "completeness": self.completeness.name,
             "message": self.message,
+            **({} if self.failure is None else {"failure": self.failure.to_dict()}),
         }
 
 

@@ -14,6 +14,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.status import Status
+from linkwork.motion import failure as why
 from linkwork.motion.circuit.arcs import Arc, Explorer, positions_near
 from linkwork.motion.circuit.branches import CurveBranch
 from linkwork.motion.circuit.seeding import Seeding
@@ -27,6 +28,7 @@ from linkwork.numerics.change_point import Crossing
 from linkwork.numerics.curve import same_position
 from linkwork.numerics.track import InputPath
 from linkwork.results.circuits import Branch, Circuit, Circuits
+from linkwork.results.failure import Failure
 from linkwork.results.motion import Motion
 
 __all__ = ["branch_start", "circuits", "is_branch_name"]
@@ -94,7 +96,15 @@ class _Circuits:
             input=name,
             input_unit=self.model.input_units[name],
             seeded=self.seeding.seeded,
+            failure=None if found else self._failure(),
         )
+
+    def _failure(self) -> Failure | None:
+        """Why no circuit could be found, as far as the guess's own position tells."""
+        start = self.seeding.start
+        if start is None or not start.status.ok:
+            return None if start is None else start.failure
+        return why.without_circuit(self.model, start.v)
 
     def _groups(self) -> list[_Group]:
         """Arcs joined by the change points they share, in the order found."""

@@ -14,7 +14,7 @@ from linkwork.motion.circuit.arcs import Explorer
 from linkwork.motion.circuit.dead_inputs import DeadPointInputs, dead_point_inputs
 from linkwork.motion.circuit.intervals import Interval, intervals_between
 from linkwork.motion.model import Model
-from linkwork.motion.start import first_position
+from linkwork.motion.start import Start, first_position
 from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.track import InputPath, TrackOptions
@@ -31,6 +31,7 @@ class Seeding:
 
     ``names``: the configurations at the guess's input with their names. ``seeded``: at how many
     input values configurations were listed. ``unclear``: in how many intervals no list was sure.
+    ``start``: the position at the guess, once looked for.
     """
 
     def __init__(
@@ -41,11 +42,13 @@ class Seeding:
         self.names: list[tuple[Array, str]] = []
         self.dead: DeadPointInputs | None = None
         self.seeded = self.unclear = 0
+        self.start: Start | None = None
 
     def look(self, progress: Callable[[float], None] | None) -> None:
         """Seed with the guess, the configurations at its input, and those between dead points."""
         model = self.model
         start = first_position(model, model.start_inputs, NewtonOptions())
+        self.start = start
         if start.status.ok and self._regular(start.v, TrackOptions().largest_condition):
             self.explorer.visit(start.v)
         value = float(model.start_inputs[self.lead])
@@ -118,9 +121,9 @@ class Seeding:
     def completeness(self) -> tuple[Completeness, str]:
         """Of the list of circuits."""
         if self.dead is None:
+            what = "only the circuit of the guess" if self.explorer.arcs else "only the guess"
             return Completeness.NOT_LISTED, (
-                "only the circuit of the guess: the configurations of these equations cannot be "
-                "listed"
+                f"{what}: the configurations of these equations cannot be listed"
             )
         count = self.seeded
         if self.dead.cover_all and not self.unclear:

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
         beyond_reach,
         limits_met,
         no_position,
+        without_circuit,
         without_start,
     )
 else:
@@ -23,9 +24,17 @@ else:
                 "beyond_reach",
                 "limits_met",
                 "no_position",
+                "without_circuit",
                 "without_start",
             )
         },
     )
 
-__all__ = ["another_root", "beyond_reach", "limits_met", "no_position", "without_start"]
+__all__ = [
+    "another_root",
+    "beyond_reach",
+    "limits_met",
+    "no_position",
+    "without_circuit",
+    "without_start",
+]

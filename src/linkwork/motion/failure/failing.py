@@ -26,7 +26,14 @@ from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit
 from linkwork.results.quantity import Kind
 
-__all__ = ["another_root", "beyond_reach", "no_position", "without_start"]
+__all__ = [
+    "another_root",
+    "beyond_reach",
+    "limits_met",
+    "no_position",
+    "without_circuit",
+    "without_start",
+]
 
 #: How the positions that exist at given inputs are found, for every explanation.
 ELSEWHERE: ElsewhereAt = positions_elsewhere
@@ -98,6 +105,19 @@ def without_start(model: Model, failure: Failure, inputs: Array) -> Failure:
         configuration_names=here.configuration_names,
         complete=here.complete,
         complete_likely=here.complete_likely,
+    )
+
+
+def without_circuit(model: Model, found: Array) -> Failure:
+    """What to say of a position (N,) from which no circuit could be followed: it is singular."""
+    solver = model.compiled.solver
+    inputs = found[solver.unknowns :]
+    where = _inputs_text(model, inputs)
+    return _failure(
+        model,
+        inputs,
+        what=f"position found{' at ' if where else ''}{where}, at a dead point or change point, "
+        "but no motion that comes by there",
     )
 
 

@@ -1,0 +1,154 @@
+"""A motion in one picture: some of its positions, faint, and the limits that it meets, marked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.drawing.captions import lead_text
+from linkwork.drawing.cylinder_symbol import cylinder_symbols
+from linkwork.drawing.guide_symbols import guide_symbols, track_gaps, tracks
+from linkwork.drawing.label_placement import Choice, places_beside
+from linkwork.drawing.link_symbols import link_symbols, pin_symbols, tones
+from linkwork.drawing.measures import Measures
+from linkwork.drawing.pose import Pose
+from linkwork.drawing.scene import Polygon, Polyline, Primitive, Role, xy
+from linkwork.foundation.arrays import ComplexArray
+from linkwork.results.motion import LimitKind, Motion
+
+__all__ = ["Further", "driven_point", "faint_symbols", "further_positions", "limit_marks"]
+
+_FADE = 0.78  # of positions on the way
+_FADE_OF_LIMITS = 0.4
+_SAME = 1e-6  # of the largest travel: positions as near as this are one
+_LIMITS = {kind.word: kind for kind in (LimitKind.DEAD_POINT, LimitKind.CHANGE_POINT)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Further:
+    """Another position of the motion: its row, its points, and the limit that it is, if any."""
+
+    row: int
+    pose: Pose
+    limit: LimitKind | None
+
+
+def further_positions(pose: Pose, motion: Motion, count: int) -> list[Further]:
+    """All limits that the motion meets, and up to ``count`` of its other positions.
+
+    Each is the one furthest away from those taken before, by the point that is moved most, and
+    from the position of ``pose`` itself: so they are spread over all that is reached, and none
+    hides behind another (Gonzalez 1985).
+
+    References
+    ----------
+    T. F. Gonzalez, Clustering to minimize the maximum intercluster distance, Theoretical Computer
+    Science 38 (1985) 293-306, doi:10.1016/0304-3975(85)90224-5.
+    """
+    found = np.flatnonzero(motion.found)
+    if not len(found):
+        return []
+    places = np.stack([pose.paths[name][found] for name in pose.paths], axis=1)
+    near = _SAME * max(float(np.abs(places - places[0]).max()), 1e-300)
+    limit = [_LIMITS.get(motion.limit[row]) for row in found]
+    away = np.full(len(found), np.inf)
+    shown: list[int] = []
+    for k in [k for k, kind in enumerate(limit) if kind is not None]:
+        if away[k] > near:
+            shown.append(k)
+            away = np.minimum(away, np.abs(places - places[k]).max(axis=1))
+    own = np.array([pose.points[name] for name in pose.paths])
+    away = np.minimum(away, np.abs(places - own).max(axis=1))
+    for _ in range(count):
+        k = int(np.argmax(away))
+        if away[k] <= near:
+            break
+        shown.append(k)
+        away = np.minimum(away, np.abs(places - places[k]).max(axis=1))
+    return [
+        Further(
+            row=int(found[k]),
+            pose=replace(pose, points=dict(zip(pose.paths, places[k].tolist(), strict=True))),
+            limit=limit[k],
+        )
+        for k in shown
+    ]
+
+
+def faint_symbols(shown: Sequence[Further], measures: Measures) -> Iterator[Primitive]:
+    """Everything that moves, at every further position; limits stand out a little."""
+    for further in shown:
+        pose = further.pose
+        found = tracks(pose, measures, tones(pose))
+        still = set(pose.skeleton.fixed)
+        moving = [
+            *link_symbols(pose, track_gaps(found, measures)),
+            *guide_symbols(found, measures),
+            *cylinder_symbols(pose, measures),
+            *(p for p in pin_symbols(pose, measures) if p.role is Role.PIN and p.of not in still),
+        ]
+        fade = _FADE if further.limit is None else _FADE_OF_LIMITS
+        for primitive in moving:
+            if primitive.role not in (Role.GROUND, Role.HATCH):
+                yield replace(primitive, fade=fade)
+
+
+def driven_point(pose: Pose) -> str:
+    """The point that moves most directly with the first input, to mark its limits at."""
+    skeleton = pose.skeleton
+    travel = {name: _travel(path) for name, path in pose.paths.items()}
+    wanted: list[str] = []
+    for part in skeleton.driven[:1]:
+        for bar in skeleton.bars:
+            if bar.name == part.name:
+                pivot = pose.points[part.pivot or bar.points[0]]
+                wanted += sorted(bar.points, key=lambda name: -abs(pose.points[name] - pivot))
+        wanted += [guide.point for guide in skeleton.guides if guide.name == part.name]
+        wanted += [end for s in skeleton.struts if s.name == part.name for end in s.between[::-1]]
+    wanted += skeleton.traced
+    most = max(travel, key=lambda name: travel[name])
+    return next((name for name in wanted if travel[name] > _SAME * travel[most]), most)
+
+
+def _travel(path: ComplexArray) -> float:
+    found = path[np.isfinite(path)]
+    return float(np.abs(found - found[0]).max()) if len(found) else 0.0
+
+
+def limit_marks(
+    shown: Sequence[Further], motion: Motion | None, measures: Measures
+) -> tuple[list[Primitive], list[Choice]]:
+    """A stop across the path at every dead point, a diamond at every change point; their names."""
+    marks: list[Primitive] = []
+    names: list[Choice] = []
+    for further in shown:
+        if further.limit is None or motion is None:
+            continue
+        of = driven_point(further.pose)
+        place = further.pose.points[of]
+        if further.limit is LimitKind.DEAD_POINT:
+            across = 3.0 * measures.pin * _direction(further, of) * 1j
+            ends = (xy(place - across), xy(place + across))
+            marks.append(Polyline(role=Role.LIMIT, of=of, points=ends))
+        else:
+            corners = tuple(xy(place + 1.7 * measures.pin * 1j**k) for k in range(4))
+            marks.append(Polygon(role=Role.LIMIT, of=of, points=corners))
+        text = f"{further.limit.word} {lead_text(motion, further.row)}"
+        height = 0.8 * measures.text
+        names.append(places_beside(Role.LIMIT_NAME, of, text, place, height, measures))
+    return marks, names
+
+
+def _direction(further: Further, name: str) -> complex:
+    """The unit vector along the path of a point where it is."""
+    path = further.pose.paths[name]
+    rows = np.flatnonzero(np.isfinite(path))
+    away = path[rows] - path[further.row]
+    least = 1e-3 * float(np.abs(away).max(initial=0.0))
+    near = rows[np.abs(away) > least]
+    if not len(near):
+        return 1 + 0j
+    step = complex(path[near[np.argmin(np.abs(near - further.row))]] - path[further.row])
+    return step / abs(step)

@@ -1,0 +1,67 @@
+"""What stands on a page, measured as it is printed."""
+
+from __future__ import annotations
+
+import re
+from itertools import combinations
+
+from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
+
+__all__ = ["assert_page_is_clear", "printed_texts", "size_in_inches", "svg_texts"]
+
+
+def printed_texts(page: Figure) -> list[tuple[str, Bbox]]:
+    """Every text of a figure but those inside drawings, with its box in pixels."""
+    page.canvas.draw()
+    renderer = page.canvas.get_renderer()
+    artists = [*page.texts, *(text for legend in page.legends for text in legend.get_texts())]
+    for ax in page.axes:
+        artists += [ax.xaxis.label, ax.yaxis.label, ax.title, ax._left_title]
+        for axis, limits in ((ax.xaxis, ax.get_xlim()), (ax.yaxis, ax.get_ylim())):
+            low, high = sorted(limits)
+            slack = 1e-9 * (high - low)
+            artists += [
+                tick.label1
+                for tick in axis.get_major_ticks()
+                if low - slack <= tick.get_loc() <= high + slack
+            ]
+    return [
+        (text.get_text(), text.get_window_extent(renderer))
+        for text in artists
+        if text.get_visible() and text.get_text().strip()
+    ]
+
+
+def assert_page_is_clear(page: Figure) -> None:
+    """Every text is on the page, none covers another one or a panel's inside."""
+    texts = printed_texts(page)
+    assert texts
+    for text, box in texts:
+        assert page.bbox.x0 <= box.x0 < box.x1 <= page.bbox.x1, text
+        assert page.bbox.y0 <= box.y0 < box.y1 <= page.bbox.y1, text
+    for (one, box), (other, beside) in combinations(texts, 2):
+        assert not _overlap(box, beside), (one, other)
+    for ax in page.axes:
+        inside = ax.get_window_extent()
+        for text, box in texts:
+            assert not _overlap(box, inside), text
+    for ax, below in combinations(page.axes, 2):
+        assert not _overlap(ax.get_window_extent(), below.get_window_extent())
+
+
+def _overlap(one: Bbox, other: Bbox) -> bool:
+    width = min(one.x1, other.x1) - max(one.x0, other.x0)
+    height = min(one.y1, other.y1) - max(one.y0, other.y0)
+    return width > 0 and height > 0
+
+
+def svg_texts(svg: bytes) -> list[str]:
+    """The texts of an SVG file, which draws letters as outlines and names each text before it."""
+    found = re.findall(r"<!-- (.*?) -->", svg.decode(), flags=re.DOTALL)
+    return [text.replace("&#45;", "-") for text in found]
+
+
+def size_in_inches(png: bytes, dpi: float) -> tuple[float, float]:
+    """Width and height of a PNG file."""
+    return int.from_bytes(png[16:20], "big") / dpi, int.from_bytes(png[20:24], "big") / dpi
