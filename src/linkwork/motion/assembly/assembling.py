@@ -335,7 +335,8 @@ def _mirror_gap(x: ComplexArray, m: int) -> Array:
 def _theorem_note(count: PathCount) -> str:
     """What the list of a block rests on: "a, b: 16 solutions, at most 16 by ..."."""
     who = ", ".join(count.unknowns)
-    return f"{who}: {count.finite} solutions, at most {count.bound} by {count.theorem}"
+    found = f"{count.finite} solution{'' if count.finite == 1 else 's'}"
+    return f"{who}: {found}, at most {count.bound} by {count.theorem}"
 
 
 def _rows_of(proof: Proof, rows: IndexArray) -> Proof:
