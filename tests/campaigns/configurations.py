@@ -10,7 +10,7 @@ import linkwork as lw
 from linkwork import Completeness
 from tests.oracles.trusses import FIVE_LINKS, NINE_LINKS, SEVEN_LINKS, truss
 
-__all__ = ["configuration_campaign", "judge_truss"]
+__all__ = ["configuration_campaign", "judge_list", "judge_truss"]
 
 #: Trusses of four loops looked at, from the fewest to the most configurations.
 FOUR_LOOPS = tuple(NINE_LINKS)[::3]
@@ -18,11 +18,18 @@ FOUR_LOOPS = tuple(NINE_LINKS)[::3]
 
 def judge_truss(mechanism: lw.Mechanism, count: int) -> list[str]:
     """What is wrong with the list of a truss that has ``count`` complex configurations."""
-    found = mechanism.configurations()
+    return judge_list(mechanism, mechanism.configurations(), count)
+
+
+def judge_list(mechanism: lw.Mechanism, found: lw.Configurations, count: int) -> list[str]:
+    """What is wrong with this list."""
     (paths,) = found.paths
     wrong = []
-    if (paths.finite, paths.expected) != (count, count):
-        wrong.append(f"{paths.finite} solutions, {paths.expected} expected, not {count}")
+    if (paths.finite, paths.expected, paths.bound) != (count, count, count):
+        wrong.append(
+            f"{paths.finite} solutions, {paths.expected} expected, "
+            f"{paths.bound} at most, not {count}"
+        )
     if paths.failed or paths.multiple or paths.at_infinity:
         wrong.append(f"paths lost: {paths}")
     if not all(position.certificate.certified for position in found):
@@ -50,7 +57,10 @@ def configuration_campaign(part: int, count: int) -> tuple[Counter[str], list[st
         graphs, k = (FOUR_LOOPS, nine) if number % 9 == 8 else (tuple(few), number - nine)
         graph = graphs[k % len(graphs)]
         known = few.get(graph, NINE_LINKS.get(graph, 0))
-        false += judge_truss(truss(graph, rng, size=10.0 ** rng.uniform(-2, 3)), known)
+        mechanism = truss(graph, rng, size=10.0 ** rng.uniform(-2, 3))
+        found = mechanism.configurations()
+        false += judge_list(mechanism, found, known)
         tally[f"trusses with {known:2} configurations"] += 1
         tally["configurations"] += known
+        tally["lists proved complete"] += found.completeness is Completeness.PROVED
     return tally, false

@@ -12,11 +12,11 @@ import linkwork as lw
 from linkwork import Completeness
 from linkwork.motion.assembly import assembling
 from linkwork.motion.assembly.assembling import positions_at
-from linkwork.numerics import generic_roots, homotopy
+from linkwork.numerics import bilinear_family, generic_roots, homotopy
 from tests.campaigns.configurations import judge_truss
 from tests.laws.mechanisms import NAMES, mechanism_of
 from tests.oracles.four_bar import FourBar
-from tests.oracles.trusses import FIVE_LINKS, NINE_LINKS, SEVEN_LINKS, truss
+from tests.oracles.trusses import FIVE_LINKS, NINE_LINKS, SEVEN_LINKS, truss, truss_at
 
 
 def looped(loops: dict[str, str], **guess: float) -> lw.Mechanism:
@@ -51,6 +51,59 @@ def test_random_trusses_have_the_known_number_of_configurations(graph: str, coun
 @pytest.mark.parametrize("graph", list(NINE_LINKS)[::3])
 def test_random_four_loop_trusses_have_the_known_number(graph: str) -> None:
     assert judge_truss(truss(graph, np.random.default_rng(2)), NINE_LINKS[graph]) == []
+
+
+def test_a_truss_of_three_loops_is_proved_by_its_laman_number() -> None:
+    found = truss("FCpv?", np.random.default_rng(1)).configurations()
+    assert found.completeness is Completeness.PROVED
+    assert found.message.endswith(
+        "; b1, b2, b3, b4, b5, b6: 16 solutions, at most 16 by the Laman number of the links"
+    )
+    (paths,) = found.to_dict()["paths"]
+    assert (paths["bound"], paths["theorem"]) == (16, "the Laman number of the links")
+
+
+def test_three_loops_with_a_slide_are_proved() -> None:
+    found = _three_loops_with_a_slide().configurations()
+    assert found.completeness is Completeness.PROVED
+    assert found.message.endswith(
+        "; a, b, c, d, f, s: 16 solutions, at most 16 by the Laman number of the links"
+    )
+
+
+def _three_loops_with_a_slide() -> lw.Mechanism:
+    return looped(
+        {
+            "1": "2*e^(i*q) + 3*e^(i*a) + 2*e^(i*b) = 4 + 2.5*e^(i*c)",
+            "2": "2*e^(i*q) + (3+i)*e^(i*a) + 2*e^(i*d) = 5 + 3*i + 2.2*e^(i*f)",
+            "3": "2*e^(i*q) + 3*e^(i*a) + (2+0.6*i)*e^(i*b) + (1+0.7*i)*e^(i*f) = s - 2*i",
+        },
+        a=20, b=40, c=70, d=10, f=80, s=4,
+    )  # fmt: skip
+
+
+def test_special_trusses_are_not_proved() -> None:
+    """Two links, 4 and 5, pinned together on four legs from link 6."""
+    rng = np.random.default_rng(0)
+    places = rng.uniform(-1.0, 1.0, (9, 2)) @ [1.0, 1.0j]
+    ends, feet = [0, 1, 2, 3], [5, 6, 7, 8]
+    assert truss_at("F?o~_", places).configurations().completeness is Completeness.PROVED
+    places[feet] = 0.4 + 0.9j + 0.5 * cmath.exp(1j) * places[ends]  # similar to the ends
+    found = truss_at("F?o~_", places).configurations()
+    assert (found.paths[0].finite, found.paths[0].at_infinity) == (16, 2)
+    assert found.completeness is Completeness.WITH_PROBABILITY_ONE
+    assert found.message.endswith("16 solutions, at most 18 by the Laman number of the links")
+    places[feet] = 0.4 + 0.9j + places[ends]  # four legs equal and parallel
+    found = truss_at("F?o~_", places).configurations()
+    assert found.completeness is Completeness.CONTINUUM
+    assert "at most" not in found.message
+
+
+def test_pins_that_almost_coincide_prove_nothing() -> None:
+    """Two legs on one pin have 4 solutions at most, but 6 as soon as there are two pins."""
+    for gap, grade in ((0.0, "PROVED"), (1e-12, "WITH_PROBABILITY_ONE")):
+        found = _platform([0, 4, 1 + 3j], [3, 3.5, 2.8], [0, 2, 2 + gap]).configurations()
+        assert (found.paths[0].finite, found.completeness.name) == (4, grade)
 
 
 def test_lengths_in_millimetres_change_nothing() -> None:
@@ -172,8 +225,7 @@ def test_platforms_on_sliding_legs(kinds: tuple[str, ...], count: int, size: flo
         assert paths.real == len(found)
         assert found.completeness.complete
         assert all(p.certificate.certified for p in found)
-        if kinds != ("PP", "RR", "RR"):
-            assert found.completeness is Completeness.PROVED
+        assert found.completeness is Completeness.PROVED
 
 
 @pytest.mark.parametrize(
@@ -398,8 +450,12 @@ def test_blocks_of_many_loops_are_not_tried() -> None:
 def test_a_random_start_that_was_not_confirmed_makes_no_claim(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    mechanism = truss("F?o~_", np.random.default_rng(5))
-    assert mechanism.configurations().completeness is Completeness.WITH_PROBABILITY_ONE
+    mechanism = _three_loops_with_a_slide()
+    monkeypatch.setattr(bilinear_family, "bound_by_sums", lambda *_: None)
+    monkeypatch.setattr(generic_roots, "_KNOWN", {})
+    found = mechanism.configurations()
+    assert found.completeness is Completeness.WITH_PROBABILITY_ONE
+    assert found.message.endswith("16 solutions, at most 20 by Bézout's theorem")
     monkeypatch.setattr(generic_roots, "_KNOWN", {})
     monkeypatch.setattr(generic_roots, "_TRIES", 1)
     assert mechanism.configurations().completeness is Completeness.NOT_PROVED

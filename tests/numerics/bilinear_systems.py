@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.numerics.bilinear import BilinearSystem
+from linkwork.numerics.bilinear_family import structure_of
+from linkwork.numerics.generic_roots import isolated_roots
+from linkwork.numerics.polynomial_system import Roots
 
-__all__ = ["THETA_18", "TRUSS_18", "angles_only", "random_triad", "real_solution"]
+__all__ = ["THETA_18", "TRUSS_18", "angles_only", "random_triad", "real_solution", "roots_of"]
 
 Complex = np.ndarray
 
@@ -53,3 +56,8 @@ def random_triad(seed: int) -> tuple[BilinearSystem, Complex]:
 def real_solution(t: Complex) -> Complex:
     """(U, V) of directions."""
     return np.concatenate([t, t.conj()])
+
+
+def roots_of(system: BilinearSystem) -> Roots:
+    """All isolated solutions of a system with at least two loops."""
+    return isolated_roots(system, structure_of(system))

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 
 from linkwork.numerics import generic_roots
 from linkwork.numerics.bilinear import BilinearSystem, proved_roots
-from linkwork.numerics.bilinear_family import bilinear_roots, structure_of
+from linkwork.numerics.bilinear_family import structure_of
 from linkwork.numerics.bilinear_homotopy import ParameterHomotopy, StartHomotopy, null_space
 from linkwork.numerics.polynomial_system import polished
 from linkwork.numerics.quadratic_roots import quadratic_roots
@@ -19,6 +17,7 @@ from tests.numerics.bilinear_systems import (
     angles_only,
     random_triad,
     real_solution,
+    roots_of,
 )
 
 
@@ -76,8 +75,8 @@ def test_all_products_of_forms_are_starts() -> None:
 @pytest.mark.parametrize("seed", range(20))
 def test_triads_have_six_solutions_proved_and_apart_one_of_them_known(seed: int) -> None:
     system, t = random_triad(seed)
-    roots = bilinear_roots(system)
-    assert (len(roots.x), roots.paths, roots.expected, system.bound) == (6, 6, 6, 6)
+    roots = roots_of(system)
+    assert (len(roots.x), roots.paths, roots.expected) == (6, 6, 6)
     assert (roots.failed, roots.at_infinity, roots.singular, roots.continuum) == (0, 0, 0, False)
     proofs = proved_roots(system, roots.x, _exact(system))
     assert proofs.holds.all()
@@ -88,7 +87,7 @@ def test_triads_have_six_solutions_proved_and_apart_one_of_them_known(seed: int)
 
 def test_eighteen_of_eighteen_are_real() -> None:
     system = angles_only(*TRUSS_18)
-    roots = bilinear_roots(system)
+    roots = roots_of(system)
     proofs = proved_roots(system, roots.x, _exact(system))
     assert (len(roots.x), roots.expected, int(proofs.real.sum())) == (18, 18, 18)
     theta = np.sort(np.mod(np.angle(roots.x[:, 0]), 2 * np.pi))
@@ -135,18 +134,18 @@ def test_sums_within_a_column_are_found_and_kept() -> None:
 
 def test_results_do_not_depend_on_what_was_solved_before(monkeypatch: pytest.MonkeyPatch) -> None:
     system, _ = random_triad(7)
-    first = bilinear_roots(system).x
-    bilinear_roots(angles_only(*TRUSS_18))
-    assert np.array_equal(bilinear_roots(system).x, first)
+    first = roots_of(system).x
+    roots_of(angles_only(*TRUSS_18))
+    assert np.array_equal(roots_of(system).x, first)
     monkeypatch.setattr(generic_roots, "_KNOWN", {})
-    assert np.array_equal(bilinear_roots(system).x, first)
+    assert np.array_equal(roots_of(system).x, first)
 
 
 def test_lost_paths_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     system, _ = random_triad(8)
-    bilinear_roots(system)
+    roots_of(system)
     monkeypatch.setattr("linkwork.numerics.homotopy._LARGEST_STEPS", 3)
-    roots = bilinear_roots(system)
+    roots = roots_of(system)
     assert (len(roots.x), roots.failed) == (0, 6)
 
 
@@ -161,9 +160,9 @@ def test_solutions_missing_at_first_are_looked_for_again(monkeypatch: pytest.Mon
             ends.regular[2], ends.infinite[2] = False, True
         return ends
 
-    bilinear_roots(system)
+    roots_of(system)
     monkeypatch.setattr(generic_roots, "_followed", careless)
-    roots = bilinear_roots(system)
+    roots = roots_of(system)
     assert (len(roots.x), roots.at_infinity, len(calls)) == (6, 0, 2)
     assert [options["nearest"] for options in calls] == [True, False]
 
@@ -174,7 +173,7 @@ def test_a_path_that_jumped_is_not_counted_twice(monkeypatch: pytest.MonkeyPatch
     twice = np.concatenate([known.x[:5], known.x[:1]])
     spoiled = generic_roots._Generic(system=known.system, x=twice)
     monkeypatch.setitem(generic_roots._KNOWN, structure_of(system), spoiled)
-    roots = bilinear_roots(system)
+    roots = roots_of(system)
     assert (len(roots.x), roots.failed) == (4, 2)
 
 
@@ -191,7 +190,7 @@ def test_closed_paths_find_solutions_that_were_missing() -> None:
 def test_a_congruent_platform_on_equal_legs_is_a_continuum(legs: tuple[float, ...]) -> None:
     base = np.array([0, 15.91, 3 + 10j])
     c = np.array([[legs[0], -legs[1], 0, base[1]], [legs[0], 0, -legs[2], base[2]]])
-    roots = bilinear_roots(angles_only(c, base[0] - base[1:]))
+    roots = roots_of(angles_only(c, base[0] - base[1:]))
     assert roots.continuum
     assert roots.failed == 0
     assert len(roots.x) + roots.at_infinity + roots.singular == 6
@@ -209,7 +208,7 @@ def test_three_legs_in_one_point_are_multiple_but_no_continuum() -> None:
             [legs[0], 0, -legs[2], ends[2] - ends[0]],
         ]
     )
-    roots = bilinear_roots(angles_only(c, base[0] - base[1:]))
+    roots = roots_of(angles_only(c, base[0] - base[1:]))
     assert not roots.continuum
     assert (roots.failed, roots.singular, len(roots.multiple)) == (0, 2, 1)
     assert len(roots.x) == 4
@@ -272,4 +271,3 @@ def test_null_spaces_are_orthonormal() -> None:
     both = np.concatenate([null, row], axis=1)
     np.testing.assert_allclose(both.conj().T @ both, np.eye(5), rtol=0, atol=1e-14)
     assert np.abs(system.left @ null).max() < 1e-14
-    assert math.comb(4, 2) == system.bound

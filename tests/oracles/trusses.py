@@ -12,7 +12,15 @@ import numpy as np
 
 import linkwork as lw
 
-__all__ = ["FIVE_LINKS", "NINE_LINKS", "SEVEN_LINKS", "edges_of", "random_graph", "truss"]
+__all__ = [
+    "FIVE_LINKS",
+    "NINE_LINKS",
+    "SEVEN_LINKS",
+    "edges_of",
+    "random_graph",
+    "truss",
+    "truss_at",
+]
 
 Edges = list[tuple[int, int]]
 
@@ -46,11 +54,19 @@ def truss(
     ground: int = 0,
 ) -> lw.Mechanism:
     """A truss with random pins; the sketch is one of its configurations. It has no input."""
-    count, edges = edges_of(graph) if isinstance(graph, str) else graph
+    _, edges = edges_of(graph) if isinstance(graph, str) else graph
     places = size * rng.uniform(-1.0, 1.0, (len(edges), 2))
+    return truss_at(graph, places @ [1.0, 1.0j], ground=ground)
+
+
+def truss_at(
+    graph: str | tuple[int, Edges], places: np.ndarray, *, ground: int = 0
+) -> lw.Mechanism:
+    """A truss with its pins at these places, as complex numbers, in one configuration."""
+    count, edges = edges_of(graph) if isinstance(graph, str) else graph
     return lw.linkage(
         name=f"Truss {graph}" if isinstance(graph, str) else "Truss",
-        points={f"J{k}": (float(x), float(y)) for k, (x, y) in enumerate(places)},
+        points={f"J{k}": (float(z.real), float(z.imag)) for k, z in enumerate(places)},
         links={
             "ground" if link == ground else f"b{link}": tuple(
                 f"J{k}" for k, edge in enumerate(edges) if link in edge

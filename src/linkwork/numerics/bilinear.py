@@ -7,13 +7,11 @@ Unknowns U and V, M = 2L complex numbers each, satisfy L linear equations each a
 With U = e^{iθ} and V = e^{-iθ}: U_k V_k = 1 for an angle, U_z = V_z for a length along a fixed
 direction, U_z V_a = U_a V_z for one along a turning direction (Wampler 2001, J. Mech. Des. 123,
 382). The system of a real mechanism has right = conj(left), and its real solutions have
-V = conj(U). On the two null spaces the M products are bilinear equations in P^L × P^L with at most
-C(2L, L) isolated solutions (Morgan & Sommese 1987, Appl. Math. Comput. 24, 101).
+V = conj(U). On the two null spaces the M products are bilinear equations in P^L × P^L.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,16 +52,9 @@ class BilinearSystem:
         return 2 * len(self.left)
 
     @property
-    def bound(self) -> int:
-        """How many isolated solutions there are at most.
-
-        C(2L, L) by the 2-homogeneous Bézout theorem, or 2^(2L - m) by Bézout's own after the m
-        products that are linear (U_z = V_z) have been solved.
-        """
-        one = self.size
-        p, q, p1, q1 = self.rows
-        linear = int((((p == one) | (q == one)) & ((p1 == one) | (q1 == one))).sum())
-        return int(min(math.comb(2 * self.loops, self.loops), 2 ** (self.size - linear)))
+    def products(self) -> tuple[tuple[int, ...], ...]:
+        """``rows`` as plain numbers."""
+        return tuple(map(tuple, self.rows.tolist()))
 
     @property
     def _curvature(self) -> Array:

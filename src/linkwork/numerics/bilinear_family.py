@@ -7,42 +7,52 @@ matrices (a link with three joints enters three loops with a, b and a + b) form 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
-from linkwork.foundation.arrays import ComplexArray
+from linkwork.foundation.arrays import Array
 from linkwork.numerics.bilinear import BilinearSystem
 from linkwork.numerics.bilinear_homotopy import ParameterHomotopy, StartHomotopy
-from linkwork.numerics.generic_roots import SEED, isolated_roots
-from linkwork.numerics.polynomial_system import Roots
+from linkwork.numerics.column_sums import Columns, columns_of, random_closures, sums_hold
+from linkwork.numerics.generic_roots import SEED
+from linkwork.numerics.solution_bound import (
+    SolutionBound,
+    Theorem,
+    bound_by_products,
+    bound_by_sums,
+)
 
-__all__ = [
-    "Columns",
-    "Structure",
-    "bilinear_roots",
-    "columns_of",
-    "random_closures",
-    "structure_of",
-]
-
-#: For every column of a closure matrix its L coefficients as tuples of weights of free ones.
-Columns = tuple[tuple[tuple[int, ...], ...], ...]
-
-_SAME_SUM = 1e-11  # relative: two sums of coefficients are the same by construction
-_LARGEST_FREE = 6  # coefficients of a column among which sums are looked for
+__all__ = ["Structure", "structure_of"]
 
 
 @dataclass(frozen=True)
 class Structure:
-    """What systems of one family share: products, and columns as sums of free coefficients.
-
-    ``columns``: for every column of the closure matrix the L coefficients as tuples of weights of
-    the column's free ones.
-    """
+    """What systems of one family share: products, and columns as sums of free coefficients."""
 
     rows: tuple[tuple[int, ...], ...]
     columns: Columns
+
+    def bound(self, found: int) -> SolutionBound:
+        """The bound that ``found`` solutions reach, else the smallest one known."""
+        simple = bound_by_products(self.rows)
+        if found == simple.number:  # the other one takes longer
+            return simple
+        sharper = bound_by_sums(self.rows, self.columns)
+        return simple if sharper is None or sharper.number >= simple.number else sharper
+
+    def bound_of(self, system: BilinearSystem, spread: Array, found: int) -> SolutionBound:
+        """The same for one member whose ``left`` (L, M + 1) is known within ``spread``.
+
+        Its sums have to hold within rounding.
+        """
+        best = self.bound(found)
+        if best.theorem is Theorem.LAMAN and not sums_hold(self.columns, system.left, spread):
+            return bound_by_products(self.rows)
+        return best
+
+    def complete(self, found: int) -> bool:
+        """Whether so many solutions of a member are all, by a theorem."""
+        return found == self.bound(found).number
 
     def random(self, rng: np.random.Generator) -> BilinearSystem:
         """A member with random complex free coefficients."""
@@ -73,43 +83,4 @@ class Structure:
 
 def structure_of(system: BilinearSystem) -> Structure:
     """The family of a system."""
-    return Structure(rows=tuple(map(tuple, system.rows.tolist())), columns=columns_of(system.left))
-
-
-def bilinear_roots(system: BilinearSystem) -> Roots:
-    """All isolated solutions of a system with at least two loops."""
-    return isolated_roots(system, structure_of(system))
-
-
-def columns_of(closures: ComplexArray) -> Columns:
-    """The columns of a closure matrix (L, K) as sums of free coefficients."""
-    return tuple(_sums(column.tolist()) for column in closures.T)
-
-
-def random_closures(columns: Columns, rng: np.random.Generator) -> ComplexArray:
-    """A closure matrix (L, K) with such columns."""
-    parts = []
-    for column in columns:
-        weights = np.array(column, dtype=float)
-        free = rng.normal(size=weights.shape[1]) + 1j * rng.normal(size=weights.shape[1])
-        parts.append(weights @ free)
-    return np.stack(parts, axis=1)
-
-
-def _sums(column: list[complex]) -> tuple[tuple[int, ...], ...]:
-    """Every coefficient of a column as a sum, with weights -1, 0 and 1, of earlier free ones."""
-    size = max(map(abs, column))
-    free: list[complex] = []
-    found: list[tuple[int, ...]] = []
-    for value in column:
-        few = free[:_LARGEST_FREE]
-        for weights in product((0, 1, -1), repeat=len(few)):
-            rest = value - sum(w * c for w, c in zip(weights, few, strict=True))
-            if abs(rest) <= _SAME_SUM * size:
-                found.append(weights)
-                break
-        else:
-            found.append((*(0 for _ in free), 1))
-            free.append(value)
-    width = len(free)
-    return tuple((*weights, *(0 for _ in range(width - len(weights)))) for weights in found)
+    return Structure(rows=system.products, columns=columns_of(system.left))

@@ -75,6 +75,9 @@ class HomotopyFromRelative(_ToSystem, Protocol):
 class Family(Hashable, Protocol[S]):
     """Systems that differ in free coefficients only."""
 
+    def complete(self, found: int) -> bool:
+        """Whether so many solutions of a member are all, by a theorem."""
+
     def random(self, rng: np.random.Generator) -> S:
         """A member with random complex free coefficients."""
 
@@ -170,7 +173,7 @@ def _generic(family: Family[S]) -> _Generic[S]:
 def _closed(family: Family[S], known: _Generic[S], rng: np.random.Generator) -> _Generic[S]:
     """Solutions added until closed paths of systems lead to no new ones."""
     quiet = tries = 0
-    while quiet < _LOOPS and tries < _TRIES and len(known.x) and len(known.x) < known.system.bound:
+    while quiet < _LOOPS and tries < _TRIES and len(known.x) and not family.complete(len(known.x)):
         away = family.random(rng)
         there = _followed(family, known, away, rng, CAREFUL)
         back = _Generic(system=away, x=_distinct(there.x[there.regular]))
@@ -180,7 +183,7 @@ def _closed(family: Family[S], known: _Generic[S], rng: np.random.Generator) -> 
         quiet = quiet + 1 if whole else 0
         tries += 1
         known = _Generic(system=known.system, x=x)
-    sure = known.sure or quiet == _LOOPS or len(known.x) == known.system.bound
+    sure = known.sure or quiet == _LOOPS or family.complete(len(known.x))
     return replace(known, sure=sure)
 
 

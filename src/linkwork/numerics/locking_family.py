@@ -13,10 +13,10 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.numerics.bilinear_family import Columns, columns_of, random_closures
 from linkwork.numerics.bilinear_homotopy import null_space
+from linkwork.numerics.column_sums import Columns, columns_of, random_closures
 from linkwork.numerics.generic_roots import SEED, isolated_roots
-from linkwork.numerics.locking_system import LockingSystem, Slot
+from linkwork.numerics.locking_system import LockingSystem, Slot, most_dead_points
 from linkwork.numerics.polynomial_system import Roots
 
 __all__ = ["LockingFamily", "locking_roots"]
@@ -194,6 +194,10 @@ class LockingFamily:
             own=system.own,
             slots=system.slots,
         )
+
+    def complete(self, found: int) -> bool:
+        """Whether so many solutions of a member are all, by Bézout's theorem."""
+        return found == most_dead_points(self.own, len(self.rows[0]))
 
     def random(self, rng: np.random.Generator) -> LockingSystem:
         """A member with random complex free coefficients."""

@@ -27,11 +27,16 @@ import numpy as np
 
 from linkwork.foundation.arrays import ComplexArray, IndexArray
 
-__all__ = ["LockingSystem", "Slot"]
+__all__ = ["LockingSystem", "Slot", "most_dead_points"]
 
 #: A term of the own loops' rates: column of the closures, factor in (U, 1), number in ρ, weights in
 #: the rows of U and of V.
 Slot = tuple[int, int, int, float, float]
+
+
+def most_dead_points(own: int, size: int) -> int:
+    """2 own C(2L + 1, L) for ``own`` loops of a block and ``size`` = 2L + 1 unknowns."""
+    return 2 * own * math.comb(size, size // 2)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -73,8 +78,8 @@ class LockingSystem:
 
     @property
     def bound(self) -> int:
-        """2 own C(2L + 1, L)."""
-        return 2 * self.own * math.comb(self.size, self.loops)
+        """How many isolated solutions there are at most."""
+        return most_dead_points(self.own, self.size)
 
     @cached_property
     def norm(self) -> ComplexArray:

@@ -17,10 +17,6 @@ _POLISH = 12  # steps of Newton's method at most
 class PolynomialSystem(Protocol):
     """n equations in n complex unknowns."""
 
-    @property
-    def bound(self) -> int:
-        """How many isolated solutions there are at most."""
-
     def residual_and_jacobian(self, x: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """F, (B, n), and its derivative, (B, n, n), at x (B, n)."""
 

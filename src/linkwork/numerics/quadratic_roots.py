@@ -12,6 +12,7 @@ from linkwork.foundation.arrays import BoolArray, ComplexArray, IndexArray
 from linkwork.numerics.bilinear import BilinearSystem
 from linkwork.numerics.bilinear_homotopy import null_space
 from linkwork.numerics.polynomial_system import Roots
+from linkwork.numerics.solution_bound import bound_by_products
 
 __all__ = ["quadratic_roots"]
 
@@ -97,7 +98,7 @@ def _found(
         at_infinity=0 if curve else 2 - count,
         singular=2 if curve else count if double else 0,
         failed=0,
-        expected=system.bound,
+        expected=bound_by_products(system.products).number,
         sure=True,
         continuum=curve,
     )

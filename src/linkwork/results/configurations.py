@@ -37,6 +37,8 @@ class PathCount:
         Solutions of random mechanisms of the same structure.
     bound : int
         Solutions that can exist at most.
+    theorem : str
+        What the bound follows from.
     """
 
     unknowns: tuple[str, ...]
@@ -49,12 +51,17 @@ class PathCount:
     failed: int = 0
     expected: int = 0
     bound: int = 0
+    theorem: str = ""
 
     def plus(self, other: PathCount) -> PathCount:
         """Both together."""
-        numbers = [f.name for f in fields(self) if f.name not in ("unknowns", "solved")]
+        kept = ("unknowns", "solved", "theorem")
+        numbers = [f.name for f in fields(self) if f.name not in kept]
         sums = {name: getattr(self, name) + getattr(other, name) for name in numbers}
-        return replace(self, solved=self.solved + other.solved, **sums)
+        theorem = self.theorem
+        if other.theorem not in theorem:
+            theorem = f"{theorem} and {other.theorem}"
+        return replace(self, solved=self.solved + other.solved, theorem=theorem, **sums)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

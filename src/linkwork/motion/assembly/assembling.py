@@ -26,12 +26,14 @@ from linkwork.motion.assembly.turned_slides import TurnedSlide, turned_slides
 from linkwork.motion.model import Model
 from linkwork.motion.redundancy import FITS, misfit
 from linkwork.numerics.bilinear import proved_roots
-from linkwork.numerics.bilinear_family import bilinear_roots
+from linkwork.numerics.bilinear_family import structure_of
 from linkwork.numerics.block_solver import Block, Linearised, linearised
+from linkwork.numerics.generic_roots import isolated_roots
 from linkwork.numerics.newton import newton
 from linkwork.numerics.polynomial_system import Roots
 from linkwork.numerics.proof import Proof, prove_block, rounding_of_inputs
 from linkwork.numerics.quadratic_roots import quadratic_roots
+from linkwork.numerics.solution_bound import SolutionBound, bound_by_products
 from linkwork.results.configurations import PathCount
 
 __all__ = ["Assemblies", "positions_at"]
@@ -99,6 +101,7 @@ class _Assembly:
         self.labels: list[tuple[str, ...]] = [()]
         self.completeness = Completeness.PROVED
         self.notes: list[str] = []
+        self.theorems: list[str] = []
         self.paths: list[PathCount] = []
         self.slides = turned_slides(model)
 
@@ -118,7 +121,8 @@ class _Assembly:
         if self.model.equations.redundant:
             self._keep(misfit(self.model.equations, self.v) <= FITS)
             self.notes.append("positions that a redundant link does not fit are left out")
-        notes = [self.completeness.value, *self.notes]
+        theorems = self.theorems if self.completeness.complete else []
+        notes = [self.completeness.value, *theorems, *self.notes]
         return Assemblies(
             v=self.v,
             proof=self.proof,
@@ -154,7 +158,10 @@ class _Assembly:
         form = direction_form(table)
         found = _block_configurations(self.model, block, form, self.v, self.proof.each)
         self.completeness = self.completeness.and_then(found.completeness)
-        self.paths.append(replace(found.paths, unknowns=self._names(block)))
+        count = replace(found.paths, unknowns=self._names(block))
+        self.paths.append(count)
+        if form.table.loops.rows > 1:  # one loop is a quadratic equation
+            self.theorems.append(_theorem_note(count))
         slides = [slide for slide in self.slides if slide.angle in block.unknowns]
         v = found.v
         for slide in slides:
@@ -296,7 +303,12 @@ _FOLLOWS = _Solved(
 
 def _solved(form: DirectionForm, left: ComplexArray, off: Array) -> _Solved:
     system = form.system(left)
-    roots = quadratic_roots(system) if system.loops == 1 else bilinear_roots(system)
+    if system.loops == 1:
+        roots, bound = quadratic_roots(system), bound_by_products(system.products)
+    else:
+        family = structure_of(system)
+        roots = isolated_roots(system, family)
+        bound = family.bound_of(system, off, len(roots.x))
     proofs = proved_roots(system, roots.x, off)
     m = system.size
     real = proofs.real | (~proofs.holds & (_mirror_gap(roots.x, m) < _ALMOST_REAL))
@@ -313,7 +325,7 @@ def _solved(form: DirectionForm, left: ComplexArray, off: Array) -> _Solved:
         grade = Completeness.NOT_PROVED
     elif roots.singular or unproved.any():
         grade = Completeness.MULTIPLE
-    elif len(roots.x) == system.bound and proofs.apart and not undecided:
+    elif len(roots.x) == bound.number and proofs.apart and not undecided:
         grade = Completeness.PROVED
     else:
         grade = Completeness.WITH_PROBABILITY_ONE
@@ -322,11 +334,11 @@ def _solved(form: DirectionForm, left: ComplexArray, off: Array) -> _Solved:
         x=x,
         multiple=np.concatenate([unproved[real], np.ones(len(doubles), dtype=bool)]),
         grade=grade,
-        paths=_count(roots, int(real.sum()) + len(doubles), system.bound),
+        paths=_count(roots, int(real.sum()) + len(doubles), bound),
     )
 
 
-def _count(roots: Roots, real: int, bound: int) -> PathCount:
+def _count(roots: Roots, real: int, bound: SolutionBound) -> PathCount:
     return PathCount(
         unknowns=(),
         paths=roots.paths,
@@ -336,7 +348,8 @@ def _count(roots: Roots, real: int, bound: int) -> PathCount:
         multiple=roots.singular,
         failed=roots.failed,
         expected=roots.expected,
-        bound=bound,
+        bound=bound.number,
+        theorem=bound.theorem.value,
     )
 
 
@@ -345,6 +358,13 @@ def _mirror_gap(x: ComplexArray, m: int) -> Array:
     gap = np.abs(x[:, :m] - x[:, m:].conj()).max(axis=1, initial=0.0)
     relative: Array = gap / (1.0 + np.abs(x).max(axis=1, initial=0.0))
     return relative
+
+
+def _theorem_note(count: PathCount) -> str:
+    """What the list of a block rests on: "a, b: 16 solutions, at most 16 by ..."."""
+    who = ", ".join(count.unknowns)
+    found = f"{count.finite} solution{'' if count.finite == 1 else 's'}"
+    return f"{who}: {found}, at most {count.bound} by {count.theorem}"
 
 
 def _rows_of(proof: Proof, rows: IndexArray) -> Proof:
