@@ -70,6 +70,8 @@ class Description:
         Named formulas of unknowns, dimensions and point coordinates (``A.x``).
     source : str
         Where the mechanism comes from.
+    family : str
+        The kind of mechanism it is listed with.
     configuration : str
         The name of the configuration or branch to start from instead of the guess.
 
@@ -87,6 +89,7 @@ class Description:
     trace: tuple[str, ...] = ()
     outputs: Mapping[str, str] = FrozenDict()
     source: str = ""
+    family: str = ""
     configuration: str = ""
 
     def __post_init__(self) -> None:
