@@ -1,0 +1,50 @@
+"""The four sketches of Newton-Raphson, against the iteration done by hand."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import linkwork as lw
+from tests.library.laws import law
+
+
+@law("newton-convergence")
+def test_newton_converges_to_cardanos_root() -> None:
+    half = 5 / 2
+    inside = math.sqrt(half**2 - (2 / 3) ** 3)
+    cardano = math.cbrt(half + inside) + math.cbrt(half - inside)
+    assert lw.example("newton-convergence").solve()["x"] == pytest.approx(cardano, abs=1e-15 * 4)
+
+
+@law("newton-another-root")
+def test_newton_finds_another_root_than_the_nearest() -> None:
+    """From 1.55, nearest to 2 of 1, 2, 3, the tangent leads past 3."""
+    x = 1.55
+    step = x - (x**3 - 6 * x**2 + 11 * x - 6) / (3 * x**2 - 12 * x + 11)
+    expected = 3 if step > 2.5 else 1
+    position = lw.example("newton-another-root").solve()
+    assert position["x"] == pytest.approx(expected, abs=1e-12)
+
+
+@law("newton-inflection")
+def test_newton_diverges_from_the_inflection() -> None:
+    """|x| > 1.3917 grows by x - (1 + x²) atan x at every step."""
+    position = lw.example("newton-inflection").solve(with_steps=True)
+    assert not position.status.ok
+    x = 1.5
+    for _ in range(3):
+        following = x - (1 + x * x) * math.atan(x)
+        assert abs(following) > abs(x)
+        x = following
+
+
+@law("newton-extremum")
+def test_newton_stops_where_the_derivative_is_zero() -> None:
+    """F = x³ - 3x + 3 has its minimum 1 at the guess x = 1, and its only root at -2.1038."""
+    mechanism = lw.example("newton-extremum")
+    assert mechanism.solve().status is lw.Status.SINGULAR_JACOBIAN
+    root = mechanism.changed(guess={"x": -2}).solve()["x"]
+    inside = math.sqrt(1.5**2 - 1)
+    assert root == pytest.approx(-math.cbrt(1.5 + inside) - math.cbrt(1.5 - inside), abs=1e-14)
