@@ -16,15 +16,18 @@ __all__ = ["LAWS", "degrees", "law", "motion_of", "same"]
 Test = TypeVar("Test", bound=Callable[..., None])
 
 #: Name of a library file → the tests that state its laws.
-LAWS: dict[str, list[str]] = {}
+LAWS: dict[str, list[Callable[..., None]]] = {}
 
 
 def law(*names: str) -> Callable[[Test], Test]:
-    """Mark a test as stating a law of these library files."""
+    """Mark a test as stating a law of these library files.
+
+    The first line of its docstring is the law, as the gallery prints it.
+    """
 
     def register(test: Test) -> Test:
         for name in names:
-            LAWS.setdefault(name, []).append(test.__name__)
+            LAWS.setdefault(name, []).append(test)
         return test
 
     return register

@@ -15,6 +15,7 @@ from tests.oracles.four_bar import FourBar
 
 @law("elliptic-trammel")
 def test_elliptic_trammel_draws_an_ellipse() -> None:
+    """P = (b cos θ, (b + c) sin θ): (x/50)² + (y/80)² = 1."""
     motion = motion_of("elliptic-trammel")
     rod = degrees(motion, "rod")
     same(motion.trace("P"), 50 * np.cos(rod) + 80j * np.sin(rod), 80)
@@ -23,6 +24,7 @@ def test_elliptic_trammel_draws_an_ellipse() -> None:
 
 @law("scotch-yoke")
 def test_scotch_yoke_moves_exactly_as_a_sine() -> None:
+    """x = r cos θ, with all its derivatives."""
     motion = motion_of("scotch-yoke")
     crank = degrees(motion, "crank")
     same(motion["x"], 40 * np.cos(crank), 40)
@@ -32,6 +34,7 @@ def test_scotch_yoke_moves_exactly_as_a_sine() -> None:
 
 @law("oldham-coupling")
 def test_oldham_coupling_turns_both_shafts_equally_and_its_cross_twice() -> None:
+    """Both discs turn equally; M = (e/2)(1 + e^{2iθ}) goes twice around."""
     motion = motion_of("oldham-coupling")
     same(motion["disc2"] - motion["disc1"], 90, 360)
     same(motion.trace("M"), 6 + 6 * np.exp(2j * degrees(motion, "disc1")), 12)
@@ -39,6 +42,7 @@ def test_oldham_coupling_turns_both_shafts_equally_and_its_cross_twice() -> None
 
 @law("pantograph")
 def test_pantograph_doubles_a_coupler_curve() -> None:
+    """OQ = 2·OP, always in line: Q draws P's coupler curve twice as large."""
     motion = motion_of("pantograph")
     crank = degrees(motion, "crank")
     bar = FourBar(70, 20, 70, 50)
@@ -51,6 +55,7 @@ def test_pantograph_doubles_a_coupler_curve() -> None:
 
 @law("kempe-translator")
 def test_kempe_translator_keeps_the_direction_of_its_plate() -> None:
+    """The plate EF never turns: E = 60 e^{iα} + 70 e^{iβ}, F = E + 40."""
     motion = motion_of("kempe-translator")
     lower, upper = degrees(motion, "lower_bar"), degrees(motion, "upper_bar")
     same(motion["plate"], 0, 180)
@@ -68,6 +73,7 @@ def test_kempe_translator_keeps_the_direction_of_its_plate() -> None:
     ],
 )
 def test_cognates_draw_one_curve(name: str, turning: str, ahead: float) -> None:
+    """P = A + (0.6 + 0.5i)(B - A) of the first linkage, in all three."""
     motion = motion_of(name)
     crank = degrees(motion, turning) - ahead
     bar = FourBar(70, 30, 80, 60)

@@ -34,6 +34,17 @@ def test_every_mechanism_tells_its_source_and_family(name: str) -> None:
     assert description.name != "mechanism"
 
 
+def test_the_gallery_shows_every_mechanism() -> None:
+    """After a change of the library: ``scripts/gallery``."""
+    docs = Path(__file__).parents[2] / "docs"
+    page = (docs / "gallery.md").read_text(encoding="utf-8")
+    assert [name for name in lw.examples() if f"(`{name}`)" not in page] == []
+    pictures = {path.stem for path in (docs / "images" / "gallery").iterdir()}
+    assert pictures <= set(lw.examples())
+    assert [name for name in pictures if f"gallery/{name}.png" not in page] == []
+    assert len(pictures) > 50
+
+
 @pytest.mark.parametrize("name", DRIVEN)
 def test_every_row_that_is_found_is_proved(name: str) -> None:
     motion = motion_of(name)

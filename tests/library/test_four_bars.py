@@ -16,6 +16,7 @@ from tests.oracles.four_bar import FourBar
 @law("four-bar", "four-bar-crossed")
 @pytest.mark.parametrize(("name", "side"), [("four-bar", 1), ("four-bar-crossed", -1)])
 def test_norton_four_bar_closes_where_two_circles_meet(name: str, side: int) -> None:
+    """B is where the circles about A (120) and O4 (80) meet, on one side of AO4 for good."""
     motion = motion_of(name)
     bar = FourBar(100, 40, 120, 80)
     crank = degrees(motion, "crank")
@@ -27,6 +28,7 @@ def test_norton_four_bar_closes_where_two_circles_meet(name: str, side: int) -> 
 
 @law("parallelogram")
 def test_parallelogram_copies_the_crank() -> None:
+    """θ4 = θ2, and the coupler never turns."""
     motion = motion_of("parallelogram")
     same(motion["rocker"], motion["crank"], 180)
     same(motion["coupler"], 0, 180)
@@ -42,7 +44,10 @@ def test_antiparallelogram_has_its_law_of_half_tangents() -> None:
 
 @law("galloway")
 def test_galloway_turns_once_for_two_turns_of_the_crank() -> None:
-    """O4 A = 2 sin(φ/2), its sign included, at the angle 90° + φ/2."""
+    """Two turns of the crank are one of the follower: θ4 = 90° + φ/2 - acos(sin(φ/2)/2).
+
+    O4 A = 2 sin(φ/2), its sign included, stands at the angle 90° + φ/2.
+    """
     both = lw.example("galloway").sweep(start=5, stop=715, step=10, change_points="straight")
     for motion in (motion_of("galloway"), both):
         half = degrees(motion, "crank") / 2
@@ -65,6 +70,7 @@ def test_offset_slider_crank_has_its_closed_form_and_stroke() -> None:
 
 @law("slider-input")
 def test_crank_of_a_driven_slider_follows_from_the_law_of_cosines() -> None:
+    """cos of the angle at O2 = (a² + OB² - b²)/(2a·OB), OB² = d² + c²."""
     motion = motion_of("slider-input")
     pin = motion["d"] - 20j
     reach = np.abs(pin)

@@ -276,8 +276,9 @@ def _check_rows(description: Description, which: Input, key: Key, problems: Prob
         if number is not None
     ]
     lengthy = which.drives[0] in ("slider", "cylinder")
-    held = None not in (which.start, which.stop) and amounts[0] == amounts[1]
-    missing = [field for field, number in fields if number is None and not (held and field == "step")]
+    missing = [field for field, number in fields if number is None]
+    if missing == ["step"] and amounts[0] == amounts[1]:
+        missing = []  # held at one value
     if lengthy and missing:
         problems.add((*key, missing[0]), "is missing: a length has no natural range")
     if (lengthy and missing) or any(map(math.isnan, amounts)):
