@@ -208,6 +208,18 @@ def test_an_input_of_one_value_is_held_there_while_the_other_moves() -> None:
     assert motion.found.all()
 
 
+def test_a_length_that_is_held_needs_no_step() -> None:
+    held = lw.Input(cylinder="leg2", start=15.38, stop=15.38)
+    moving = lw.Input(cylinder="leg1", start=14.98, stop=14.9, step=-0.02)
+    third = lw.Input(cylinder="leg3", start=12, stop=12)
+    motion = lw.example("three-rpr").changed(inputs=[moving, held, third]).sweep()
+    np.testing.assert_array_equal(motion["leg2"], np.full(5, 15.38))
+    with pytest.raises(lw.MechanismError, match=r"input\[1\]\.step.*no natural range"):
+        lw.example("three-rpr").changed(
+            inputs=[lw.Input(cylinder="leg1", start=14.98, stop=14.9), held, third]
+        )
+
+
 def test_a_dead_point_of_two_coupled_loops_is_out_of_reach_and_not_lost() -> None:
     mechanism = lw.linkage(
         points={

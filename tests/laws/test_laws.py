@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -127,11 +128,25 @@ def test_the_scaled_mechanism_has_the_same_angles(name: str, factor: float) -> N
         )
 
 
+def along(name: str, start: float, stop: float, step: float) -> lw.Motion:
+    """A sweep over these values of the first input; further inputs move along with it."""
+    mechanism, motion = mechanism_of(name), motion_of(name)
+    given = [values[motion.asked] for values in motion.inputs.values()]
+    if len(given) == 1:
+        return mechanism.sweep(start=start, stop=stop, step=step)
+    inputs = []
+    for which, values in zip(mechanism.description.inputs, given, strict=True):
+        rate = (values[1] - values[0]) / (given[0][1] - given[0][0])
+        first, last = (values[0] + rate * (at - given[0][0]) for at in (start, stop))
+        inputs.append(replace(which, start=first, stop=last, step=(step * rate) or None))
+    return mechanism.changed(inputs=tuple(inputs)).sweep()
+
+
 @every
 def test_the_reversed_sweep_retraces(name: str) -> None:
-    mechanism, forth = mechanism_of(name), motion_of(name)
-    (values,) = forth.inputs.values()
-    back = mechanism.sweep(start=values[-1], stop=values[0], step=values[0] - values[1])
+    forth = motion_of(name)
+    values = next(iter(forth.inputs.values()))
+    back = along(name, values[-1], values[0], values[0] - values[1])
     assert back.status == forth.status[::-1]
     for one, other in zip(series_of(forth), series_of(back), strict=True):
         scale = max(1.0, float(np.nanmax(np.abs(one.value))))
@@ -155,13 +170,13 @@ def inner_rows(motion: lw.Motion, seed: int) -> list[int]:
 @every
 def test_derivatives_are_the_slopes_of_the_sweep(name: str) -> None:
     mechanism, motion = mechanism_of(name), motion_of(name)
-    (values,) = motion.inputs.values()
-    (kind,) = (v.kind for v in mechanism.loop_equations.inputs)
+    values = next(iter(motion.inputs.values()))
+    kind = mechanism.loop_equations.inputs[0].kind
     unit = motion.units.scale(Kind(kind))
     # 0.2°, or a thousandth of the longest link: h⁸ is 2e-20, rounding is divided by h
     h = 1e-3 * size_of(mechanism) if kind == "length" else 3.5e-3 / unit
     for row in inner_rows(motion, seed=7):
-        window = mechanism.sweep(start=values[row] - 4 * h, stop=values[row] + 4 * h, step=h)
+        window = along(name, values[row] - 4 * h, values[row] + 4 * h, h)
         assert len(window) == 9
         assert window.found.all()
         for series in series_of(window):
@@ -182,9 +197,8 @@ def test_derivatives_are_the_slopes_of_the_sweep(name: str) -> None:
 @every
 def test_one_position_equals_its_row(name: str) -> None:
     mechanism, motion = mechanism_of(name), motion_of(name)
-    (values,) = motion.inputs.values()
     row = inner_rows(motion, seed=8)[0]
-    position = mechanism.solve(values[row])
+    position = mechanism.solve({which: values[row] for which, values in motion.inputs.items()})
     assert position.status is lw.Status.CONVERGED
     assert position.residual <= 1e-12
     for point, (x, y) in position.points.items():

@@ -98,14 +98,16 @@ def _inputs(
     unit = description.angle.radians
     for which, variable in zip(description.inputs, mechanism.loop_equations.inputs, strict=True):
         rows = description.rows(which)
-        start, stop, step = (float(x) for x in (rows[0], rows[-1], rows[1] - rows[0]))
+        held = len(rows) == 1
+        start, stop = float(rows[0]), float(rows[-1])
+        step = 0.0 if held else float(rows[1] - rows[0])
         absolute = which.drives[0] in ("link", "variable") and which.relative_to is None
         if variable.kind == "length":
             start, stop, step = (factor * x for x in (start, stop, step))
         else:
             shift = turn / unit if absolute else 0.0
             start, stop, step = sign * start + shift, sign * stop + shift, sign * step
-        found.append(replace(which, start=start, stop=stop, step=step))
+        found.append(replace(which, start=start, stop=stop, step=None if held else step))
     return tuple(found)
 
 

@@ -42,6 +42,7 @@ def heads(draw: st.DrawFn, dimension_names: list[str]) -> dict[str, Any]:
         "name": draw(any_text),
         "length": draw(any_text),
         "source": draw(any_text),
+        "family": draw(any_text),
         "configuration": draw(any_text),
         "angle": draw(units),
         "dimensions": dimensions,

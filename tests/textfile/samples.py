@@ -167,6 +167,7 @@ x = -2
 SAMPLES = {
     "four_bar": FOUR_BAR,
     "sketched": FOUR_BAR.replace("\n\n[points]", "\nsketch = true\n\n[points]"),
+    "listed": FOUR_BAR.replace("\n\n[points]", '\nfamily = "four-bar"\n\n[points]'),
     "quick_return": QUICK_RETURN,
     "rapier": RAPIER,
     "cubic": CUBIC,

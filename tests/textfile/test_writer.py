@@ -39,7 +39,7 @@ def orders(description: Description) -> list[list[str]]:
 
 
 def test_what_is_written_looks_as_a_person_would_write_it() -> None:
-    for name in ("four_bar", "sketched"):
+    for name in ("four_bar", "sketched", "listed"):
         assert write_text(read_text(SAMPLES[name]).description) == SAMPLES[name]
 
 

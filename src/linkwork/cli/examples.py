@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from textwrap import shorten
 
 import click
 
 from linkwork.cli.options import debug_option
 from linkwork.cli.output_file import check_outputs, write_text
-from linkwork.cli.terminal import bold, print_lines, sentence
-from linkwork.cli.text_table import WIDTH
+from linkwork.cli.terminal import fields, print_lines, title_lines
 from linkwork.everyday import example_text
 from linkwork.everyday import examples as example_names
 from linkwork.foundation.errors import InputError
 
 __all__ = ["examples"]
+
+_NO_FAMILY = "other"
 
 
 @click.command
@@ -49,11 +49,13 @@ def examples(name: str | None, output: str | None, force: bool) -> None:
 
 
 def _listing() -> list[str]:
-    """Name, title and one line about every example."""
-    lines: list[str] = []
+    """Name and title of every example, by family."""
+    titles: dict[str, dict[str, str]] = {}
     for name in example_names():
         data = tomllib.loads(example_text(name))
-        lines += sentence(bold, name, f" {data.get('name', '')}", "    ")
-        if source := data.get("source"):
-            lines.append(shorten(source, WIDTH, initial_indent="    ", placeholder=" …"))
-    return [*lines, "", "To start from one: linkwork examples NAME -o FILE.toml"]
+        family = str(data.get("family", _NO_FAMILY))
+        titles.setdefault(family, {})[name] = str(data.get("name", ""))
+    lines: list[str] = []
+    for family in sorted(titles, key=lambda family: (family == _NO_FAMILY, family.casefold())):
+        lines += [*title_lines(family), *fields(titles[family].items()), ""]
+    return [*lines, "To start from one: linkwork examples NAME -o FILE.toml"]

@@ -70,6 +70,8 @@ class Description:
         Named formulas of unknowns, dimensions and point coordinates (``A.x``).
     source : str
         Where the mechanism comes from.
+    family : str
+        The kind of mechanism it is listed with.
     configuration : str
         The name of the configuration or branch to start from instead of the guess.
 
@@ -87,6 +89,7 @@ class Description:
     trace: tuple[str, ...] = ()
     outputs: Mapping[str, str] = FrozenDict()
     source: str = ""
+    family: str = ""
     configuration: str = ""
 
     def __post_init__(self) -> None:
@@ -274,6 +277,8 @@ def _check_rows(description: Description, which: Input, key: Key, problems: Prob
     ]
     lengthy = which.drives[0] in ("slider", "cylinder")
     missing = [field for field, number in fields if number is None]
+    if missing == ["step"] and amounts[0] == amounts[1]:
+        missing = []  # held at one value
     if lengthy and missing:
         problems.add((*key, missing[0]), "is missing: a length has no natural range")
     if (lengthy and missing) or any(map(math.isnan, amounts)):

@@ -132,6 +132,7 @@ _HEAD = (
     Key("length", Text(), "Unit of every length in this file; nothing is converted"),
     Key("angle", Text(("deg", "rad")), "Unit of every angle in this file"),
     Key("source", Text(), "Where the mechanism comes from: book, page, drawing"),
+    Key("family", Text(), 'The kind of mechanism it is listed with: "straight line", "engine"'),
     Key(
         "configuration",
         Text(),

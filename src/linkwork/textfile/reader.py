@@ -20,7 +20,9 @@ from linkwork.textfile.toml_text import bytes_of, data_of, text_of
 __all__ = ["ReadFile", "read_bytes", "read_file", "read_text"]
 
 #: Tables and keys on which the meaning of no other table depends.
-_LEAVES = frozenset({"name", "length", "source", "configuration", "input", "trace", "outputs"})
+_LEAVES = frozenset(
+    {"name", "length", "source", "family", "configuration", "input", "trace", "outputs"}
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,6 +123,7 @@ def _description(content: dict[str, Any], form: Form) -> Linkage | Loops | Plain
             "length",
             "angle",
             "source",
+            "family",
             "configuration",
             "dimensions",
             "outputs",

@@ -81,10 +81,9 @@ def _head(description: Description) -> dict[str, Any]:
         "length": description.length,
         "angle": description.angle.value,
     }
-    if description.source:
-        found["source"] = description.source
-    if description.configuration:
-        found["configuration"] = description.configuration
+    for key in ("source", "family", "configuration"):
+        if text := getattr(description, key):
+            found[key] = text
     if isinstance(description, Linkage) and description.sketch:
         found["sketch"] = True
     return found

@@ -1,0 +1,74 @@
+"""Writes docs/gallery.md and one small picture for each mechanism of the library.
+
+A mechanism's law is the first line of the test that states it.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from pathlib import Path
+from urllib.parse import quote
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))  # for the register of laws, which is a part of the tests
+
+import linkwork as lw  # noqa: E402 - after the path is set
+from linkwork import drawing  # noqa: E402
+from tests.library.laws import LAWS  # noqa: E402
+
+PICTURES = ROOT / "docs" / "images" / "gallery"
+PAGE = ROOT / "docs" / "gallery.md"
+_DPI = 54.0  # 324 pixels on the long side
+_WIDTH = 300  # of a picture on the page, in pixels
+_HEAD = """# Gallery
+
+Every mechanism of the library with its law, which a test checks (`tests/library`); written by
+`scripts/gallery`. `linkwork examples NAME` prints the file with its source, `linkwork sweep` moves
+it.
+"""
+
+
+def main() -> None:
+    """Write the page, and draw what can be drawn."""
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    for old in PICTURES.glob("*.png"):
+        old.unlink()
+    laws = {name: tests[0] for name, tests in sorted(_laws().items())}
+    families: dict[str, list[str]] = {}
+    for name in lw.examples():
+        families.setdefault(lw.example(name).description.family or "other", []).append(name)
+    lines = [_HEAD]
+    for family in sorted(families, key=str.casefold):
+        lines += [f"## {family[0].upper()}{family[1:]}", ""]
+        for name in families[family]:
+            lines += _entry(name, laws.get(name, ""))
+    PAGE.write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
+    count = len(list(PICTURES.iterdir()))
+    sys.stdout.write(f"Wrote {PAGE.relative_to(ROOT)} and {count} pictures.\n")
+
+
+def _laws() -> dict[str, list[str]]:
+    """The first lines of the tests that state the laws, by mechanism."""
+    for path in sorted((ROOT / "tests" / "library").glob("test_*.py")):
+        import_module(f"tests.library.{path.stem}")
+    return {name: [_first_line(test) for test in tests] for name, tests in LAWS.items()}
+
+
+def _first_line(test: object) -> str:
+    claim = getattr(test, "__name__", "").removeprefix("test_").replace("_", " ")
+    return (test.__doc__ or f"{claim[:1].upper()}{claim[1:]}.").strip().splitlines()[0]
+
+
+def _entry(name: str, law: str) -> list[str]:
+    mechanism = lw.example(name)
+    text = [f"**{mechanism.name}** (`{name}`)  ", law, ""]
+    if not getattr(mechanism.description, "points", None):
+        return text
+    drawing.write(mechanism.scene(), PICTURES / f"{name}.png", dpi=_DPI)
+    source = f"images/gallery/{quote(name)}.png"
+    return [*text, f'<img src="{source}" width="{_WIDTH}" alt="{mechanism.name}">', ""]
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,52 @@
+"""Every file of the library has a law, a source and a family, and proves what it reaches."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+import linkwork as lw
+from tests.library.laws import LAWS, motion_of
+
+MODULES = [
+    import_module(f"tests.library.{path.stem}")
+    for path in sorted(Path(__file__).parent.glob("test_*.py"))
+    if path != Path(__file__)
+]
+DRIVEN = [name for name in lw.examples() if lw.example(name).description.inputs]
+
+
+def test_every_mechanism_has_a_law() -> None:
+    assert set(lw.examples()) - set(LAWS) == set()
+
+
+def test_every_law_belongs_to_a_mechanism() -> None:
+    assert set(LAWS) - set(lw.examples()) == set()
+
+
+@pytest.mark.parametrize("name", lw.examples())
+def test_every_mechanism_tells_its_source_and_family(name: str) -> None:
+    description = lw.example(name).description
+    assert len(description.source) > 20
+    assert description.family
+    assert description.name != "mechanism"
+
+
+def test_the_gallery_shows_every_mechanism() -> None:
+    """After a change of the library: ``scripts/gallery``."""
+    docs = Path(__file__).parents[2] / "docs"
+    page = (docs / "gallery.md").read_text(encoding="utf-8")
+    assert [name for name in lw.examples() if f"(`{name}`)" not in page] == []
+    pictures = {path.stem for path in (docs / "images" / "gallery").iterdir()}
+    assert pictures <= set(lw.examples())
+    assert [name for name in pictures if f"gallery/{name}.png" not in page] == []
+    assert len(pictures) > 50
+
+
+@pytest.mark.parametrize("name", DRIVEN)
+def test_every_row_that_is_found_is_proved(name: str) -> None:
+    motion = motion_of(name)
+    assert motion.found.any()
+    assert motion.certified[motion.found].all()

@@ -1,0 +1,285 @@
+"""Quick returns, engines, pumps, presses, lifts and vehicles against their closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import linkwork as lw
+from tests.library.laws import degrees, law, motion_of, same
+from tests.oracles.circles import SliderCrank, circles_meet
+from tests.oracles.four_bar import FourBar
+
+
+def extremes(name: str, quantity: str) -> tuple[lw.OutputLimit, lw.OutputLimit]:
+    """The smallest and the largest value of a quantity over a turn, located."""
+    found = lw.example(name).sweep(limits_of=[quantity]).output_limits
+    return min(found, key=lambda at: at.value), max(found, key=lambda at: at.value)
+
+
+def time_ratio(name: str, quantity: str) -> float:
+    """Of the two strokes at constant input speed, the longer by the shorter."""
+    low, high = extremes(name, quantity)
+    way = (high.input - low.input) % 360
+    return max(way, 360 - way) / min(way, 360 - way)
+
+
+# ------------------------------------------------------------------ quick returns
+
+
+@law("inverted-slider-crank")
+def test_slotted_lever_points_at_the_crank_pin() -> None:
+    """The lever points at the crank's pin; ratio (180 + 2 asin(r/d))/(180 - 2 asin(r/d))."""
+    motion = motion_of("inverted-slider-crank")
+    pin = 100 * np.exp(1j * degrees(motion, "crank")) + 250j
+    same(motion["s"], np.abs(pin), 350)
+    same(np.exp(1j * degrees(motion, "lever")), pin / np.abs(pin), 1)
+    angle = math.degrees(math.asin(100 / 250))
+    expected = (180 + 2 * angle) / (180 - 2 * angle)
+    assert time_ratio("inverted-slider-crank", "lever") == pytest.approx(expected, abs=1e-9)
+
+
+@law("crank-shaper")
+def test_crank_shaper_has_its_quick_return_ratio() -> None:
+    """Quick-return ratio (180 + 2 asin(r/d))/(180 - 2 asin(r/d)) = 1.710."""
+    motion = motion_of("crank-shaper")
+    pin = 60 * np.exp(1j * degrees(motion, "crank")) + 150j
+    end = -150j + 320 * pin / np.abs(pin)
+    same(motion["ram_x"], end.real + np.sqrt(120**2 - (150 - end.imag) ** 2), 320)
+    angle = math.degrees(math.asin(60 / 150))
+    expected = (180 + 2 * angle) / (180 - 2 * angle)
+    assert time_ratio("crank-shaper", "lever") == pytest.approx(expected, abs=1e-9)
+
+
+@law("whitworth")
+def test_whitworth_has_its_quick_return_ratio() -> None:
+    """Quick-return ratio (180 + 2 asin(d/r))/(180 - 2 asin(d/r)) = 1.754.
+
+    The ram turns where the lever lies along its line, at crank angles asin(-d/r).
+    """
+    motion = motion_of("whitworth")
+    pin = 120 * np.exp(1j * degrees(motion, "crank")) + 50j
+    end = -60 * pin / np.abs(pin)
+    same(motion["ram_x"], -end.real + np.sqrt(260**2 - end.imag**2), 320)
+    assert motion["lever"][-1] - motion["lever"][0] == pytest.approx(360, abs=1e-10)
+    angle = math.degrees(math.asin(50 / 120))
+    expected = (180 + 2 * angle) / (180 - 2 * angle)
+    assert time_ratio("whitworth", "ram_x") == pytest.approx(expected, abs=1e-8)
+
+
+@law("drag-link")
+def test_drag_link_ram_turns_where_the_driven_crank_lies_along_its_line() -> None:
+    """The ram turns where the driven crank lies along its line: θ4 = 0° and 180°."""
+    motion = motion_of("drag-link")
+    b = FourBar(30, 70, 60, 80).coupler_end(degrees(motion, "crank"), 1)
+    pin = 30 + 45 * (b - 30) / 80
+    same(motion.trace("B"), b, 80)
+    same(motion["ram_x"], pin.real - 30 + np.sqrt(150**2 - pin.imag**2), 195)
+    for at, driven in zip(extremes("drag-link", "ram_x"), (-1, 1), strict=True):
+        end = 30 + 80 * driven
+        turn = math.acos((70**2 + end**2 - 60**2) / (2 * 70 * abs(end)))
+        expected = math.degrees(turn if end > 0 else math.pi - turn)
+        offsets = [(at.input - sign * expected + 180) % 360 - 180 for sign in (1, -1)]
+        assert min(map(abs, offsets)) < 1e-6
+
+
+# ------------------------------------------------------------------ engines and pumps
+
+
+@law("slider-crank-engine")
+def test_engine_piston_moves_by_its_closed_form_over_a_stroke_of_two_cranks() -> None:
+    """s = r cos θ + √(l² - r² sin² θ), stroke 2r."""
+    motion = motion_of("slider-crank-engine")
+    crank = degrees(motion, "crank") - math.pi / 2
+    same(motion["s"], SliderCrank(40, 130, 0j, 0).slide(crank, 1), 130)
+    assert np.ptp(motion["s"]) == pytest.approx(80, abs=1e-10)
+
+
+@law("pumpjack")
+def test_pumpjack_stroke_is_the_published_one_to_three_percent() -> None:
+    """The stroke of API Spec 11E, 54 inches, to 3 %; exactly A times the beam's swing.
+
+    The beam turns where crank and pitman are in line; the standard rounds the stroke down.
+    """
+    motion = motion_of("pumpjack")
+    k = complex(-64, 41) + 24 * np.exp(1j * degrees(motion, "crank"))
+    rear = circles_meet(k, 74.5, np.full(k.shape, 116j), 64, 1)
+    same(motion.trace("E"), rear, 116)
+    frame = math.hypot(64, 116 - 41)
+    high, low = (
+        math.acos((64**2 + frame**2 - reach**2) / (2 * 64 * frame)) for reach in (98.5, 50.5)
+    )
+    least, most = extremes("pumpjack", "rod")
+    assert most.value - least.value == pytest.approx(72 * (high - low), abs=1e-9)
+    assert 54 < most.value - least.value < 54 * 1.03
+
+
+@law("beam-engine")
+def test_beam_engine_copies_the_link_point_and_keeps_the_piston_upright() -> None:
+    """CF = 2.5·CP; the piston's pin strays 1.1 from a line over a stroke of 151."""
+    motion = motion_of("beam-engine")
+    k = complex(280, -420) + 75 * np.exp(1j * degrees(motion, "crank"))
+    end = circles_meet(k, 400, np.zeros(k.shape), 300, -1)
+    b = -0.4 * end
+    d = circles_meet(b, 100, np.full(k.shape, -200 - 100j), 80, 1)
+    same(motion.trace("P"), b + 0.4 * (d - b), 420)
+    same(motion.trace("F"), 2.5 * motion.trace("P"), 420)
+    path = motion.trace("F")
+    assert np.ptp(path.imag) > 150
+    assert np.ptp(path.real) < 1.2
+
+
+@law("ross-yoke")
+def test_ross_yoke_moves_its_pistons_as_sines_a_quarter_turn_apart() -> None:
+    """y = r sin θ ± (b1/b2) r cos θ; with b1 = b2 amplitude √2 r, a quarter turn apart."""
+    motion = motion_of("ross-yoke")
+    crank = degrees(motion, "crank")
+    same(motion["R.y"], 20 * math.sqrt(2) * np.sin(crank - math.pi / 4) + 0, 60)
+    same(motion["L.y"], 20 * math.sqrt(2) * np.sin(crank + math.pi / 4) + 0, 60)
+    same(motion["T.x"], 0, 60)
+
+
+@law("stephenson-valve-gear")
+@pytest.mark.parametrize("lift", [35, -35, 0])
+def test_stephenson_valve_follows_its_hanging_link(lift: float) -> None:
+    """The die block is where the hanging link, held at F, S, G, crosses the valve's line.
+
+    One equation for the lifter's angle, bisected around the row's own.
+    """
+    gear = lw.example("stephenson-valve-gear").with_dimensions(lift=lift)
+    motion = gear.sweep(step=30)
+    assert motion.certified.all()
+    pivot = 300 + 1j * (150 + lift)
+
+    def placed(crank: float, lifter: float) -> tuple[complex, complex]:
+        middle = pivot + 150 * np.exp(1j * lifter)
+        fore = 30 * np.exp(1j * crank)
+        top = complex(circles_meet(np.asarray(fore), 300, np.asarray(middle), 70, 1))
+        return top, 2 * middle - top
+
+    for row, crank in enumerate(degrees(motion, "crank")):
+        back = 30 * np.exp(1j * (crank + 2 * math.pi / 3))
+
+        def gap(lifter: float, crank: float = crank, back: complex = back) -> float:
+            return abs(placed(crank, lifter)[1] - back) - 300
+
+        near = degrees(motion, "lifter")[row]
+        top, low = placed(crank, brentq(gap, near - 0.02, near + 0.02, xtol=1e-14))
+        valve = low.real + (top - low).real * low.imag / (low - top).imag
+        same(motion["x"][row], valve, 300, within=1e-11)
+
+
+# ------------------------------------------------------------------ presses, lifts, diggers
+
+
+@law("toggle-press")
+def test_toggle_press_is_slowest_where_its_links_are_straight() -> None:
+    """y = knee's height - √(150² - x²); straight, the ram is 300 below the fixed pin."""
+    motion = motion_of("toggle-press")
+    a = complex(-260, 120) + 40 * np.exp(1j * degrees(motion, "crank"))
+    knee = circles_meet(a, 230, np.full(a.shape, 300j), 150, -1)
+    same(motion.trace("C"), 1j * (knee.imag - np.sqrt(150**2 - knee.real**2)), 300)
+    assert np.abs(motion.trace("C")).min() < 0.01  # straight: 300 below the fixed pin
+    assert np.ptp(motion["C.y"]) > 30
+
+
+@law("scissor-lift")
+def test_scissor_lift_is_two_stages_high() -> None:
+    """h = 2 √(100² - x²), the platform level."""
+    motion = motion_of("scissor-lift")
+    foot = motion["x"]
+    same(motion["height"], 2 * np.sqrt(100**2 - foot**2), 200)
+    same(motion.trace("F"), foot + 1j * motion["height"], 200)
+    same(motion["platform"], 0, 180)
+
+
+@law("excavator")
+def test_excavator_angles_follow_from_its_cylinders() -> None:
+    """Law of cosines at O, B and R, then the bucket's four-bar."""
+    motion = motion_of("excavator")
+    zero = np.zeros(len(motion))
+    root = circles_meet(zero + complex(60, -40), motion["boom_ram"], zero, 265, -1)
+    boom = root / 265 * np.exp(-1j * math.radians(13))
+    hinge, lug = 560 * boom, 310 * boom * np.exp(1j * math.radians(15))
+    tail = circles_meet(lug, motion["stick_ram"], hinge, 85, 1)
+    stick = (tail - hinge) / 85 * np.exp(-1j * math.radians(160))
+    same(motion.trace("H"), hinge + 300 * stick, 560)
+    lever, pin = hinge + 255 * stick, hinge + 300 * stick
+    top = hinge + 70 * stick * np.exp(1j * math.radians(40))
+    knee = circles_meet(top, motion["bucket_ram"], lever, 70, 1)
+    ear = circles_meet(knee, 75, pin, 60, 1)
+    same(motion.trace("W"), pin + 2 * (ear - pin) * np.exp(1j * math.radians(150)), 560)
+
+
+# ------------------------------------------------------------------ vehicles
+
+
+@law("windscreen-wiper")
+def test_wiper_blades_stay_parallel_over_the_sweep_of_the_law_of_cosines() -> None:
+    """Blades parallel; the sweep ends where crank and rod are in line."""
+    motion = motion_of("windscreen-wiper")
+    same(motion["blade2"], motion["blade1"], 180)
+    inner, outer = (
+        math.acos((300**2 + 110**2 - reach**2) / (2 * 300 * 110)) for reach in (250, 330)
+    )
+    least, most = extremes("windscreen-wiper", "blade1")
+    assert most.value - least.value == pytest.approx(math.degrees(outer - inner), abs=1e-9)
+
+
+@law("landing-gear")
+def test_landing_gear_leg_follows_from_its_cylinder() -> None:
+    """The leg's angle from the triangle S H N, the brace's knee on two circles."""
+    motion = motion_of("landing-gear")
+    zero = np.zeros(len(motion))
+    horn = circles_meet(zero + complex(100, 30), motion["actuator"], zero, 30, -1)
+    leg = horn / 30 * np.exp(-1j * math.radians(120))
+    same(motion.trace("W"), 120 * leg, 120)
+    knee = circles_meet(zero + complex(80, 10), 62, 70 * leg, 52, 1)
+    same(motion.trace("M"), knee, 120)
+    assert motion["leg"][-1] - motion["leg"][0] > 75
+
+
+@law("double-wishbone")
+def test_double_wishbone_upright_is_the_coupler_of_a_four_bar() -> None:
+    """The upright is the coupler of a four-bar; the camber changes by less than 6°."""
+    motion = motion_of("double-wishbone")
+    low = 340 * np.exp(1j * degrees(motion, "lower_arm"))
+    top = circles_meet(low, 235, np.full(low.shape, 60 + 230j), 240, -1)
+    upright = (top - low) / 235
+    same(motion.trace("B"), top, 340)
+    same(motion.trace("K"), low + 202 * upright * np.exp(-1j * math.radians(155)), 340)
+    assert np.ptp(motion["upright"]) < 6  # camber over the whole travel
+    assert np.ptp(motion["travel"]) > 180
+
+
+@law("macpherson")
+def test_macpherson_strut_passes_its_joint_at_a_fixed_distance() -> None:
+    """s = √(JT² - h²): the strut's line passes J at the distance h."""
+    motion = motion_of("macpherson")
+    joint = 340 * np.exp(1j * degrees(motion, "arm"))
+    span = 290 + 560j - joint
+    line = span / np.abs(span) * np.exp(1j * np.arcsin(30 / np.abs(span)))
+    same(motion["s"], np.sqrt(np.abs(span) ** 2 - 30**2), 560)
+    foot = joint - 30j * line
+    same(motion.trace("K"), foot + 233 * line * np.exp(-1j * math.radians(150)), 560)
+
+
+@law("ackermann-steering")
+def test_ackermann_trapezoid_errs_less_than_a_degree_to_30_degrees() -> None:
+    """Up to 30° the outer wheel errs less than 0.9° from cot δo - cot δi = track/wheelbase."""
+    motion = motion_of("ackermann-steering")
+    a = 0.75 * np.exp(1j * degrees(motion, "left"))
+    rod = 4.5 - 1.5 * math.sin(math.radians(15))
+    b = circles_meet(a, rod, np.full(a.shape, 4.5 + 0j), 0.75, -1)
+    same(motion.trace("AR"), b, 4.5)
+    left, right = degrees(motion, "steer_left"), degrees(motion, "steer_right")
+    inside = np.abs(right) < math.radians(30)
+    mirrored = np.interp(-right[inside], left, right)
+    same(mirrored, -left[inside], 1, within=1e-4)  # between rows of half a degree
+    turning = left > math.radians(1)
+    ideal = np.arctan(1 / (1 / np.tan(left[turning]) + 4.5 / 10))
+    error = np.degrees(right[turning] - ideal)
+    assert 0.5 < np.max(np.abs(error)) < 0.9
