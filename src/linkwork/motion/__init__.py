@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     )
     from linkwork.motion.checking import check
     from linkwork.motion.circuit.circuits import branch_start, circuits
+    from linkwork.motion.classifying.inverting import driven_otherwise, inversion, inversions
     from linkwork.motion.model import Model, model_of
     from linkwork.motion.solving import solve
     from linkwork.motion.sweeping import sweep
@@ -24,6 +25,7 @@ else:
             "assembly.configurations": ("configurations", "solve_configuration", "started_in"),
             "checking": ("check",),
             "circuit.circuits": ("branch_start", "circuits"),
+            "classifying.inverting": ("driven_otherwise", "inversion", "inversions"),
             "model": ("Model", "model_of"),
             "solving": ("solve",),
             "sweeping": ("sweep",),
@@ -36,6 +38,9 @@ __all__ = [
     "check",
     "circuits",
     "configurations",
+    "driven_otherwise",
+    "inversion",
+    "inversions",
     "model_of",
     "solve",
     "solve_configuration",

@@ -7,6 +7,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
+from linkwork.motion.classifying.classify import block_groups, classify
 from linkwork.motion.model import Model
 from linkwork.motion.start import first_position
 from linkwork.numerics.newton import NewtonOptions
@@ -53,8 +54,9 @@ def check(model: Model) -> CheckReport:
             BlockSummary(
                 equations=tuple(equations.labels[e] for e in block.equations),
                 unknowns=tuple(equations.unknowns[k].name for k in block.unknowns),
+                group=group,
             )
-            for block in model.compiled.solver.blocks
+            for block, group in zip(model.compiled.solver.blocks, block_groups(model), strict=True)
         ),
         mobility_count=count,
         mobility_rank=rank,
@@ -67,6 +69,7 @@ def check(model: Model) -> CheckReport:
         },
         residual=start.residual,
         failure=start.failure,
+        classification=classify(model),
     )
 
 
