@@ -40,7 +40,7 @@ class Joint:
     links : tuple of str
         Two; a multiple pin has more and counts as one joint less than it has links.
     point : str
-        For a pin and a pin in a slot: where the pin is.
+        For a pin in a slot: where the pin is.
     """
 
     kind: JointKind
@@ -108,20 +108,20 @@ class Chain:
         The motion is the same, and so is the mobility: three freedoms more and three fewer.
         """
         links, joints = list(self.links), []
-        pins = {joint.point: joint for joint in self.joints if joint.kind is JointKind.REVOLUTE}
+        pins = {joint.name: joint for joint in self.joints if joint.kind is JointKind.REVOLUTE}
         for joint in self.joints:
             if joint.kind is not JointKind.PIN_IN_SLOT:
                 continue
             pinned, guide = joint.links
             links.append(joint.name)
             there = pins.get(joint.point) or Joint(
-                kind=JointKind.REVOLUTE, name=joint.point, links=(pinned,), point=joint.point
+                kind=JointKind.REVOLUTE, name=joint.point, links=(pinned,)
             )
             pins[joint.point] = replace(there, links=(*there.links, joint.name))
             joints.append(
                 Joint(kind=JointKind.PRISMATIC, name=joint.name, links=(joint.name, guide))
             )
-        kept = [joint for joint in self.joints if joint.kind.lower and not joint.point]
+        kept = [joint for joint in self.joints if joint.kind is JointKind.PRISMATIC]
         higher = [j for j in self.joints if not j.kind.lower and j.kind != JointKind.PIN_IN_SLOT]
         return replace(
             self,
@@ -156,7 +156,7 @@ class Chain:
 
         The loop leaves ``first`` over ``joint`` to ``second`` and comes back to ``first``.
         """
-        found = []
+        found: list[tuple[Joint, ...]] = []
         for to_third in self.at(second):
             for third in to_third.across(second):
                 if to_third is joint or third == first:
@@ -186,7 +186,7 @@ def _pins(linkage: Linkage) -> Iterator[Joint]:
     for point, bodies in linkage.carriers().items():
         links = tuple(ends[body][point] if body in ends else body for body in bodies)
         if len(links) > 1:
-            yield Joint(kind=JointKind.REVOLUTE, name=point, links=links, point=point)
+            yield Joint(kind=JointKind.REVOLUTE, name=point, links=links)
 
 
 def _sliders(linkage: Linkage) -> Iterator[Joint]:

@@ -14,7 +14,17 @@ from linkwork.mechanism.chain_graph import same_graph
 
 __all__ = ["EightLinkChain", "chain_name", "eight_link_chains", "inversion_name", "loop_letters"]
 
-_WORDS = {3: "three", 4: "four", 5: "five", 6: "six", 7: "seven", 8: "eight", 9: "nine", 10: "ten"}
+_WORDS = {
+    2: "two",
+    3: "three",
+    4: "four",
+    5: "five",
+    6: "six",
+    7: "seven",
+    8: "eight",
+    9: "nine",
+    10: "ten",
+}
 #: Joints around a loop of four links, smallest turn of the letters first.
 _FOUR_LINK = {
     "RRRR": "four-bar chain",
@@ -128,7 +138,8 @@ def loop_letters(chain: Chain) -> str | None:
     R comes before P.
     """
     start = chain.links[0]
-    joints, here = [], start
+    joints: list[Joint] = []
+    here = start
     while True:
         onward = [joint for joint in chain.at(here) if joint not in joints[-1:]]
         if len(chain.at(here)) != 2 or not onward or len(onward[0].links) != 2:

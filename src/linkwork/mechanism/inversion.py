@@ -16,10 +16,10 @@ from linkwork.mechanism.parts import Input, Number, Slider
 __all__ = ["inverted", "settled"]
 
 #: What a linkage may hold and still be inverted; anything else might refer to the old ground.
-_CARRIED = frozenset(
-    ["points", "links", "lengths", "angles", "slots", "sliders", "cylinders"]
-    + ["inputs", "outputs", "trace", "dimensions"]
-)
+_CARRIED = frozenset({
+    "points", "links", "lengths", "angles", "slots", "sliders", "cylinders", "inputs", "outputs",
+    "trace", "dimensions",
+})  # fmt: skip
 
 Places = Mapping[str, complex]
 Coordinates = tuple[Number, ...]
@@ -114,7 +114,9 @@ class _Inverting:
                 linkage.links,
                 linkage.dimensions,
                 linkage.outputs,
-                (p.name for p in (*linkage.slots, *linkage.sliders, *linkage.cylinders)),
+                (slot.name for slot in linkage.slots),
+                (slider.name for slider in linkage.sliders),
+                (cylinder.name for cylinder in linkage.cylinders),
                 (c.angle_name for c in linkage.cylinders),
             )
             for name in names

@@ -39,7 +39,7 @@ class FourLinkLoop:
         """The distance between the two pins of a link."""
         before, after = self.ends(link)
         local = linkage.shapes.local[link]
-        return abs(local[after.point] - local[before.point])
+        return abs(local[after.name] - local[before.name])
 
     def offset(self, linkage: Linkage, angles: Mapping[str, LinkAngle]) -> float:
         """The distance of the two pins beside the only sliding joint, across its direction."""
@@ -52,12 +52,12 @@ class FourLinkLoop:
         on = linkage.shapes.local[guide.on]
         foot, end = (on[p] for p in guide.line)
         along = (end - foot) / abs(end - foot)
-        pin = next(j.point for j in self.ends(guide.on) if j is not slide)
+        pin = next(j.name for j in self.ends(guide.on) if j is not slide)
         across = ((on[pin] - foot) * along.conjugate()).imag
         if slider is None:  # a pin on the line itself
             return abs(across)
         own = linkage.shapes.local[slider.link]
-        own_pin = next(j.point for j in self.ends(slider.link) if j is not slide)
+        own_pin = next(j.name for j in self.ends(slider.link) if j is not slide)
         turn = cmath.exp(1j * (_constant(angles, slider.link) - _constant(angles, slider.on)))
         aside = ((own[own_pin] - own[slider.points[0]]) * turn * along.conjugate()).imag
         return abs(linkage.numbers(slider.offset) + aside - across)

@@ -46,7 +46,8 @@ def _four_bar(loop: FourLinkLoop, linkage: Linkage) -> LoopType:
     margin = (second + third) - (shortest + longest)
     small = CHANGE_POINT * longest
     at_shortest = lengths.index(shortest)
-    if loop.driven is None and at_shortest == 3:
+    at_ground = loop.driven is loop.joints[0]
+    if not at_ground and at_shortest == 3:
         at_shortest = 1  # the side links are alike where neither is driven
     turning: bool | None = margin > 0
     if abs(margin) <= small:
@@ -59,8 +60,8 @@ def _four_bar(loop: FourLinkLoop, linkage: Linkage) -> LoopType:
         name, code = "triple-rocker", f"RRR{at + 1}"
     full: bool | None = None
     if turning is not None and loop.driven is not None:
-        full = turning and loop.links[at_shortest] in loop.driven.links
-    if loop.driven is None:
+        full = turning and loop.links[lengths.index(shortest)] in loop.driven.links
+    if not at_ground:
         code = ""  # it tells which link is driven
     return LoopType(
         links=loop.links,
