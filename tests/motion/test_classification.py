@@ -151,6 +151,8 @@ def _slider_crank(crank: float, rod: float, offset: float, pivot: float = 0.0) -
                        "s + e is 0.5 mm above l"),
         (3, 1, 0.5, 0, "slider-rocker (hand pump): the driven link cannot turn fully, "
                        "s + e is 1.5 mm below l"),
+        (1, 3, 4.5, 0, "no closed loop: the pins beside the slide are 0.5 mm further apart than "
+                       "crank and rod reach"),
         (1, 3, 2, 0, "slider-crank: change point, s + e equals l (margin 0 mm)"),
         (2, 2, 0, 0, "isosceles slider-crank: change point, s + e equals l (margin 0 mm)"),
     ],

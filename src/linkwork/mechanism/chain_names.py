@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
@@ -81,9 +82,10 @@ def chain_name(chain: Chain) -> str:
         nouns = dict.fromkeys(joint.kind.noun for joint in higher)
         told = (_counted(sum(j.kind.noun == noun for j in higher), noun) for noun in nouns)
         return f"{plain} with {' and '.join(told)}"
-    if any(len(whole.at(link)) < 2 for link in whole.links):
+    elements = Counter(link for joint in whole.joints for link in joint.links)
+    if any(elements[link] < 2 for link in whole.links):
         return f"open {plain}"
-    letters = loop_letters(whole)
+    letters = loop_letters(whole) if len(whole.joints) == count else None
     if letters is not None and count == 4:
         return _FOUR_LINK[letters]
     name = _family(whole) or _degenerate_family(whole)
@@ -175,10 +177,12 @@ def _family(chain: Chain) -> str | None:
 
 def _degenerate_family(chain: Chain) -> str | None:
     """The chain that multiple pins come from when joints of one link move together, if unique."""
+    if chain.simple or chain.mobility != 1 or len(chain.links) not in (6, 8):
+        return None
     ways = 1
     for joint in chain.joints:
         ways *= max(1, len(joint.links) ** (len(joint.links) - 2))
-    if chain.simple or chain.mobility != 1 or ways > _MOST_WAYS:
+    if ways > _MOST_WAYS:
         return None
     names: set[str] = set()
     for drawn in product(*(list(_drawn_apart(joint)) for joint in chain.joints)):

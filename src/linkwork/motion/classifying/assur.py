@@ -57,15 +57,15 @@ def assur_groups(linkage: Linkage, chain: Chain) -> list[FoundGroup] | None:
     form = block_form(rows.pattern, rows.count, rows.columns)
     if not form.square:
         return None
-    members = {
-        link: [other for other in chain.links if became[other] == link] for link in fixed.links
-    }
+    members: dict[str, list[str]] = {}
+    for link in chain.links:
+        members.setdefault(became[link], []).append(link)
     found = []
     for equations, columns in form.blocks:
-        links = [link for link in fixed.links if rows.first.get(link) in columns]
+        links = rows.links(columns)
         if not links:
             continue
-        joints = rows.joints(equations, columns)
+        joints = rows.joints(equations, columns, links)
         names = tuple(" + ".join(members[link]) for link in links)
         inside = any(equation >= rows.first_held for equation in equations)
         found.append(
@@ -90,6 +90,7 @@ class _Rows:
         for link in chain.links:
             if link != chain.ground:
                 self.first[link] = self._more(3)
+        self.at_column = {first: link for link, first in self.first.items()}
         self.pattern: list[list[int]] = []
         self.count: list[int] = []
         self.of: list[tuple[Joint, str]] = []  # the joint and the link of every row
@@ -121,15 +122,19 @@ class _Rows:
         self.count.append(count)
         self.of.append(of)
 
+    def links(self, columns: Sequence[int]) -> list[str]:
+        """The links to which columns belong, in the file's order."""
+        return [self.at_column[column] for column in columns if column in self.at_column]
+
     def joints(
-        self, equations: Sequence[int], columns: Sequence[int]
+        self, equations: Sequence[int], columns: Sequence[int], links: Sequence[str]
     ) -> list[tuple[Joint, tuple[str, ...]]]:
         """The simple joints of a block, each with the links of the block that it joins.
 
         A pin that is known before the block joins each of its links to what is known; a new one
         joins them to one another. A link known before has its condition in an earlier block.
         """
-        own = {link for link, first in self.first.items() if first in columns}
+        own = set(links)
         at: dict[str, tuple[Joint, list[str]]] = {}
         found: list[tuple[Joint, tuple[str, ...]]] = []
         for equation in equations:
@@ -140,11 +145,11 @@ class _Rows:
                 at.setdefault(joint.name, (joint, []))[1].append(link)
             else:
                 found.append((joint, tuple(end for end in joint.links if end in own)))
-        for name, (joint, links) in at.items():
+        for name, (joint, ends) in at.items():
             if self.pin[name] in columns:
-                found += [(joint, (links[0], other)) for other in links[1:]]
+                found += [(joint, (ends[0], other)) for other in ends[1:]]
             else:
-                found += [(joint, (link,)) for link in links]
+                found += [(joint, (end,)) for end in ends]
         return found
 
 

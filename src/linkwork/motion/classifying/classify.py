@@ -53,9 +53,14 @@ def block_groups(model: Model) -> tuple[AssurGroup | None, ...]:
         groups = assur_groups(linkage, Chain.of(linkage).with_blocks())
     if not isinstance(linkage, Linkage) or groups is None:
         return (None,) * len(blocks)
-    owner: dict[str, FoundGroup] = {}
+    angles = {link: angle.variable for link, angle in equations.links.items()}
+    for cylinder in linkage.cylinders:
+        angles |= dict.fromkeys(cylinder_ends(cylinder.name), cylinder.angle_name)
+    owner: dict[str | None, FoundGroup] = {}
     for entry in groups:
-        for name in _variables(model, linkage, entry):
+        turning = (angles.get(link) for link in entry.links)
+        sliding = (equations.sliders.get(joint) for joint in entry.joints)
+        for name in (*turning, *sliding):
             owner.setdefault(name, entry)
     found = []
     for block in blocks:
@@ -65,13 +70,3 @@ def block_groups(model: Model) -> tuple[AssurGroup | None, ...]:
         same = first is not None and all(entry is first for entry in owners)
         found.append(first.group if first is not None and same else None)
     return tuple(found)
-
-
-def _variables(model: Model, linkage: Linkage, entry: FoundGroup) -> list[str]:
-    """The angles of a group's links and the displacements of its sliding joints."""
-    angles = {link: angle.variable for link, angle in model.equations.links.items()}
-    for cylinder in linkage.cylinders:
-        angles |= dict.fromkeys(cylinder_ends(cylinder.name), cylinder.angle_name)
-    found = [angles.get(link) for link in entry.links]
-    found += [model.equations.sliders.get(joint) for joint in entry.joints]
-    return [name for name in found if name is not None]

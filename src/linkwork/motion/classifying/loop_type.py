@@ -43,6 +43,13 @@ def _four_bar(loop: FourLinkLoop, linkage: Linkage) -> LoopType:
     """
     lengths = [loop.length(linkage, link) for link in loop.links]
     shortest, second, third, longest = sorted(lengths)
+    if longest > shortest + second + third:
+        told = (
+            f"{loop.links[lengths.index(longest)]} is "
+            f"{longest - (shortest + second + third):.6g} {linkage.length} longer than the other "
+            "three together"
+        )
+        return _no_loop(loop, told, (second + third) - (shortest + longest), longest)
     margin = (second + third) - (shortest + longest)
     small = CHANGE_POINT * longest
     at_shortest = lengths.index(shortest)
@@ -117,6 +124,12 @@ def _slider_crank(
     short, long = sorted(lengths)
     offset = loop.offset(linkage, angles)
     margin = long - short - offset
+    if offset > long + short:
+        told = (
+            f"the pins beside the slide are {offset - (long + short):.6g} {linkage.length} "
+            f"further apart than {' and '.join(arms)} reach"
+        )
+        return _no_loop(loop, told, margin, offset)
     small = CHANGE_POINT * max(long, offset)
     turning: bool | None = None if abs(margin) <= small else margin > 0
     shorter = arms[lengths.index(short)]
@@ -139,6 +152,19 @@ def _slider_crank(
             small,
             linkage.length,
         ),
+    )
+
+
+def _no_loop(loop: FourLinkLoop, why: str, margin: float, longest: float) -> LoopType:
+    """What cannot be put together has no type."""
+    return LoopType(
+        links=loop.links,
+        name="no closed loop",
+        grashof=False,
+        margin=margin,
+        relative_margin=margin / longest,
+        turns_fully=None,
+        condition=why,
     )
 
 
