@@ -112,7 +112,7 @@ def inversion_name(chain: Chain) -> str | None:
     References
     ----------
     R. L. Norton, Design of Machinery, section on inversion; J. M. McCarthy and G. S. Soh,
-    Geometric Design of Linkages, 2nd ed. 2011, ch. 5, doi:10.1007/978-1-4419-7892-9
+    Geometric Design of Linkages, 2nd ed. 2011, doi:10.1007/978-1-4419-7892-9
     """
     whole = chain.with_blocks()
     own = whole.at(whole.ground)

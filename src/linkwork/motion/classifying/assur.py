@@ -7,7 +7,7 @@ determined.
 References
 ----------
 L. V. Assur, Investigation of plane linkages with lower pairs, 1914-1918
-I. I. Artobolevskii, Theory of mechanisms and machines, 4th ed. 1988, chapter 2 (class, order)
+I. I. Artobolevskii, Theory of mechanisms and machines, 4th ed. 1988 (class, order)
 B. Servatius, O. Shai, W. Whiteley, Combinatorial characterization of the Assur graphs from
 engineering, European Journal of Combinatorics 31 (2010) 1091-1104
 """

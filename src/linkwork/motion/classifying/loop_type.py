@@ -37,7 +37,7 @@ def _four_bar(loop: FourLinkLoop, linkage: Linkage) -> LoopType:
 
     References
     ----------
-    F. Grashof, Theoretische Maschinenlehre, vol. 2, 1883, section 37
+    F. Grashof, Theoretische Maschinenlehre, vol. 2, 1883
     C. R. Barker, A complete classification of planar four-bar linkages, Mechanism and Machine
     Theory 20 (1985) 535-554; R. L. Norton, Design of Machinery, table 2-4.
     """
@@ -112,8 +112,8 @@ def _slider_crank(
 
     References
     ----------
-    K. H. Hunt, Kinematic Geometry of Mechanisms, 1978, section 3.5; F. Reuleaux, Theoretische
-    Kinematik, 1875, sections 68-76 (the chain's inversions)
+    K. H. Hunt, Kinematic Geometry of Mechanisms, 1978; F. Reuleaux, Theoretische Kinematik, 1875
+    (the chain's inversions)
     """
     arms = [
         link
