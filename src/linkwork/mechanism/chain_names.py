@@ -135,9 +135,9 @@ def inversion_name(chain: Chain) -> str | None:
 
 
 def loop_letters(chain: Chain) -> str | None:
-    """The kinds of joints around a chain that is one loop: the first of all turns and directions.
+    """The kinds of joints around a chain that is one loop, beginning with the longest row of R.
 
-    R comes before P.
+    Up to five joints read alike in both directions.
     """
     start = chain.links[0]
     joints: list[Joint] = []
@@ -153,8 +153,7 @@ def loop_letters(chain: Chain) -> str | None:
     if len(joints) != len(chain.links):
         return None
     row = "".join(joint.kind.letter for joint in joints)
-    turns = [both[k:] + both[:k] for both in (row, row[::-1]) for k in range(len(row))]
-    return max(turns)  # R is behind P in the alphabet
+    return max(row[k:] + row[:k] for k in range(len(row)))  # R is behind P in the alphabet
 
 
 def _family(chain: Chain) -> str | None:
