@@ -97,6 +97,37 @@ def test_ground_formulas_stay_formulas_in_the_old_ground() -> None:
             assert _gap(other, one, two) == pytest.approx(_gap(fixed, one, two), rel=1e-12)
 
 
+def test_an_angle_against_ground_keeps_its_value_as_output() -> None:
+    """The old ground's first two points lie on a slope of 20 deg."""
+    slope = np.exp(1j * math.radians(20))
+    places = {"O": 0j, "C": 3 * slope, "A": 1j, "B": 2.5 + 2.4j}
+    bar = lw.linkage(
+        points={name: (z.real, z.imag) for name, z in places.items()},
+        links={"ground": ("O", "C"), "a": ("O", "A"), "b": ("A", "B"), "c": ("C", "B")},
+        inputs=lw.Input(link="a"),
+        outputs={"turned": "b", "still": "2*c"},
+    )
+    fixed = bar.solve(at=70)
+    for ground in ("a", "b"):
+        other = bar.inversion(ground).solve(at=20 - 70 if ground == "a" else 70 - 20)
+        for output, turn in (("turned", 360), ("still", 720)):
+            assert math.remainder(other[output] - fixed[output], turn) == pytest.approx(
+                0, abs=1e-11
+            )
+
+
+def test_measured_lengths_are_written_down() -> None:
+    """An assembled position is the new sketch: nothing is measured in it again."""
+    bar = mechanism_of("link against link")
+    wanted = {" ".join(entry.points): entry.length for entry in bar.description.shapes.measured}
+    assert list(wanted) == ["A P", "B P"]
+    turned = bar.inversion("rocker").description
+    named = bar.changed(configuration="open").driven_by(link="crank").description
+    for other in (turned, named):
+        assert other.shapes.measured == ()
+        assert {key: other.lengths[key] for key in wanted} == wanted
+
+
 def _gap(position: lw.Position, one: str, two: str) -> float:
     return float(np.hypot(*np.subtract(position.points[one], position.points[two])))
 
@@ -135,6 +166,8 @@ def test_all_inversions_are_listed_with_their_names() -> None:
         "coupler: crank-rocker: Grashof, s + l is 20 mm below p + q",
         "rocker: double-rocker: Grashof, s + l is 20 mm below p + q",
     ]
+    shaper = lw.example("inverted-slider-crank").inversions()
+    assert [entry.like for entry in shaper] == ["ground", "ground", "lever"]
     six = lw.example("stephenson-far-crank").inversions()
     assert [(entry.ground, entry.type, entry.like) for entry in six] == [
         ("ground", "Stephenson III", "ground"),

@@ -205,19 +205,19 @@ def test_the_inverted_slider_crank_is_a_shaper_or_whitworths() -> None:
 
 def test_a_pivoted_cylinder_makes_it_an_oscillating_or_rotary_cylinder() -> None:
     for crank, name in ((1.0, "oscillating cylinder"), (4.0, "rotary cylinder")):
-        found = _classified(
-            lw.linkage(
-                points={"O": (0, 0), "C": (2, 0), "A": (0.1, crank)},
-                links={"ground": ("O", "C"), "crank": ("O", "A")},
-                lengths={"O A": crank},
-                cylinders=[lw.Cylinder(name="ram", between=("C", "A"))],
-                inputs=lw.Input(cylinder="ram", start=1.5, stop=2.5, step=0.1),
-            )
+        mechanism = lw.linkage(
+            points={"O": (0, 0), "C": (2, 0), "A": (0.1, crank)},
+            links={"ground": ("O", "C"), "crank": ("O", "A")},
+            lengths={"O A": crank},
+            cylinders=[lw.Cylinder(name="ram", between=("C", "A"))],
+            inputs=lw.Input(cylinder="ram", start=1.5, stop=2.5, step=0.1),
         )
+        found = _classified(mechanism)
         assert found.loop is not None
         assert (found.loop.name, found.loop.turns_fully) == (name, None)
         assert [group.text for group in found.groups] == ["dyad RRR, class II"]
         assert found.groups[0].links == ("crank", "ram barrel + ram rod")
+        assert block_groups(mechanism.model) == found.groups
 
 
 def test_a_loop_of_a_larger_chain_is_told_if_the_input_drives_it() -> None:
