@@ -183,11 +183,14 @@ def test_an_open_chain_is_called_open() -> None:
 
 
 def test_links_that_are_welded_are_one() -> None:
-    chain, became = _loop("RRRRR").welded([("3", "2"), ("1", "3")])
+    chain = _loop("RRRRR").welded([("3", "2"), ("1", "3")])
     assert chain.links == ("0", "1", "4")
-    assert (became["2"], became["3"]) == ("1", "1")
+    assert (chain.called("2"), chain.called("3"), chain.called("4")) == ("1", "1", "4")
+    assert chain.members("1") == ("1", "2", "3")
+    again = chain.welded([("1", "0")])
+    assert (again.links, again.called("3"), again.called("1")) == (("0", "4"), "0", "0")
     assert [joint.links for joint in chain.joints] == [("0", "1"), ("1", "4"), ("4", "0")]
-    grounded, _ = _loop("RRRR").welded([("1", "0")])
+    grounded = _loop("RRRR").welded([("1", "0")])
     assert (grounded.links, grounded.mobility) == (("0", "2", "3"), 0)
 
 

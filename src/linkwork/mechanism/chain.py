@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 
+from linkwork.foundation.frozen import FrozenDict
 from linkwork.mechanism.linkage import GROUND, Linkage
 
 __all__ = ["GROUND", "Chain", "Joint", "JointKind", "cylinder_ends"]
@@ -68,12 +69,15 @@ class Chain:
         In the file's order. A cylinder has two, its ``barrel`` and its ``rod``.
     blocks : frozenset of str
         Links without extent that stand for pins in slots; see :meth:`with_blocks`.
+    united : Mapping[str, str]
+        Links that are welded to another one, and that one; see :meth:`welded`.
     """
 
     links: tuple[str, ...]
     joints: tuple[Joint, ...]
     ground: str = GROUND
     blocks: frozenset[str] = frozenset()
+    united: Mapping[str, str] = FrozenDict()
 
     @classmethod
     def of(cls, linkage: Linkage) -> Chain:
@@ -130,12 +134,20 @@ class Chain:
             blocks=frozenset(links[len(self.links) :]),
         )
 
-    def welded(self, pairs: Iterable[tuple[str, str]]) -> tuple[Chain, dict[str, str]]:
-        """The chain in which the links of each pair are one, and the link that each became.
+    def called(self, link: str) -> str:
+        """The link of the chain that a link belongs to."""
+        return self.united.get(link, link)
 
-        A weld's links take the name of the ground if it is among them, else of the first in order.
+    def members(self, link: str) -> tuple[str, ...]:
+        """A link of the chain with all that are welded to it."""
+        return (link, *(other for other, one in self.united.items() if one == link))
+
+    def welded(self, pairs: Iterable[tuple[str, str]]) -> Chain:
+        """The chain in which the links of each pair are one.
+
+        They take the name of the ground if it is among them, else of the first in order.
         """
-        became = {link: link for link in self.links}
+        became = {link: link for link in self.links} | dict(self.united)
         for first, second in pairs:
             one, other = became[first], became[second]
             if other == self.ground or (
@@ -148,8 +160,12 @@ class Chain:
             left = tuple(dict.fromkeys(became[link] for link in joint.links))
             if len(left) > 1:
                 joints.append(replace(joint, links=left))
-        left_links = tuple(link for link in self.links if became[link] == link)
-        return replace(self, links=left_links, joints=tuple(joints)), became
+        return replace(
+            self,
+            links=tuple(link for link in self.links if became[link] == link),
+            joints=tuple(joints),
+            united=FrozenDict({link: one for link, one in became.items() if link != one}),
+        )
 
     def loop_through(self, joint: Joint, first: str, second: str) -> list[tuple[Joint, ...]]:
         """Every closed loop of four links through a joint: its joints, beginning with that one.

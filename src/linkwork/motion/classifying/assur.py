@@ -51,15 +51,15 @@ def assur_groups(linkage: Linkage, chain: Chain) -> list[FoundGroup] | None:
             welds.append(pair)  # a pin of more links drives only these two
         else:
             welds.append((joint.links[0], joint.links[1]))
-    fixed, became = chain.welded(welds)
-    held = [(became[first], became[second]) for first, second in held]
+    fixed = chain.welded(welds)
+    held = [(fixed.called(first), fixed.called(second)) for first, second in held]
     rows = _Rows(fixed, held)
     form = block_form(rows.pattern, rows.count, rows.columns)
     if not form.square:
         return None
-    members: dict[str, list[str]] = {}
-    for link in chain.links:
-        members.setdefault(became[link], []).append(link)
+    members = {link: [link] for link in fixed.links}
+    for link, one in fixed.united.items():
+        members[one].append(link)
     found = []
     for equations, columns in form.blocks:
         links = rows.links(columns)

@@ -79,7 +79,8 @@ def driven_joints(linkage: Linkage, chain: Chain) -> list[Joint | None]:
         if kind == "joint":
             first, second = linkage.bodies_at(name)
             pair = (first, second)
-        pins = (j for j in chain.joints if j.kind is JointKind.REVOLUTE and {*pair} <= {*j.links})
+        ends = {chain.called(link) for link in pair}
+        pins = (j for j in chain.joints if j.kind is JointKind.REVOLUTE and ends <= {*j.links})
         found.append(next(pins, None))
     return found
 
@@ -87,7 +88,7 @@ def driven_joints(linkage: Linkage, chain: Chain) -> list[Joint | None]:
 def input_loop(linkage: Linkage, chain: Chain) -> FourLinkLoop | None:
     """The loop of four links from ground over the driven joint, or around a four-link chain.
 
-    ``chain`` has lower pairs only. ``None`` if there is no such loop, or more than one.
+    ``None`` if there is no such loop of lower pairs, or more than one, or if it has a weld.
     """
     driven = driven_joints(linkage, chain)
     lead = driven[0] if len(driven) == 1 else None
@@ -100,7 +101,8 @@ def input_loop(linkage: Linkage, chain: Chain) -> FourLinkLoop | None:
         (second, joints)
         for second in start.across(chain.ground)
         for joints in chain.loop_through(start, chain.ground, second)
-        if sum(joint.kind is JointKind.PRISMATIC for joint in joints) <= 1
+        if all(joint.kind.lower for joint in joints)
+        and sum(joint.kind is JointKind.PRISMATIC for joint in joints) <= 1
     ]
     if len(loops) != 1:
         return None
@@ -108,4 +110,6 @@ def input_loop(linkage: Linkage, chain: Chain) -> FourLinkLoop | None:
     links = [chain.ground, second]
     for joint, onward in pairwise(joints[1:]):
         links.append(next(c for c in joint.across(links[-1]) if c in onward.links))
+    if any(len(chain.members(link)) > 1 for link in links):
+        return None  # its lengths lead across a weld
     return FourLinkLoop(links=tuple(links), joints=joints, driven=lead if lead in joints else None)
