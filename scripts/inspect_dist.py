@@ -12,7 +12,12 @@ import zipfile
 from pathlib import Path
 
 TREE = Path(__file__).resolve().parent.parent
-PACKAGE_DATA = ("linkwork/py.typed", "linkwork/library/*.toml", "linkwork/textfile/*.json")
+PACKAGE_DATA = (
+    "linkwork/py.typed",
+    "linkwork/library/*.toml",
+    "linkwork/mechanism/*.toml",
+    "linkwork/textfile/*.json",
+)
 SDIST_PARTS = ("LICENSE", "README.md", "docs", "examples", "pyproject.toml", "src", "tests")
 
 

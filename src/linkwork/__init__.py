@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from linkwork.numerics.newton import NewtonOptions
     from linkwork.results.check import CheckReport
     from linkwork.results.circuits import Branch, Circuit, Circuits
+    from linkwork.results.classification import AssurGroup, Classification, Inversion, LoopType
     from linkwork.results.configurations import Configurations, PathCount
     from linkwork.results.failure import Failure, Remedy
     from linkwork.results.motion import Limit, LimitKind, Motion, OutputLimit, Series
@@ -80,6 +81,12 @@ else:
             "numerics.newton": ("NewtonOptions",),
             "results.check": ("CheckReport",),
             "results.circuits": ("Branch", "Circuit", "Circuits"),
+            "results.classification": (
+                "AssurGroup",
+                "Classification",
+                "Inversion",
+                "LoopType",
+            ),
             "results.configurations": ("Configurations", "PathCount"),
             "results.failure": ("Failure", "Remedy"),
             "results.motion": ("Limit", "LimitKind", "Motion", "OutputLimit", "Series"),
@@ -90,6 +97,7 @@ else:
 
 __all__ = [
     "AngleUnit",
+    "AssurGroup",
     "Branch",
     "Certificate",
     "Certification",
@@ -97,6 +105,7 @@ __all__ = [
     "Circuit",
     "CircuitEnd",
     "Circuits",
+    "Classification",
     "Completeness",
     "Configurations",
     "Cylinder",
@@ -104,9 +113,11 @@ __all__ = [
     "Failure",
     "Input",
     "InputError",
+    "Inversion",
     "Limit",
     "LimitKind",
     "LinkworkError",
+    "LoopType",
     "Mechanism",
     "MechanismError",
     "MechanismFileError",

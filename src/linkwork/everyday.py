@@ -19,7 +19,7 @@ from linkwork.foundation.errors import (
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.parts import Number
+from linkwork.mechanism.parts import Input, Number
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
@@ -27,6 +27,7 @@ from linkwork.results.position import Position
 if TYPE_CHECKING:
     from linkwork.results.check import CheckReport
     from linkwork.results.circuits import Circuits
+    from linkwork.results.classification import Inversion
     from linkwork.results.configurations import Configurations
 
 __all__ = [
@@ -104,6 +105,31 @@ class Mechanism:
         Arguments are those the mechanism was made with: ``points``, ``lengths``, ``guess``, …
         """
         return type(self)(replace(self.description, **parts))
+
+    def inversion(self, link: str, *, input: Input | None = None) -> Self:
+        """The same chain with another link as ground; the old ground becomes ``frame``.
+
+        Parameters
+        ----------
+        link : str
+            The link that stands still from now on.
+        input : Input, optional
+            What is driven; unless given, the same relative angle or the same length as before.
+
+        Raises
+        ------
+        InputError, UnknownNameError
+            If there is no such link, or it cannot be ground.
+        """
+        return type(self)(motion.inversion(self.model, link, input))
+
+    def inversions(self) -> tuple[Inversion, ...]:
+        """Every link as ground, with what a textbook calls the mechanism then."""
+        return motion.inversions(self.model)
+
+    def driven_by(self, **what: Any) -> Self:
+        """A copy with another input; arguments as :class:`~linkwork.mechanism.parts.Input`."""
+        return type(self)(motion.driven_otherwise(self.model, Input(**what)))
 
     def check(self) -> CheckReport:
         """What was understood: loops, unknowns, blocks, mobility, the start."""

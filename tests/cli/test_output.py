@@ -59,6 +59,33 @@ def test_a_check_as_json(run: Run) -> None:
     assert _json(run("check", "open.toml", "--json").stdout)["start"]["status"] == "CANNOT_CLOSE"
 
 
+def test_a_classification_as_json(run: Run) -> None:
+    data = _json(run("check", "four-bar.toml", "--json").stdout)
+    dyad = {"links": ["coupler", "rocker"], "name": "dyad RRR", "class": 2, "order": 2}
+    assert data["blocks"] == [
+        {"equations": ["O2 A B O4"], "unknowns": ["coupler", "rocker"], "group": dyad}
+    ]
+    assert data["classification"] == {
+        "chain": "four-bar chain",
+        "links": 4,
+        "inversion": None,
+        "type": "crank-rocker (GCRR): Grashof, s + l is 20 mm below p + q",
+        "blocks": [],
+        "loop": {
+            "links": ["ground", "crank", "coupler", "rocker"],
+            "name": "crank-rocker",
+            "barker": "GCRR",
+            "grashof": True,
+            "margin": 20.0,
+            "relative_margin": pytest.approx(1 / 6, rel=1e-15),
+            "turns_fully": True,
+        },
+        "groups": [dyad],
+        "class": 2,
+    }
+    assert _json(run("check", "cubic.toml", "--json").stdout)["classification"] is None
+
+
 def test_equations_as_json(run: Run) -> None:
     data = _json(run("equations", "four-bar.toml", "--json").stdout)
     assert (data["schema"], data["mechanism"]) == (1, "Four-bar")

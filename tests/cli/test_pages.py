@@ -119,8 +119,31 @@ Four-bar
   unknowns    coupler [deg], rocker [deg]
   input       crank [deg]
   sweep       361 positions
-  blocks      1, all unknowns are solved together
+  blocks      1, all unknowns are solved together: dyad RRR, class II
   mobility    1 by Grübler's count, 1 by rank
+  chain       four-bar chain
+  type        crank-rocker (GCRR): Grashof, s + l is 20 mm below p + q
+  class       II
+
+"""
+
+JANSEN = """\
+  blocks      3, solved one after the other:
+              1. upper_rod, upper_triangle from "O A B P": dyad RRR, class II
+              2. lower_rod, lower_rocker from "O A C P": dyad RRR, class II
+              3. coupler, foot from "P C E D": dyad RRR, class II
+  mobility    1 by Grübler's count, 1 by rank
+  chain       eight-link chain, 3 multiple pins
+  class       II, the highest of its Assur groups
+
+"""
+
+SHAPER = """\
+  blocks      1, all unknowns are solved together: dyad RPR, class II
+  mobility    1 by Grübler's count, 1 by rank
+  chain       slider-crank chain (RRRP); pin in slot s counted as a block
+  type        crank shaper: the driven link turns fully, s + e is 150 mm below l
+  class       II
 
 """
 
@@ -365,6 +388,21 @@ def test_check_tells_what_was_understood(run: Run) -> None:
     assert text.endswith(MEASURED)
     assert "\nPosition found at crank = 29.7448813 deg\n  residual  " in text
     assert " of the longest link\n" in text
+
+
+@pytest.mark.parametrize(
+    ("name", "lines"), [("jansen-leg", JANSEN), ("inverted-slider-crank", SHAPER)]
+)
+def test_check_says_what_a_textbook_says(run: Run, folder: Path, name: str, lines: str) -> None:
+    assert run("examples", name, "-o", "mechanism.toml").exit_code == 0
+    assert lines in run("check", "mechanism.toml").stdout
+
+
+def test_check_of_a_loop_that_cannot_close_has_no_grashof_type(run: Run) -> None:
+    assert (
+        "  type        no closed loop: crank is 100 mm longer than the other three\n"
+        "              together\n"
+    ) in run("check", "open.toml").stdout
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from tests.cli.conftest import Start
 
 #: Nothing is followed when the position asked for is the guess's own.
 FOR_MOTION = {f"linkwork.numerics.{name}" for name in ("curve", "proven_path", "track")}
-HEAVY = {"matplotlib", "numba", "pandas", "rich", "scipy", "xarray"}
+HEAVY = {"matplotlib", "networkx", "numba", "pandas", "rich", "scipy", "xarray"}
 
 
 def test_solve_loads_nothing_heavy(environment: dict[str, str]) -> None:

@@ -6,12 +6,13 @@ from collections.abc import Iterator
 
 import click
 
+from linkwork.cli.classification import classification_fields
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.options import debug_option, file_argument, json_option, set_option
 from linkwork.cli.position_page import redundant_lines
 from linkwork.cli.terminal import bad, fields, good, print_json, print_lines, sentence, title_lines
 from linkwork.cli.text_table import Column, lengths, short, significant, table_lines
-from linkwork.results.check import CheckReport
+from linkwork.results.check import BlockSummary, CheckReport
 
 __all__ = ["check", "check_lines"]
 
@@ -71,16 +72,22 @@ def _understood(report: CheckReport) -> Iterator[tuple[str, str]]:
         if len(report.blocks) > 1:
             for k, block in enumerate(report.blocks, 1):
                 together = " and ".join(map(_quoted, block.equations))
-                yield "", f"{k}. {', '.join(block.unknowns)} from {together}"
+                yield "", f"{k}. {', '.join(block.unknowns)} from {together}{_group(block)}"
     if report.form != "equations":
         yield "mobility", _mobility(report)
     yield from redundant_lines({link: gap for link, _, gap in report.redundant})
+    if report.classification is not None:
+        yield from classification_fields(report.classification)
 
 
 def _blocks_sentence(report: CheckReport) -> str:
     if len(report.blocks) == 1:
-        return "1, all unknowns are solved together"
+        return f"1, all unknowns are solved together{_group(report.blocks[0])}"
     return f"{len(report.blocks)}, solved one after the other:"
+
+
+def _group(block: BlockSummary) -> str:
+    return "" if block.group is None else f": {block.group.text}"
 
 
 def _mobility(report: CheckReport) -> str:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     )
     from linkwork.motion.checking import check
     from linkwork.motion.circuit.circuits import branch_start, circuits
+    from linkwork.motion.classifying.inverting import driven_otherwise, inversion, inversions
     from linkwork.motion.extremes import check_quantities
     from linkwork.motion.model import Model, model_of
     from linkwork.motion.solving import solve
@@ -26,6 +27,7 @@ else:
             "checking": ("check",),
             "circuit.circuits": ("branch_start", "circuits"),
             "extremes": ("check_quantities",),
+            "classifying.inverting": ("driven_otherwise", "inversion", "inversions"),
             "model": ("Model", "model_of"),
             "solving": ("solve",),
             "sweeping": ("sweep",),
@@ -39,6 +41,9 @@ __all__ = [
     "check_quantities",
     "circuits",
     "configurations",
+    "driven_otherwise",
+    "inversion",
+    "inversions",
     "model_of",
     "solve",
     "solve_configuration",

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from linkwork.foundation.arrays import Array
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
+from linkwork.motion.classifying.classify import block_groups, classify
 from linkwork.motion.mobility import mobility_of, pins
 from linkwork.motion.model import Model
 from linkwork.motion.redundancy import largest_misfits
@@ -50,8 +51,9 @@ def check(model: Model) -> CheckReport:
             BlockSummary(
                 equations=tuple(equations.labels[e] for e in block.equations),
                 unknowns=tuple(equations.unknowns[k].name for k in block.unknowns),
+                group=group,
             )
-            for block in model.compiled.solver.blocks
+            for block, group in zip(model.compiled.solver.blocks, block_groups(model), strict=True)
         ),
         mobility_count=mobility.count,
         mobility_rank=mobility.rank,
@@ -66,6 +68,7 @@ def check(model: Model) -> CheckReport:
         },
         residual=start.residual,
         failure=start.failure,
+        classification=classify(model),
     )
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from linkwork.foundation.status import Status
+from linkwork.results.classification import AssurGroup, Classification
 from linkwork.results.failure import Failure
 
 __all__ = ["BlockSummary", "CheckReport"]
@@ -13,10 +14,22 @@ __all__ = ["BlockSummary", "CheckReport"]
 
 @dataclass(frozen=True, kw_only=True)
 class BlockSummary:
-    """Equations that are solved together, by label, for the named unknowns."""
+    """Equations that are solved together, by label, for the named unknowns.
+
+    ``group``: the Assur group that they are, for points and links.
+    """
 
     equations: tuple[str, ...]
     unknowns: tuple[str, ...]
+    group: AssurGroup | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """The block as JSON-ready data."""
+        return {
+            "equations": list(self.equations),
+            "unknowns": list(self.unknowns),
+            "group": None if self.group is None else self.group.to_dict(),
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,6 +56,8 @@ class CheckReport:
     start_input : mapping of the guess's input values, everyday units.
     failure : Failure, optional
         Why there is no position at the start.
+    classification : Classification, optional
+        What a textbook calls the mechanism, for points and links.
     """
 
     mechanism: str
@@ -64,6 +79,7 @@ class CheckReport:
     failure: Failure | None = None
     mobility_why: str = ""
     redundant: tuple[tuple[str, float, float], ...] = ()
+    classification: Classification | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """The report as JSON-ready data."""
@@ -76,9 +92,10 @@ class CheckReport:
             "unknowns": [{"name": n, "unit": u} for n, u in self.unknowns],
             "inputs": [{"name": n, "unit": u} for n, u in self.inputs],
             "rows": self.rows,
-            "blocks": [
-                {"equations": list(b.equations), "unknowns": list(b.unknowns)} for b in self.blocks
-            ],
+            "blocks": [block.to_dict() for block in self.blocks],
+            "classification": None
+            if self.classification is None
+            else self.classification.to_dict(),
             "mobility": {
                 "count": self.mobility_count,
                 "rank": self.mobility_rank,

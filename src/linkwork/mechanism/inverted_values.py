@@ -1,0 +1,120 @@
+"""Inputs and outputs of an inversion: the same quantities, seen from another ground."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from linkwork.expression.grammar import parse
+from linkwork.expression.tree import names_in
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.names import canonical
+from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.parts import Input, Number
+
+__all__ = ["Frame", "inverted_input", "inverted_output"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Frame:
+    """The old ground as a link of the inversion.
+
+    Parameters
+    ----------
+    ground : str
+        The link that has become the ground.
+    name : str
+        The name of the old ground now.
+    origin : str
+        Its first point, from which its angle leads to the second one.
+    place, turn : complex, float
+        Where that point was, and the direction of that angle [rad], in the old ground.
+    """
+
+    ground: str
+    name: str
+    origin: str
+    place: complex
+    turn: float
+
+
+def inverted_input(linkage: Linkage, which: Input, frame: Frame) -> Input:
+    """The input that drives the same relative angle or length.
+
+    The angle of a link against ground was counted from the x axis; now it is counted from the old
+    ground's first two points, so that the table may begin at another number. Where the new ground
+    was driven, the other link is driven against it, the other way round.
+    """
+    kind, name = which.drives
+    if kind in ("slider", "cylinder"):
+        return which
+    link, against = name, which.relative_to or GROUND
+    if kind == "joint":
+        against, link = linkage.bodies_at(name)
+        if link == GROUND:
+            link, against = against, link
+    if frame.ground in (link, against) and len(linkage.links[frame.ground]) < 2:
+        raise InputError(
+            f'the input turns against "{frame.ground}", which has one point and no direction: '
+            "give input= for the inversion"
+        )
+    turn = linkage.angle.from_radians(frame.turn) if against == GROUND else 0.0
+    other = frame.name if against == GROUND else against
+    speed = linkage.speed(which)
+    if link == frame.ground:
+        back = None if speed is None else -speed
+        against_it = replace(which, link=other, joint=None, relative_to=None, speed=back)
+        return _ranged(linkage, against_it, -1.0, turn)
+    same = replace(
+        which,
+        link=link,
+        joint=None,
+        relative_to=None if against == frame.ground else other,
+    )
+    return _ranged(linkage, same, 1.0, -turn)
+
+
+def _ranged(linkage: Linkage, which: Input, sign: float, shift: float) -> Input:
+    """The input with the table sign · value + shift."""
+    if sign > 0 and not shift:
+        return which
+    start: Number = 0.0 if which.start is None else which.start
+    stop: Number = linkage.angle.turn if which.stop is None else which.stop
+    step = None if which.step is None else _shifted(which.step, sign, 0.0)
+    return replace(
+        which, start=_shifted(start, sign, shift), stop=_shifted(stop, sign, shift), step=step
+    )
+
+
+def _shifted(number: Number, sign: float, shift: float) -> Number:
+    if isinstance(number, str):
+        signed = f"-({number})" if sign < 0 else f"({number})"
+        return f"{signed} + ({shift!r})" if shift else signed
+    return sign * number + shift
+
+
+def inverted_output(linkage: Linkage, formula: str, frame: Frame) -> str:
+    """A formula with the same value: angles and coordinates as seen from the old ground."""
+    turn = linkage.angle.from_radians(frame.turn)
+    angles = {canonical(name): name for name in linkage.links if name != GROUND}
+    angles |= {canonical(c.angle_name): c.angle_name for c in linkage.cylinders}
+    text = formula
+    for node in reversed(list(names_in(parse(formula)))):
+        if node.name in angles:
+            seen = "0" if angles[node.name] == frame.ground else angles[node.name]
+            new = f"({seen} - {frame.name} + ({turn!r}))"
+        elif node.name[-2:] in (".x", ".y"):
+            new = _coordinate(node.spelling[:-2], node.name[-1], turn, frame)
+        else:
+            continue
+        at = node.column - 1
+        text = text[:at] + new + text[at + len(node.spelling) :]
+    return text
+
+
+def _coordinate(point: str, axis: str, turn: float, frame: Frame) -> str:
+    """A coordinate in the old ground, turned back from the frame's direction."""
+    x, y = f"({point}.x - {frame.origin}.x)", f"({point}.y - {frame.origin}.y)"
+    angle = f"({frame.name} - ({turn!r}))"
+    if axis == "x":
+        return f"({frame.place.real!r} + cos{angle}*{x} + sin{angle}*{y})"
+    return f"({frame.place.imag!r} + cos{angle}*{y} - sin{angle}*{x})"

@@ -1,0 +1,1 @@
+"""What kind of mechanism it is: chain, type, Assur groups."""

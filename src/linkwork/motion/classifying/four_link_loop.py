@@ -1,0 +1,115 @@
+"""Four links around a loop, with their lengths between pins, as the type is read off them."""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+from linkwork.equations.model import LinkAngle
+from linkwork.mechanism.chain import Chain, Joint, JointKind
+from linkwork.mechanism.linkage import GROUND, Linkage
+
+__all__ = ["FourLinkLoop", "driven_joints", "input_loop"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FourLinkLoop:
+    """Links around a loop, ground first, and the joints between each and the next one.
+
+    ``driven``: the joint of the loop that the input drives, if there is one.
+    """
+
+    links: tuple[str, ...]
+    joints: tuple[Joint, ...]
+    driven: Joint | None
+
+    @property
+    def letters(self) -> str:
+        """The kinds of joints, ``RRRP``, beginning at ground."""
+        return "".join(joint.kind.letter for joint in self.joints)
+
+    def ends(self, link: str) -> tuple[Joint, Joint]:
+        """The joint before a link and the one after it."""
+        k = self.links.index(link)
+        return self.joints[k - 1], self.joints[k]
+
+    def length(self, linkage: Linkage, link: str) -> float:
+        """The distance between the two pins of a link."""
+        before, after = self.ends(link)
+        local = linkage.shapes.local[link]
+        return abs(local[after.name] - local[before.name])
+
+    def offset(self, linkage: Linkage, angles: Mapping[str, LinkAngle]) -> float:
+        """The distance of the two pins beside the only sliding joint, across its direction."""
+        slide = next(j for j in self.joints if j.kind is JointKind.PRISMATIC)
+        slider = next((s for s in linkage.sliders if s.name == slide.name), None)
+        slot = next((s for s in linkage.slots if s.name == slide.name), None)
+        guide = slider or slot
+        if guide is None:  # a cylinder pulls along the line of its pins
+            return 0.0
+        on = linkage.shapes.local[guide.on]
+        foot, end = (on[p] for p in guide.line)
+        along = (end - foot) / abs(end - foot)
+        pin = next(j.name for j in self.ends(guide.on) if j is not slide)
+        across = ((on[pin] - foot) * along.conjugate()).imag
+        if slider is None:  # a pin on the line itself
+            return abs(across)
+        own = linkage.shapes.local[slider.link]
+        own_pin = next(j.name for j in self.ends(slider.link) if j is not slide)
+        turn = cmath.exp(1j * (_constant(angles, slider.link) - _constant(angles, slider.on)))
+        aside = ((own[own_pin] - own[slider.points[0]]) * turn * along.conjugate()).imag
+        return abs(linkage.numbers(slider.offset) + aside - across)
+
+
+def _constant(angles: Mapping[str, LinkAngle], link: str) -> float:
+    return 0.0 if link == GROUND else angles[link].constant
+
+
+def driven_joints(linkage: Linkage, chain: Chain) -> list[Joint | None]:
+    """For every input the joint of ``chain`` that it drives, if it drives one directly."""
+    found: list[Joint | None] = []
+    for which in linkage.inputs:
+        kind, name = which.drives
+        if kind in ("slider", "cylinder"):
+            found.append(next(joint for joint in chain.joints if joint.name == name))
+            continue
+        pair = (name, which.relative_to or GROUND)
+        if kind == "joint":
+            first, second = linkage.bodies_at(name)
+            pair = (first, second)
+        ends = {chain.called(link) for link in pair}
+        pins = (j for j in chain.joints if j.kind is JointKind.REVOLUTE and ends <= {*j.links})
+        found.append(next(pins, None))
+    return found
+
+
+def input_loop(linkage: Linkage, chain: Chain) -> FourLinkLoop | None:
+    """The loop of four links from ground over the driven joint, or around a four-link chain.
+
+    ``None`` if there is no such loop of lower pairs, or more than one, or if it has a weld.
+    """
+    driven = driven_joints(linkage, chain)
+    lead = driven[0] if len(driven) == 1 else None
+    start = lead if lead is not None and chain.ground in lead.links else None
+    if start is None:
+        if len(chain.links) != 4:
+            return None
+        start = chain.at(chain.ground)[0]
+    loops = [
+        (second, joints)
+        for second in start.across(chain.ground)
+        for joints in chain.loop_through(start, chain.ground, second)
+        if all(joint.kind.lower for joint in joints)
+        and sum(joint.kind is JointKind.PRISMATIC for joint in joints) <= 1
+    ]
+    if len(loops) != 1:
+        return None
+    ((second, joints),) = loops
+    links = [chain.ground, second]
+    for joint, onward in pairwise(joints[1:]):
+        links.append(next(c for c in joint.across(links[-1]) if c in onward.links))
+    if any(len(chain.members(link)) > 1 for link in links):
+        return None  # its lengths lead across a weld
+    return FourLinkLoop(links=tuple(links), joints=joints, driven=lead if lead in joints else None)

@@ -1,0 +1,91 @@
+"""Other grounds and other inputs of a mechanism."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from linkwork.foundation.errors import InputError
+from linkwork.mechanism.chain import Chain
+from linkwork.mechanism.chain_graph import orbits
+from linkwork.mechanism.description import Description
+from linkwork.mechanism.inversion import inverted, settled
+from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.loops import Loops, PlainEquations
+from linkwork.mechanism.parts import Input
+from linkwork.motion.classifying.classify import classify
+from linkwork.motion.model import Model, model_of
+from linkwork.motion.solving import solve
+from linkwork.results.classification import Inversion
+
+__all__ = ["driven_otherwise", "inversion", "inversions"]
+
+
+def inversion(model: Model, link: str, which: Input | None = None) -> Linkage:
+    """The mechanism with another link as ground, from the position at its guess.
+
+    Raises
+    ------
+    InputError
+        If the mechanism is given by equations, or cannot be written with this ground.
+    UnknownNameError
+        If there is no such link.
+    """
+    linkage = _linkage(model)
+    return inverted(linkage, link, _places(model, linkage), which)
+
+
+def _linkage(model: Model) -> Linkage:
+    if not isinstance(model.description, Linkage):
+        raise InputError(
+            f"{model.description.name} is given by equations: only points and links tell which "
+            "link is ground, and can be inverted"
+        )
+    return model.description
+
+
+def _places(model: Model, linkage: Linkage) -> dict[str, complex]:
+    """All points at the guess; the sketch if nothing can be assembled there."""
+    position = solve(model, certify=False)
+    if not position.status.ok:
+        return {point: linkage.sketched(point) for point in linkage.points}
+    return {name: complex(x, y) for name, (x, y) in position.points.items()}
+
+
+def inversions(model: Model) -> tuple[Inversion, ...]:
+    """Every link as ground, the present one first, with what that makes of the chain."""
+    linkage = _linkage(model)
+    chain = Chain.of(linkage)
+    alike = {link: group[0] for group in orbits(chain.with_blocks()) for link in group}
+    places = _places(model, linkage)
+    found = []
+    for link in sorted(chain.links, key=lambda name: name != GROUND):
+        kind, problem = "", ""
+        try:
+            if link not in linkage.links:
+                raise InputError(
+                    f"{link} is part of a cylinder: write it as two links with a slider"
+                )
+            classified = classify(model_of(inverted(linkage, link, places)))
+            kind = "" if classified is None else classified.type
+        except InputError as error:
+            problem = str(error)
+        found.append(Inversion(ground=link, type=kind, like=alike[link], problem=problem))
+    return tuple(found)
+
+
+def driven_otherwise(model: Model, which: Input) -> Description:
+    """The description with another input.
+
+    A description that starts from a named configuration, whose name belongs to the old input,
+    starts from the position itself instead.
+    """
+    description = model.description
+    if not description.configuration:
+        return replace(description, inputs=(which,))
+    if isinstance(description, Linkage):
+        description = settled(description, _places(model, description))
+    elif isinstance(description, Loops | PlainEquations):
+        position = solve(model, certify=False)
+        guess = {**description.guess, **position.unknowns, **position.input}
+        description = replace(description, guess=guess, configuration="")
+    return replace(description, inputs=(which,))

@@ -1,0 +1,208 @@
+"""Grashof's and the slider-crank's condition: which links of a four-link loop turn fully."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from linkwork.equations.model import LinkAngle
+from linkwork.mechanism.chain import JointKind
+from linkwork.mechanism.linkage import Linkage
+from linkwork.motion.classifying.four_link_loop import FourLinkLoop
+from linkwork.results.classification import LoopType
+
+__all__ = ["CHANGE_POINT", "loop_type"]
+
+#: Margins below this part of the longest length count as none: rounding of the lengths is larger.
+CHANGE_POINT = 1e-12
+
+#: By the place of the shortest link: ground, driven link, coupler, output.
+_GRASHOF = (
+    ("double-crank", "GCCC"),
+    ("crank-rocker", "GCRR"),
+    ("double-rocker", "GRCR"),
+    ("rocker-crank", "GRRC"),
+)
+_AT_CHANGE_POINT = ("SCCC", "SCRR", "SRCR", "SRRC")
+
+
+def loop_type(loop: FourLinkLoop, linkage: Linkage, angles: Mapping[str, LinkAngle]) -> LoopType:
+    """The type of a loop of four revolutes, or of three and one sliding joint."""
+    if "P" in loop.letters:
+        return _slider_crank(loop, linkage, angles)
+    return _four_bar(loop, linkage)
+
+
+def _four_bar(loop: FourLinkLoop, linkage: Linkage) -> LoopType:
+    """A four-bar with s + l against p + q.
+
+    References
+    ----------
+    F. Grashof, Theoretische Maschinenlehre, vol. 2, 1883
+    C. R. Barker, A complete classification of planar four-bar linkages, Mechanism and Machine
+    Theory 20 (1985) 535-554; R. L. Norton, Design of Machinery, table 2-4.
+    """
+    lengths = [loop.length(linkage, link) for link in loop.links]
+    shortest, second, third, longest = sorted(lengths)
+    if longest > shortest + second + third:
+        told = (
+            f"{loop.links[lengths.index(longest)]} is "
+            f"{longest - (shortest + second + third):.6g} {linkage.length} longer than the other "
+            "three together"
+        )
+        return _no_loop(loop, told, (second + third) - (shortest + longest), longest)
+    margin = (second + third) - (shortest + longest)
+    small = CHANGE_POINT * longest
+    at_shortest = lengths.index(shortest)
+    at_ground = loop.driven is loop.joints[0]
+    if not at_ground and at_shortest == 3:
+        at_shortest = 1  # the side links are alike where neither is driven
+    turning: bool | None = margin > 0
+    if abs(margin) <= small:
+        turning = None
+        name, code = _change_point(lengths, at_shortest, small)
+    elif margin > 0:
+        name, code = _GRASHOF[at_shortest]
+    else:
+        at = lengths.index(longest)
+        name, code = "triple-rocker", f"RRR{at + 1}"
+    full: bool | None = None
+    if turning is not None and loop.driven is not None:
+        full = turning and loop.links[lengths.index(shortest)] in loop.driven.links
+    if not at_ground:
+        code = ""  # it tells which link is driven
+    return LoopType(
+        links=loop.links,
+        name=name,
+        barker=code,
+        grashof=turning,
+        margin=margin,
+        relative_margin=margin / longest,
+        turns_fully=full,
+        condition=_condition(
+            ("Grashof", "not Grashof"), "s + l", "p + q", margin, small, linkage.length
+        ),
+    )
+
+
+def _change_point(lengths: list[float], at_shortest: int, small: float) -> tuple[str, str]:
+    """The name and Barker's code of a four-bar whose links can all lie on one line."""
+    ground, driven, coupler, output = lengths
+
+    def alike(one: float, other: float) -> bool:
+        return abs(one - other) <= small
+
+    if alike(ground, coupler) and alike(driven, output):
+        if alike(ground, driven):
+            return "rhombus", "S3X"
+        return "parallelogram or antiparallelogram", "S2X"
+    if (alike(ground, driven) and alike(coupler, output)) or (
+        alike(ground, output) and alike(driven, coupler)
+    ):
+        return "deltoid", "S2X"
+    return f"change-point {_GRASHOF[at_shortest][0]}", _AT_CHANGE_POINT[at_shortest]
+
+
+def _slider_crank(
+    loop: FourLinkLoop, linkage: Linkage, angles: Mapping[str, LinkAngle]
+) -> LoopType:
+    """A slider-crank or an inversion of it, with s + e against l.
+
+    s and l are the shorter and the longer of the two links with two pins, e the distance of the
+    pins beside the slide, across it. It is a four-bar two of whose links are infinitely long.
+
+    References
+    ----------
+    K. H. Hunt, Kinematic Geometry of Mechanisms, 1978; F. Reuleaux, Theoretische Kinematik, 1875
+    (the chain's inversions)
+    """
+    arms = [
+        link
+        for link in loop.links
+        if all(joint.kind is JointKind.REVOLUTE for joint in loop.ends(link))
+    ]
+    lengths = [loop.length(linkage, link) for link in arms]
+    short, long = sorted(lengths)
+    offset = loop.offset(linkage, angles)
+    margin = long - short - offset
+    if offset > long + short:
+        told = (
+            f"the pins beside the slide are {offset - (long + short):.6g} {linkage.length} "
+            f"further apart than {' and '.join(arms)} reach"
+        )
+        return _no_loop(loop, told, margin, offset)
+    small = CHANGE_POINT * max(long, offset)
+    turning: bool | None = None if abs(margin) <= small else margin > 0
+    shorter = arms[lengths.index(short)]
+    full: bool | None = None
+    if turning is not None and loop.driven and loop.driven.kind is JointKind.REVOLUTE:
+        full = turning and shorter in loop.driven.links
+    cylinder = any(c.name == joint.name for c in linkage.cylinders for joint in loop.joints)
+    return LoopType(
+        links=loop.links,
+        name=_slider_crank_name(loop, arms, shorter, turning, long - short <= small, cylinder),
+        grashof=turning,
+        margin=margin,
+        relative_margin=margin / max(long, offset),
+        turns_fully=full,
+        condition=_condition(
+            _turning_words(full),
+            "s + e",
+            "l",
+            margin,
+            small,
+            linkage.length,
+        ),
+    )
+
+
+def _no_loop(loop: FourLinkLoop, why: str, margin: float, longest: float) -> LoopType:
+    """What cannot be put together has no type."""
+    return LoopType(
+        links=loop.links,
+        name="no closed loop",
+        grashof=False,
+        margin=margin,
+        relative_margin=margin / longest,
+        turns_fully=None,
+        condition=why,
+    )
+
+
+def _turning_words(full: bool | None) -> tuple[str, str]:
+    """What the lengths allow, of the driven joint if one of the pins is driven."""
+    if full is None:
+        return "a link turns fully", "no link turns fully"
+    if full:
+        return "the driven link turns fully", ""
+    return "the driven link cannot turn fully", "the driven link cannot turn fully"
+
+
+def _slider_crank_name(
+    loop: FourLinkLoop,
+    arms: list[str],
+    shorter: str,
+    turning: bool | None,
+    isosceles: bool,
+    cylinder: bool,
+) -> str:
+    ground = loop.links[0]
+    equal = "isosceles " if isosceles else ""
+    if ground not in arms:
+        at_ground = next(link for link in (loop.links[1], loop.links[3]) if link in arms)
+        if isosceles or (at_ground == shorter and turning is not False):
+            return f"{equal}slider-crank"
+        return "slider-rocker" if turning is False else "slider-rocker (hand pump)"
+    if isosceles or turning is False:
+        return f"{equal}inverted slider-crank"
+    if ground == shorter:
+        return "rotary cylinder" if cylinder else "Whitworth quick return"
+    return "oscillating cylinder" if cylinder else "crank shaper"
+
+
+def _condition(
+    words: tuple[str, str], left: str, right: str, margin: float, small: float, unit: str
+) -> str:
+    if abs(margin) <= small:
+        return f"change point, {left} equals {right} (margin {margin:.3g} {unit})"
+    side = "below" if margin > 0 else "above"
+    return f"{words[margin < 0]}, {left} is {abs(margin):.6g} {unit} {side} {right}"
