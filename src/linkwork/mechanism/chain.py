@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.mechanism.contact_checks import guide_named
 from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.parts import Slider
 
 __all__ = ["GROUND", "Chain", "Joint", "JointKind", "cylinder_ends"]
 
@@ -18,6 +20,12 @@ class JointKind(Enum):
     REVOLUTE = ("R", 1, "revolute joint")
     PRISMATIC = ("P", 1, "prismatic joint")
     PIN_IN_SLOT = ("RP", 2, "pin in slot")
+    GEAR_PAIR = ("G", 2, "gear pair")
+    RACK = ("G", 2, "rack and pinion")
+    BELT = ("B", 2, "belt")
+    ROLLING = ("W", 1, "rolling contact")
+    CAM = ("C", 2, "cam")
+    CURVE = ("C", 2, "pin on a curve")
 
     def __init__(self, letter: str, freedom: int, noun: str) -> None:
         self.letter = letter
@@ -84,7 +92,8 @@ class Chain:
         """The chain of a linkage, whatever is driven."""
         links = [*linkage.links, *(end for c in linkage.cylinders for end in cylinder_ends(c.name))]
         joints = tuple(joint for read in _JOINTS for joint in read(linkage))
-        return cls(links=tuple(links), joints=joints)
+        chain = cls(links=tuple(links), joints=joints)
+        return chain.welded(weld.links for weld in linkage.welds) if linkage.welds else chain
 
     @property
     def mobility(self) -> int:
@@ -236,5 +245,41 @@ def _pinned(linkage: Linkage, point: str) -> Iterator[str]:
             yield cylinder_ends(cylinder.name)[cylinder.between.index(point)]
 
 
+def _wheels(linkage: Linkage) -> Iterator[Joint]:
+    """Gears, belts, racks and rolling wheels."""
+    for gear in linkage.gears:
+        yield Joint(kind=JointKind.GEAR_PAIR, name=gear.name, links=gear.wheels)
+    for belt in linkage.belts:
+        yield Joint(kind=JointKind.BELT, name=belt.name, links=belt.wheels)
+    for rack in linkage.racks:
+        slider = next(s for s in linkage.sliders if s.name == rack.slider)
+        yield Joint(kind=JointKind.RACK, name=rack.name, links=(rack.pinion, slider.link))
+    for part in linkage.rolling:
+        yield Joint(kind=JointKind.ROLLING, name=part.name, links=(part.wheel, part.on))
+
+
+def _curves(linkage: Linkage) -> Iterator[Joint]:
+    """Cams with their followers, and pins on curves."""
+    for cam in linkage.cams:
+        follower = cam.link
+        if follower is None:
+            guide = guide_named(linkage, cam.slider)
+            assert guide is not None
+            follower = (
+                guide.link if isinstance(guide, Slider) else next(_pinned(linkage, guide.point))
+            )
+        yield Joint(kind=JointKind.CAM, name=cam.name, links=(cam.cam, follower))
+    for curve in linkage.curves:
+        pinned = next(_pinned(linkage, curve.point))
+        yield Joint(kind=JointKind.CURVE, name=curve.name, links=(pinned, curve.on))
+
+
 #: How joints are read off a linkage: a further kind of joint is one further entry.
-_JOINTS: tuple[Callable[[Linkage], Iterator[Joint]], ...] = (_pins, _sliders, _cylinders, _slots)
+_JOINTS: tuple[Callable[[Linkage], Iterator[Joint]], ...] = (
+    _pins,
+    _sliders,
+    _cylinders,
+    _slots,
+    _wheels,
+    _curves,
+)
