@@ -25,11 +25,15 @@ def looped(loops: dict[str, str], **guess: float) -> lw.Mechanism:
     return lw.loops(name="loops", loops=loops, guess={"q": 60, **guess}, inputs=(drive,))
 
 
+#: Peaucellier's B folded onto D leaves both far bars free to turn together.
+FREE = {"peaucellier"}
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_the_position_of_the_sketch_is_one_of_the_configurations(name: str) -> None:
     mechanism = mechanism_of(name)
     position, found = mechanism.solve(throw=True), mechanism.configurations()
-    assert found.completeness.complete
+    assert found.completeness.complete is (name not in FREE)
     gaps = [np.abs(np.exp(1j * p.q) - np.exp(1j * position.q)).max() for p in found]
     scale = mechanism.loop_equations.length_scale
     for value in position.sliders.values():

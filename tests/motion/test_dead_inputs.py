@@ -110,12 +110,18 @@ def test_lengths_in_millimetres_change_nothing() -> None:
         np.testing.assert_allclose(metres, millimetres, rtol=0, atol=1e-9)
 
 
+#: Two bars of one length can lie on each other, at a complex input: paths end on a curve there.
+ISOSCELES = {"evans", "hoeken", "pantograph", "five-bar-robot"}
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_every_mechanism_of_the_laws_has_a_complete_list_or_a_reason(name: str) -> None:
     found = dead_inputs_of(mechanism_of(name))
     assert found.cover_all == (found.reason == "")
     for count in found.counts:
-        assert count.paths == count.finite + count.multiple
+        assert count.paths >= count.finite + count.multiple
+        if name not in ISOSCELES:
+            assert count.paths == count.finite + count.multiple
 
 
 def test_change_points_are_listed_to_rounding_and_marked() -> None:
