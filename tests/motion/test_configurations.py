@@ -67,6 +67,10 @@ def test_a_truss_of_three_loops_is_proved_by_its_laman_number() -> None:
     assert (paths["bound"], paths["theorem"]) == (16, "the Laman number of the links")
 
 
+def test_one_loop_needs_no_theorem() -> None:
+    assert lw.example("four-bar").configurations().message == Completeness.PROVED.value
+
+
 def test_three_loops_with_a_slide_are_proved() -> None:
     found = _three_loops_with_a_slide().configurations()
     assert found.completeness is Completeness.PROVED

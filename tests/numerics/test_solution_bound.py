@@ -65,12 +65,12 @@ def test_the_sharper_bound_is_taken_and_named() -> None:
 
 
 def test_no_bound_where_lengths_of_zero_make_the_closures_dependent() -> None:
-    """Two solutions have lengths zero, which general ratios of U_z and V_z do not see."""
-    rows = products(1, 4, 0, 4)
-    columns = (((1,), (0,)), ((-1,), (0,)), ((-1,), (1,)), ((-1,), (1,)), ((1,), (0,)))
+    """Two more solutions have lengths zero, which general ratios of U_z and V_z do not see."""
+    rows = products(1, 0, 0, 4)
+    columns = (((1,), (0,)), ((1,), (0,)), ((1,), (-1,)), ((0,), (-1,)), ((1,), (0,)))
     structure = Structure(rows=rows, columns=columns)
-    assert laman_number(columns, [(1, 4), (2, 0), (3, 4)]) == 0
-    assert len(isolated_roots(structure.random(np.random.default_rng(3)), structure).x) == 2
+    assert laman_number(columns, [(1, 0), (2, 0), (3, 4)]) == 2
+    assert len(isolated_roots(structure.random(np.random.default_rng(3)), structure).x) == 4
     assert bound_by_sums(rows, columns) is None
 
 
