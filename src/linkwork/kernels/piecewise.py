@@ -108,7 +108,7 @@ class Piecewise:
         count = self.powers.shape[1]
         lengths = np.diff(self.breaks)
         half = lengths / (2.0 * _PARTS)
-        largest = 0.0
+        largest = np.zeros(len(lengths))
         for part in range(_PARTS):
             middle = (2 * part + 1) * half
             total = np.zeros(len(lengths))
@@ -119,9 +119,9 @@ class Piecewise:
                         k * (k - 1) * comb(k - 2, j)
                     )
                 total += np.abs(coefficient) * half**j
-            largest = max(largest, float(total.max(initial=0.0)))
-        largest_sine = float((np.abs(self.sines[:, 0]) * self.sines[:, 1] ** 2).max(initial=0.0))
-        return (largest + largest_sine) * (1.0 + 1e-9)
+            largest = np.maximum(largest, total)
+        sine = np.abs(self.sines[:, 0]) * self.sines[:, 1] ** 2
+        return float((largest + sine).max(initial=0.0)) * (1.0 + 1e-9)
 
     def rounding(self, x: Array) -> tuple[Array, Array]:
         """Bounds of the error of computing the value and the first derivative at x (B,)."""
