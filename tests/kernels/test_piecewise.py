@@ -132,7 +132,9 @@ def test_a_function_repeats_itself_or_goes_on_straight(name: str) -> None:
     if law.periodic:
         x = rng.uniform(law.breaks[0], law.breaks[-1], 50)
         for turns in (1, -1, 7, -40):
-            for here, there in zip(law.jet(x)[:2], law.jet(x + turns * law.period)[:2], strict=True):
+            for here, there in zip(
+                law.jet(x)[:2], law.jet(x + turns * law.period)[:2], strict=True
+            ):
                 np.testing.assert_allclose(there, here, rtol=0, atol=1e-11 * (size + law.bend))
         return
     beyond = rng.uniform(0.1, 5.0, 20) * law.period

@@ -144,7 +144,10 @@ def modified_trapezoid(x: Array) -> Array:
             -4 * PI * peak * np.sin(4 * PI * u),
         ],
     ]
-    s, v, a, j = (np.select([half < 1 / 8, half < 3 / 8], rows[:2], rows[2]) for rows in zip(*parts, strict=True))
+    s, v, a, j = (
+        np.select([half < 1 / 8, half < 3 / 8], rows[:2], rows[2])
+        for rows in zip(*parts, strict=True)
+    )
     late = x > 1 / 2
     return np.array([np.where(late, 1 - s, s), v, np.where(late, -a, a), j])
 
