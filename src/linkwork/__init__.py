@@ -35,6 +35,16 @@ if TYPE_CHECKING:
     )
     from linkwork.foundation.newton_trouble import NewtonTrouble
     from linkwork.foundation.status import Status
+    from linkwork.mechanism.contacts import (
+        Belt,
+        Cam,
+        Curve,
+        Gear,
+        Rack,
+        Rolling,
+        Segment,
+        Weld,
+    )
     from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
     from linkwork.numerics.newton import NewtonOptions
     from linkwork.results.check import CheckReport
@@ -77,6 +87,16 @@ else:
             ),
             "foundation.newton_trouble": ("NewtonTrouble",),
             "foundation.status": ("Status",),
+            "mechanism.contacts": (
+                "Belt",
+                "Cam",
+                "Curve",
+                "Gear",
+                "Rack",
+                "Rolling",
+                "Segment",
+                "Weld",
+            ),
             "mechanism.parts": ("Cylinder", "Input", "Slider", "Slot"),
             "numerics.newton": ("NewtonOptions",),
             "results.check": ("CheckReport",),
@@ -98,7 +118,9 @@ else:
 __all__ = [
     "AngleUnit",
     "AssurGroup",
+    "Belt",
     "Branch",
+    "Cam",
     "Certificate",
     "Certification",
     "CheckReport",
@@ -108,9 +130,11 @@ __all__ = [
     "Classification",
     "Completeness",
     "Configurations",
+    "Curve",
     "Cylinder",
     "ExpressionError",
     "Failure",
+    "Gear",
     "Input",
     "InputError",
     "Inversion",
@@ -130,13 +154,17 @@ __all__ = [
     "PathCount",
     "Position",
     "Problem",
+    "Rack",
     "Remedy",
+    "Rolling",
+    "Segment",
     "Series",
     "Slider",
     "Slot",
     "Status",
     "Table",
     "UnknownNameError",
+    "Weld",
     "example",
     "example_text",
     "examples",

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.equations.model import LoopEquations
 from linkwork.expression.grammar import parse
 from linkwork.expression.values import value
+from tests.laws.contacts import KINDS, contact
 
 CASES = {
     name: lw.example(name)
@@ -31,10 +34,34 @@ CASES = {
 }
 
 
+CASES |= {kind: contact(kind, 5) for kind in KINDS}
+CASES |= {
+    "cam angle as unknown": contact("cam by its follower, sliding roller", 6).changed(
+        inputs=lw.Input(slider="s", start=50, stop=51, step=1)
+    )
+}
+
+
 def printed(entry: str, names: dict[str, float], unit: lw.AngleUnit) -> float:
     """The number that a printed entry stands for; ``cos x`` takes its angle without brackets."""
     text = re.sub(r"(cos|sin) ([^ ·)]+)", r"\1(\2)", entry.replace("°", ""))
     return value(parse(text), names, unit)
+
+
+def without_laws(entry: str, equations: LoopEquations, names: dict[str, float]) -> str:
+    """An entry with numbers instead of derivatives of laws: ``x_u'(θ_u)``."""
+    laws = {law.shown: law for law in equations.laws}
+    kinds = {v.symbol: v.kind for v in equations.variables}
+
+    def number(match: re.Match[str]) -> str:
+        law = laws[match[1]]
+        angle = kinds[law.inner[0][0]] == "angle"
+        argument = printed(match[3], names, equations.angle)
+        argument *= equations.angle.radians if angle else 1.0
+        order = len(match[2]) - law.primes
+        return f"({law.law.jet(np.array([argument]))[order][0]:.17f})"
+
+    return re.sub(r"(\w+)('+)\(([^()]*)\)", number, entry)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -54,10 +81,26 @@ def test_every_printed_entry_is_the_entry_that_is_used(case: str) -> None:
     # fixed angles are printed to 1e-6 degrees
     for row, texts in zip(jacobian, entries, strict=True):
         for exact, text in zip(row, texts, strict=False):
-            assert printed(text, names, unit) == pytest.approx(exact, rel=1e-6, abs=1e-6)
+            entry = without_laws(text, equations, names)
+            assert printed(entry, names, unit) == pytest.approx(exact, rel=1e-6, abs=1e-6)
 
 
 def test_conjugate_rows_are_conjugate() -> None:
     sheet = CASES["complex factors"].equations().to_dict()["jacobian_complex"]["text"]
     assert sheet[0][0] == "(3 + 1·i)·e^(it)"
     assert sheet[1][0] == "(3 - 1·i)·e^(-it)"
+
+
+def test_a_law_is_printed_with_what_it_is() -> None:
+    lines = CASES["cam by its follower, swinging flat"].equations().text().split("\n")
+    k = lines.index('Equation "law"')
+    words = " ".join(line.strip() for line in lines[k + 1 : k + 5])
+    assert re.match(
+        r"θ_arm [+-] [0-9.]+° [+-] law\(θ_cam [+-] [0-9.]+°\) = 0 "
+        r"where law is the follower's motion (against the direction of its measure, )?"
+        r"as the cam turns: [-a-z0-9 ]+ over 120 by 8.0, dwell over 50, "
+        r"[-a-z0-9 ]+ over 140 by -8.0, dwell over 50",
+        words,
+    )
+    latex = CASES["cam by its follower, swinging flat"].equations().latex()
+    assert r"\mathrm{law}\left(\theta_{cam}" in latex

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from itertools import combinations
 
@@ -13,29 +12,14 @@ import pytest
 import linkwork as lw
 from linkwork.foundation.angles import AngleUnit
 from linkwork.mechanism.linkage import Linkage
-from linkwork.results.motion import Series
 from linkwork.results.quantity import Kind
 from linkwork.results.table import table_of
+from tests.laws.agreement import CLOSE, agree, angles_of, internal, series_of
 from tests.laws.mechanisms import NAMES, mechanism_of, motion_of, size_of
 from tests.laws.transforms import mirrored, scaled, turned
 
 Array = npt.NDArray[np.float64]
 every = pytest.mark.parametrize("name", NAMES)
-# Residuals stay below 1e-14 of the longest link; the largest condition number on these
-# cycles is a few hundred (twenty in the library away from dead points).
-CLOSE = 1e-11
-
-
-def series_of(motion: lw.Motion) -> Iterator[Series]:
-    for table in (motion.unknowns, motion.links, motion.sliders, motion.outputs):
-        yield from table.values()
-    for pair in motion.points.values():
-        yield from pair
-
-
-def internal(motion: lw.Motion, series: Series) -> Array:
-    """Values with angles in radians."""
-    return series.value * motion.units.scale(series.quantity.kind)
 
 
 @every
@@ -61,42 +45,6 @@ def test_distances_between_points_of_one_link_hold_over_the_cycle(name: str) -> 
             np.testing.assert_allclose(span, wanted, rtol=0, atol=1e-12 * size_of(mechanism))
             checked += 1
     assert checked
-
-
-def agree(one: lw.Motion, other: lw.Motion, sign: float, turn: float, factor: float) -> None:
-    """``other`` is the mirrored (sign -1), turned and scaled ``one``."""
-    np.testing.assert_array_equal(one.found, other.found)
-    assert one.status == other.status
-    found = one.found
-    size = max(1.0, *(float(np.abs(t[found]).max()) for t in traces(one)))
-    for point in one.points:
-        z = one.trace(point)[found]
-        wanted = factor * (z if sign > 0 else z.conj()) * np.exp(1j * turn)
-        np.testing.assert_allclose(
-            other.trace(point)[found], wanted, rtol=0, atol=CLOSE * factor * size
-        )
-    unit = one.units.scale(Kind.ANGLE)
-    for link in one.links:
-        before, after = (np.exp(1j * unit * m.links[link].value[found]) for m in (one, other))
-        wanted = (before if sign > 0 else before.conj()) * np.exp(1j * turn)
-        np.testing.assert_allclose(after, wanted, rtol=0, atol=CLOSE)
-    for slider in one.sliders:
-        before, after = (m.sliders[slider].value[found] for m in (one, other))
-        np.testing.assert_allclose(after, factor * before, rtol=0, atol=CLOSE * factor * size)
-
-
-def traces(motion: lw.Motion) -> list[npt.NDArray[np.complex128]]:
-    return [motion.trace(p) for p in motion.points] or [np.ones(len(motion), dtype=complex)]
-
-
-def angles_of(motion: lw.Motion) -> dict[str, Array]:
-    """Unknown angles [rad] in rows that were found."""
-    scale = motion.units.scale(Kind.ANGLE)
-    return {
-        name: series.value[motion.found] * scale
-        for name, series in motion.unknowns.items()
-        if series.quantity.kind is Kind.ANGLE
-    }
 
 
 @every

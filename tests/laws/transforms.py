@@ -87,8 +87,53 @@ def _changed_linkage(
             ),
             inputs=_inputs(mechanism, factor, sign, turn),
             outputs={},
+            **_changed_contacts(description, factor, sign),
         )
     )
+
+
+def _changed_contacts(description: Linkage, factor: float, sign: float) -> dict[str, Any]:
+    """Welds, gears, belts, racks, rolling wheels, cams and curves, scaled and mirrored."""
+    numbers = description.numbers
+
+    def length(given: Any) -> Any:
+        return None if given is None else factor * numbers(given)
+
+    def angle(given: Any) -> Any:
+        return None if given is None else sign * numbers(given)
+
+    def wheels(pair: Any) -> Any:
+        radii = None if pair.radii is None else tuple(map(length, pair.radii))
+        return replace(pair, radii=radii, phase=angle(pair.phase))
+
+    def outline(points: Any) -> Any:
+        return tuple((length(x), sign * length(y)) for x, y in points)
+
+    def cam(part: lw.Cam) -> lw.Cam:
+        # a mirrored cam turns the other way: its follower does everything backwards
+        ahead = part.segments if sign > 0 else part.segments[::-1]
+        size = factor if part.slider is not None else 1.0
+        return replace(
+            part,
+            radius=length(part.radius),
+            base=length(part.base),
+            start=angle(part.start),
+            segments=tuple(replace(s, lift=sign * size * numbers(s.lift)) for s in ahead),
+            profile=outline(part.profile),
+        )
+
+    return {
+        "welds": tuple(replace(w, angle=angle(w.angle)) for w in description.welds),
+        "gears": tuple(map(wheels, description.gears)),
+        "belts": tuple(map(wheels, description.belts)),
+        "racks": tuple(replace(r, radius=length(r.radius)) for r in description.racks),
+        "rolling": tuple(
+            replace(r, radius=length(r.radius), circle_radius=length(r.circle_radius))
+            for r in description.rolling
+        ),
+        "cams": tuple(map(cam, description.cams)),
+        "curves": tuple(replace(c, through=outline(c.through)) for c in description.curves),
+    }
 
 
 def _inputs(

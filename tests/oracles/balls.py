@@ -13,7 +13,9 @@ import numpy as np
 import numpy.typing as npt
 from flint import acb, arb, arb_mat, ctx, fmpq
 
+from linkwork.kernels.law_row import LawRow
 from linkwork.kernels.loop_table import LoopTable
+from tests.oracles.ball_laws import ball_jet
 
 __all__ = ["BallTable", "ball", "certainly_above", "exactly", "newton"]
 
@@ -40,11 +42,12 @@ def certainly_above(exact: arb, claimed: float) -> bool:
 
 
 class BallTable:
-    """A loop table without function rows."""
+    """A loop table; of function rows only laws, and those not in ``bend`` and ``defect``."""
 
     def __init__(self, table: LoopTable) -> None:
         ctx.prec = BITS
-        assert not table.functions
+        self.laws = [row for row in table.functions if isinstance(row, LawRow)]
+        assert len(self.laws) == len(table.functions)
         self.loops, self.unknowns = table.loops.rows, table.unknowns
         self.variables, self.equations = table.variables, table.equations
         rows = table.loops
@@ -77,7 +80,7 @@ class BallTable:
         return c * acb(angle.cos(), angle.sin())
 
     def residual(self, v: Balls) -> Balls:
-        """F: real parts, imaginary parts, linear rows."""
+        """F: real parts, imaginary parts, linear rows, laws."""
         total = [acb(0)] * self.loops
         for row, c, length, phase in self.terms:
             z = self._phasor(c, phase, v)
@@ -85,6 +88,9 @@ class BallTable:
         lines = list(self.constants)
         for r, k, w in self.lines:
             lines[r] += w * v[k]
+        for law in self.laws:
+            straight = arb(law.constant) + _sum(law, law.weights, v)
+            lines.append(straight - ball_jet(law.law, _argument(law, v))[0])
         return [z.real for z in total] + [z.imag for z in total] + lines
 
     def jacobian(self, v: Balls) -> arb_mat:
@@ -100,12 +106,19 @@ class BallTable:
         lines = [[arb(0)] * self.variables for _ in self.constants]
         for r, k, w in self.lines:
             lines[r][k] += w
+        for law in self.laws:
+            row_of_law = [arb(0)] * self.variables
+            steep = ball_jet(law.law, _argument(law, v))[1]
+            for k, a, w in zip(law.variables, law.weights, law.inner, strict=True):
+                row_of_law[k] += arb(float(a)) - steep * arb(float(w))
+            lines.append(row_of_law)
         real = [[z.real for z in row] for row in slope]
         imaginary = [[z.imag for z in row] for row in slope]
         return arb_mat(real + imaginary + lines)
 
     def bend(self, v: Balls, matrix: Array) -> Balls:
         """Σ_jk |(A ∂²F/∂x_j∂x_k)_i| w_j w_k / w_i over the unknowns, row by row."""
+        assert not self.laws
         n = self.unknowns
         second: dict[tuple[int, int, int], acb] = {}
 
@@ -192,6 +205,7 @@ class BallTable:
         Coefficients, times the middles of variable lengths, are added behind A before a phasor is
         taken, so that boxes stay tight.
         """
+        assert not self.laws
         n = self.unknowns
         product = []
         for i in range(n):
@@ -228,6 +242,17 @@ class BallTable:
             / self.weights[i]
             for i, row in enumerate(product)
         ]
+
+
+def _sum(law: LawRow, weights: Array, v: Balls) -> arb:
+    total = arb(0)
+    for k, w in zip(law.variables, weights, strict=True):
+        total += v[k] * arb(float(w))
+    return total
+
+
+def _argument(law: LawRow, v: Balls) -> arb:
+    return _sum(law, law.inner, v) + arb(law.offset)
 
 
 def newton(table: BallTable, v: Balls, steps: int = 60) -> tuple[Balls, bool]:

@@ -76,6 +76,12 @@ def _sliding(cam: Cam, guide: Slider | Slot, frames: Frames, motion: Piecewise) 
             f"base circle{' with the roller' if roller else ''} reaches only {base + roller:.6g}"
         )
     low = base if flat else math.sqrt((base + roller) ** 2 - e**2)
+    deepest = float(motion(motion.breaks).min())
+    if low + deepest <= 0.0:
+        return (
+            f"is too small: the segments lead the follower {-deepest:.6g} towards the cam's centre, "
+            f"which is only {low:.6g} away"
+        )
 
     def place(s: Array, s1: Array, s2: Array) -> tuple[ComplexArray, ...]:
         path: list[ComplexArray] = [
@@ -120,6 +126,13 @@ def _swinging(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
             f"the cam's centre cannot touch a circle of {base + roller:.6g}"
         )
     low = math.asin(base / d) if flat else math.acos(cosine)
+    swing = low + motion(motion.breaks)
+    if swing.min() <= 0.0 or swing.max() >= math.pi:
+        unit = linkage.angle
+        return (
+            f"does not fit: on it the arm stands {unit.from_radians(low):.6g} {unit.value} beside "
+            "the line from the pivot to the cam's centre, and the segments swing it across that line"
+        )
     pivot, center, tip = (linkage.sketched(q) for q in (cam.pivot, cam.center, cam.point))
     sign = math.copysign(1.0, ((tip - pivot) * (center - pivot).conjugate()).imag)
     line = cmath.phase(ground)

@@ -14,16 +14,22 @@ from linkwork.mechanism.motion_laws import pieces_of
 
 __all__ = ["FollowerPath", "Undercut", "program"]
 
-_SAMPLES = 1440  # positions of the cam at which its outline is looked at
+_SAMPLES = 1440  # positions of the cam at which its outline is drawn
+_PARTS = 16  # of every piece of the motion, at which the outline is looked at besides
 
 
 def program(segments: Sequence[tuple[str, float, float]]) -> Piecewise:
     """The follower's motion as a function of the cam's angle from 0 to 2π.
 
-    ``segments``: law, angle of the cam [rad] and lift, one after the other.
+    ``segments``: law, angle of the cam [rad] and lift, one after the other. Angles are stretched to
+    one turn altogether and the last lift brings the follower back, so that the function is smooth
+    where it repeats itself; what was given has to agree with that nearly.
     """
     breaks, powers, sines, height = [0.0], [], [], 0.0
-    for law, over, lift in segments:
+    stretch = 2.0 * math.pi / sum(over for _, over, _ in segments)
+    last = max((k for k, (_, _, lift) in enumerate(segments) if lift), default=-1)
+    for number, (law, given, rise) in enumerate(segments):
+        over, lift = given * stretch, -height if number == last else rise
         begin = breaks[-1]
         done = 0.0
         for piece in pieces_of(law):
@@ -42,11 +48,11 @@ def program(segments: Sequence[tuple[str, float, float]]) -> Piecewise:
 
 
 class Undercut(Exception):
-    """The outline would cut into itself; ``where`` [rad] of the cam's turn, ``radius`` there."""
+    """The outline would cut into itself; ``where`` [rad] of the cam's turn."""
 
-    def __init__(self, where: float, radius: float) -> None:
-        super().__init__(where, radius)
-        self.where, self.radius = where, radius
+    def __init__(self, where: float) -> None:
+        super().__init__(where)
+        self.where = where
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -71,17 +77,22 @@ class FollowerPath:
     flat: bool = False
 
     def outline(self) -> ComplexArray:
-        """The cam's outline in its own frame about its centre, as it stands at φ = 0.
+        """The cam's outline in its own frame about its centre, as it stands at φ = 0, (K,).
 
         Raises
         ------
         Undercut
             If no outline makes the follower move like that.
         """
-        phi = np.linspace(0.0, 2.0 * np.pi, _SAMPLES, endpoint=False)
+        drawn = np.linspace(0.0, 2.0 * np.pi, _SAMPLES, endpoint=False)
+        pieces = np.diff(self.motion.breaks)[:, None] * (np.arange(_PARTS) + 0.5) / _PARTS
+        phi = np.union1d(drawn, self.motion.breaks[:-1, None] + pieces)
+        surface = self._face(phi) if self.flat else self._beside(phi)
+        return surface[np.isin(phi, drawn)]
+
+    def _beside(self, phi: Array) -> ComplexArray:
+        """What a knife edge or a roller leaves: a parallel to the path of its centre."""
         back = np.exp(-1j * phi)
-        if self.flat:
-            return self._face(phi, back)
         w, w1, w2 = self.place(*self.motion.jet(phi))
         z, z1 = w * back, (w1 - 1j * w) * back
         z2 = (w2 - 2j * w1 - w) * back
@@ -90,20 +101,23 @@ class FollowerPath:
         if self.roller:
             worst = int(bend.argmax())
             if bend[worst] * self.roller >= 1.0:
-                raise Undercut(float(phi[worst]), 1.0 / float(bend[worst]))
+                raise Undercut(float(phi[worst]))
         surface: ComplexArray = z - self.roller * 1j * z1 / np.abs(z1)
         return surface
 
-    def _face(self, phi: Array, back: ComplexArray) -> ComplexArray:
+    def _face(self, phi: Array) -> ComplexArray:
         """What a straight face leaves uncut: its envelope."""
+        back = np.exp(-1j * phi)
         w, w1, _, d, d1 = self.place(*self.motion.jet(phi))
         z1 = w1 - 1j * w
-        turned = d1 - 1j * d
-        along = -(d.conj() * z1).imag / (d.conj() * turned).imag
-        surface: ComplexArray = (w + along * d) * back
+        turned = (d.conj() * (d1 - 1j * d)).imag  # how fast the face turns against the cam
+        still = np.flatnonzero(turned >= 0.0)
+        if len(still):
+            raise Undercut(float(phi[still[0]]))
+        surface: ComplexArray = (w - (d.conj() * z1).imag / turned * d) * back
         ways = ((np.roll(surface, -1) - np.roll(surface, 1)) * (d * back).conj()).real
         majority = np.sign(np.median(ways))
         wrong = np.flatnonzero(ways * majority <= 0.0)
         if len(wrong):
-            raise Undercut(float(phi[wrong[0]]), 0.0)
+            raise Undercut(float(phi[wrong[0]]))
         return surface

@@ -85,7 +85,7 @@ class Contacts:
         numbers = self.frames.linkage.numbers
         sizes = pair.radii if pair.radii is not None else pair.teeth
         assert sizes is not None
-        p, q = _ratio(numbers(sizes[0]), numbers(sizes[1]))
+        p, q = _ratio(*map(numbers, sizes))
         together = pair.internal if isinstance(pair, Gear) else not pair.crossed
         p = -p if together else p
         phase = None
@@ -181,6 +181,12 @@ class Contacts:
         start = frames.linkage.numbers(cam.start) * radians
         turned, at = frames.angles_of([(cam.cam, 1.0), (found.frame, -1.0)])
         swung, off = frames.angles_of(found.angles)
+        if not turned:
+            self._held(cam.cam, found.frame, (*key, "cam"))
+            return
+        if not found.length and not swung:
+            self._held(str(cam.link), found.frame, (*key, "link"))
+            return
         constant = found.constant + off
         if not found.length:  # the same angle may be so many turns away
             now = sum(weight * frames.start[name] for name, weight in swung.items())
@@ -206,11 +212,16 @@ class Contacts:
             roller = " or a smaller roller" if cam.contact == "roller" else ""
             self.problems.add(
                 (*key, "segments"),
-                f"undercut the cam {where:.4g} {frames.linkage.angle.value} after their beginning: "
+                f"undercut the cam {where:.4g} {frames.linkage.angle.value} after they begin: "
                 f"its outline would cut into itself; take a larger base circle{roller}",
             )
             return
         self.outlines[cam.name] = (cam.cam, cam.center, outline)
+
+    def _held(self, link: str, frame: str, key: Key) -> None:
+        self.problems.add(
+            key, f'"{link}" cannot turn against "{frame}": a slider or a weld holds its angle'
+        )
 
     # Curves
 
@@ -236,6 +247,7 @@ class Contacts:
             assert guide is not None
             point = guide.points[0] if isinstance(guide, Slider) else guide.point
         assert point is not None
+        self._check_hollows(cam, outline, (*key, "profile"))
         at = (cam.cam, cam.center)
         if cam.contact == "flat":
             self._flat(cam, at, point, outline, key)
@@ -244,6 +256,22 @@ class Contacts:
         if cam.contact == "roller":
             place = self._beside(cam, at, point, place, outline)
         self._put(cam.cam, point, place, key)
+
+    def _check_hollows(self, cam: Cam, outline: Outline, key: Key) -> None:
+        """A face or a large roller bridges a hollow and would touch it in two places."""
+        place, bend = outline.deepest()
+        where = f"({place.real:.4g}, {place.imag:.4g})"
+        if cam.contact == "flat" and bend <= 0.0:
+            self.problems.add(
+                key, f"is hollow at {where}: a flat face bridges it; round the outline there"
+            )
+        size = self.frames.linkage.numbers(cam.radius)
+        if 1.0 + size * bend <= 0.0:
+            self.problems.add(
+                key,
+                f"is too hollow at {where}: its radius there is {-1.0 / bend:.4g}, smaller than "
+                "that of the roller",
+            )
 
     def _put(self, body: str, point: str, place: Place, key: Key) -> None:
         if point in self.frames.places[body]:

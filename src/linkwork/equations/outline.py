@@ -13,6 +13,7 @@ from linkwork.kernels.piecewise import Piecewise
 __all__ = ["Outline"]
 
 _SAMPLES = 16  # of every piece, among which the nearest place is sought
+_FINE = 64  # of every piece, among which the least rounded place is sought
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -50,6 +51,20 @@ class Outline:
         breaks = self.x.breaks
         return np.linspace(breaks[0], breaks[-1], count or _SAMPLES * (len(breaks) - 1) + 1)
 
+    def bend(self, u: Array) -> Array:
+        """Curvature [1/length], positive where the curve turns to the left."""
+        x, y = self.x.jet(u), self.y.jet(u)
+        across: Array = x[1] * y[2] - y[1] * x[2]
+        bend: Array = across / np.hypot(x[1], y[1]) ** 3
+        return bend
+
+    def deepest(self) -> tuple[complex, float]:
+        """Where a closed curve is most hollow, or else least rounded, and its curvature there."""
+        u = self.samples(_FINE * (len(self.x.breaks) - 1) + 1)
+        bend = self.bend(u)
+        k = int(bend.argmin())
+        return complex(self.at(u[k : k + 1])[0]), float(bend[k])
+
     def nearest(self, point: complex) -> float:
         """The place of a sample that lies nearest to a point."""
         u = self.samples()
@@ -60,22 +75,15 @@ def _spline(u: Array, values: Array, closed: bool) -> Piecewise:
     """The cubic spline with two continuous derivatives (de Boor, A Practical Guide to Splines)."""
     h = np.diff(u)
     chords = np.diff(values) / h
-    count = len(h) if closed else len(u)
-    matrix, right = np.zeros((count, count)), np.zeros(count)  # for second derivatives
+    second = np.zeros(len(u))
     if closed:
-        for k in range(count):
-            matrix[k, k] += 2.0 * (h[k - 1] + h[k])
-            matrix[k, k - 1] += h[k - 1]
-            matrix[k, (k + 1) % count] += h[k]
-            right[k] = 6.0 * (chords[k] - chords[k - 1])
+        before = np.roll(h, 1)
+        right = 6.0 * (chords - np.roll(chords, 1))
+        second[:-1] = _solved_around(before, 2.0 * (before + h), h, right)
+        second[-1] = second[0]
     else:
-        matrix[0, 0] = matrix[-1, -1] = 1.0
-        for k in range(1, count - 1):
-            matrix[k, k - 1 : k + 2] = h[k - 1], 2.0 * (h[k - 1] + h[k]), h[k]
-            right[k] = 6.0 * (chords[k] - chords[k - 1])
-    second = np.linalg.solve(matrix, right)
-    if closed:
-        second = np.append(second, second[0])
+        right = 6.0 * np.diff(chords)[:, None]
+        second[1:-1] = _solved(h[:-1], 2.0 * (h[:-1] + h[1:]), h[1:], right)[:, 0]
     powers = np.stack(
         [
             values[:-1],
@@ -86,3 +94,31 @@ def _spline(u: Array, values: Array, closed: bool) -> Piecewise:
         axis=1,
     )
     return Piecewise(breaks=u, powers=powers, sines=np.zeros((len(h), 3)), periodic=closed)
+
+
+def _solved(low: Array, middle: Array, high: Array, right: Array) -> Array:
+    """x (K, R) of low_k x_{k-1} + middle_k x_k + high_k x_{k+1} = right_k, (K, R).
+
+    Elimination without exchange of rows: the middle outweighs its neighbours.
+    """
+    middle, right = middle.copy(), right.copy()
+    for k in range(1, len(middle)):
+        factor = low[k] / middle[k - 1]
+        middle[k] -= factor * high[k - 1]
+        right[k] -= factor * right[k - 1]
+    for k in range(len(middle) - 1, -1, -1):
+        if k + 1 < len(middle):
+            right[k] -= high[k] * right[k + 1]
+        right[k] /= middle[k]
+    return right
+
+
+def _solved_around(low: Array, middle: Array, high: Array, right: Array) -> Array:
+    """The same where the first and the last are neighbours: x (K,), by the last one's influence."""
+    corner = np.zeros(len(middle) - 1)
+    corner[0], corner[-1] = low[0], corner[-1] + high[-2]
+    inner = np.stack([right[:-1], corner], axis=1)
+    own, by_last = _solved(low[:-1], middle[:-1], high[:-1], inner).T
+    last = right[-1] - low[-1] * own[-1] - high[-1] * own[0]
+    last /= middle[-1] - low[-1] * by_last[-1] - high[-1] * by_last[0]
+    return np.append(own - by_last * last, last)

@@ -99,7 +99,7 @@ class EquationSheet:
 
     @staticmethod
     def _weighted(weight: float, name: str) -> str:
-        return name if weight == 1 else f"{weight:g}{name}"
+        return name if weight == 1 else f"{number_text(weight)}{name}"
 
     def complex_jacobian(self, notation: Notation) -> Matrix:
         """Loops, then their conjugates, by the unknowns."""

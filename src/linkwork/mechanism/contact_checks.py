@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from linkwork.foundation.errors import choices
 from linkwork.mechanism.contacts import Belt, Cam, Curve, Gear, Rack, Rolling, Weld
+from linkwork.mechanism.motion_laws import LAWS
 from linkwork.mechanism.parts import Number, Slider, Slot
 
 if TYPE_CHECKING:
@@ -19,6 +20,8 @@ __all__ = ["check_contacts", "check_distances", "guide_named"]
 
 Key = tuple[str | int, ...]
 _AGREE = 1e-9  # relative: radii and the distance of centres must agree to this
+_SHORTEST = 1e-6  # of a turn: parts of a cam's motion are longer
+_MOST_TEETH = 1_000_000
 
 
 def check_contacts(linkage: Linkage, problems: Problems) -> None:
@@ -152,6 +155,8 @@ class _Checker:
         sizes = [self._positive(number, (*key, field), field) for number in given]
         if field == "teeth" and any(size != round(size) for size in sizes if size > 0):
             self.problems.add((*key, "teeth"), "must be whole numbers")
+        elif field == "teeth" and max(sizes) > _MOST_TEETH:
+            self.problems.add((*key, "teeth"), f"are too many: at most {_MOST_TEETH}")
         ring = isinstance(pair, Gear) and pair.internal
         if ring and sizes[0] == sizes[1] and sizes[0] > 0:
             message = "are equal: a wheel inside a ring is smaller than the ring"
@@ -265,6 +270,12 @@ class _Checker:
                     (*key, "center"),
                     f'"{guide.on}", along which the follower slides, does not carry {cam.center}',
                 )
+            elif cam.contact == "flat" and isinstance(guide, Slot):
+                self.problems.add(
+                    (*key, "contact"),
+                    f'"{guide.name}" is a slot, whose pin has no face: a flat follower needs a '
+                    "slider",
+                )
             for field in ("pivot", "point"):
                 if getattr(cam, field) is not None:
                     self.problems.add((*key, field), "goes with link, not with slider")
@@ -306,8 +317,14 @@ class _Checker:
             here = (*key, "segments", k)
             over = check(self.problems.add, (*here, "over"), segment.over)
             lift = check(self.problems.add, (*here, "lift"), segment.lift)
+            if segment.law not in LAWS:
+                message = f"must be one of {', '.join(LAWS)}, got {segment.law}"
+                self.problems.add((*here, "law"), message)
             if over <= 0:
                 message = f"must be a positive angle, got {over:g}"
+                self.problems.add((*here, "over"), message)
+            elif over < _SHORTEST * unit.turn:
+                message = f"{over:g} is too small: at least {_SHORTEST * unit.turn:g}"
                 self.problems.add((*here, "over"), message)
             if from_law[k] == "dwell" and lift:
                 self.problems.add((*here, "lift"), "must be 0: a dwell moves nothing")

@@ -212,5 +212,6 @@ def names_of(part: Gear | Belt | Rack | Rolling | Cam | Curve) -> tuple[str, ...
     elif isinstance(part, Cam) and part.profile:
         added = ("x", "y")
         if part.contact != "knife":
-            added += ("dx", "dy", "speed", "normal" if part.contact == "roller" else "way")
+            added += ("dx", "dy", "speed")
+            added += ("normal",) if part.contact == "roller" else ("way", "contact")
     return (part.name, *(f"{part.name}_{word}" for word in added))

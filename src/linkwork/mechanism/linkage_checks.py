@@ -194,6 +194,11 @@ def _check_guided_once(linkage: Linkage, problems: Problems) -> None:
             for k, s in enumerate(linkage.sliders)
             if s.points
         ),
+        *(
+            (("rolling", k, "center"), part.name, part.center, part.on)
+            for k, part in enumerate(linkage.rolling)
+            if part.line is not None
+        ),
     ]
     first: dict[tuple[str, str], str] = {}
     for key, name, point, on in guides:

@@ -250,8 +250,11 @@ def _discs(linkage: Linkage) -> Iterator[Disc]:
             point = cam.point
             if guide is not None:
                 point = guide.points[0] if isinstance(guide, Slider) else guide.point
-            link = cam.link or (guide.link if isinstance(guide, Slider) else "")
             assert point is not None
+            link = cam.link or next(
+                guide.link if isinstance(guide, Slider) else body
+                for body in linkage.carriers()[point]
+            )
             yield Disc(
                 name=cam.name, link=link, center=point, radius=numbers(cam.radius), kind="roller"
             )

@@ -188,11 +188,11 @@ def _list_text(kind: ListOf) -> str:
 
 
 def _count_text(kind: ListOf) -> str:
-    words = {0: "no", 1: "one", 2: "two"}
+    words = {0: "no", 1: "one", 2: "two", 3: "three"}
     least, most = words[kind.least], words.get(kind.most or 0)
-    plural = "" if kind.least == kind.most == 1 else "s"
     if kind.most is None:
-        return f"at least {least} {kind.noun}"
+        return f"at least {least} {kind.noun}{'s' if kind.least > 1 else ''}"
+    plural = "" if kind.least == kind.most == 1 else "s"
     return f"{least if least == most else f'{least} or {most}'} {kind.noun}{plural}"
 
 
