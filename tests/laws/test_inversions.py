@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -15,6 +15,12 @@ from linkwork.mechanism.inversion import inverted
 from linkwork.mechanism.linkage import Linkage
 from tests.laws.mechanisms import NAMES, mechanism_of, motion_of, size_of
 
+#: Ground or a wheel has one point only, or a curve belongs to the frame of a link.
+NOT_CARRIED = frozenset({
+    "belt-drive", "cam-roller-follower", "cam-swinging-follower", "cardan-circles", "curved-slot",
+    "eccentric-cam", "garage-door", "planetary-differential", "planetary-gear", "rack-steering",
+    "rolling-inside",
+})  # fmt: skip
 LINKED = tuple(name for name in NAMES if isinstance(mechanism_of(name).description, Linkage))
 
 
@@ -54,8 +60,14 @@ def test_an_inversion_has_the_same_relative_motion(name: str) -> None:
 def test_the_inversion_of_an_inversion_is_the_mechanism(name: str) -> None:
     """Back on the old ground, every point moves as before but for where the axes are."""
     mechanism, motion = mechanism_of(name), motion_of(name)
+    # formulas grow with every change of ground
+    mechanism = lw.Mechanism(replace(mechanism.description, outputs={}))
     ground = mechanism.description.links["ground"]
-    entry = next(e for e in mechanism.inversions() if e.ground != "ground" and not e.problem)
+    others = [e for e in mechanism.inversions() if e.ground != "ground"]
+    if all(e.problem for e in others):
+        assert name in NOT_CARRIED
+        return
+    entry = next(e for e in others if not e.problem)
     back = mechanism.inversion(entry.ground).inversion("frame").sweep(certify=False)
     for point in mechanism.description.points:
         before = _seen_from(motion, ground, point)

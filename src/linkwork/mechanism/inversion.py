@@ -9,6 +9,7 @@ from typing import Any
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import canonical
+from linkwork.mechanism.contacts import names_of
 from linkwork.mechanism.inverted_values import Frame, inverted_input, inverted_output
 from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.mechanism.parts import Input, Number, Slider
@@ -18,8 +19,10 @@ __all__ = ["inverted", "settled"]
 #: What a linkage may hold and still be inverted; anything else might refer to the old ground.
 _CARRIED = frozenset({
     "points", "links", "lengths", "angles", "slots", "sliders", "cylinders", "inputs", "outputs",
-    "trace", "dimensions",
+    "trace", "dimensions", "welds", "gears", "belts", "racks", "rolling",
 })  # fmt: skip
+
+_NAMED = ("gears", "belts", "racks", "rolling", "cams", "curves")
 
 Places = Mapping[str, complex]
 Coordinates = tuple[Number, ...]
@@ -89,6 +92,13 @@ def _check_carried(linkage: Linkage) -> None:
             f"an inversion of {linkage.name} would have to carry [{held[0]}] to another ground, "
             "which it cannot: remove it, or write the inversion by hand"
         )
+    for wheel in linkage.links:
+        if wheel in linkage.turning_on_one_point - {GROUND} and len(linkage.links[wheel]) < 2:
+            (point,) = linkage.links[wheel]
+            raise InputError(
+                f'"{wheel}" has only the point {point}, so its direction cannot be carried to '
+                "another ground: add a second point to it"
+            )
     if len(linkage.links[GROUND]) < 2:
         (point,) = linkage.links[GROUND]
         raise InputError(
@@ -116,6 +126,7 @@ class _Inverting:
                 linkage.outputs,
                 (slot.name for slot in linkage.slots),
                 (slider.name for slider in linkage.sliders),
+                *(names_of(p) for kind in _NAMED for p in getattr(linkage, kind)),
                 (cylinder.name for cylinder in linkage.cylinders),
                 (c.angle_name for c in linkage.cylinders),
             )
@@ -166,6 +177,7 @@ class _Inverting:
             "angles": self._angles(),
             "slots": slots,
             "sliders": sliders,
+            **self._contacts(),
             "inputs": inputs if which is None else (which,),
             "outputs": {
                 name: inverted_output(linkage, formula, frame)
@@ -190,6 +202,29 @@ class _Inverting:
 
     def _name(self, link: str) -> str:
         return {GROUND: self.frame, self.link: GROUND}.get(link, link)
+
+    def _contacts(self) -> dict[str, tuple[object, ...]]:
+        """Welds and wheels between the same links; angles between them as they are assembled."""
+        linkage, name = self.linkage, self._name
+
+        def both(links: tuple[str, str]) -> tuple[str, str]:
+            return name(links[0]), name(links[1])
+
+        return {
+            "welds": tuple(replace(w, links=both(w.links), angle=None) for w in linkage.welds),
+            "gears": tuple(
+                replace(g, wheels=both(g.wheels), arm=name(g.arm), phase=None)
+                for g in linkage.gears
+            ),
+            "belts": tuple(
+                replace(b, wheels=both(b.wheels), arm=name(b.arm), phase=None)
+                for b in linkage.belts
+            ),
+            "racks": tuple(replace(r, pinion=name(r.pinion)) for r in linkage.racks),
+            "rolling": tuple(
+                replace(r, wheel=name(r.wheel), on=name(r.on)) for r in linkage.rolling
+            ),
+        }
 
     def _slider(self, slider: Slider) -> Slider:
         """The slider; one of the new ground turns round, so that the other link slides on it.
