@@ -371,6 +371,9 @@ def test_long_names_and_many_circuits_have_room():
     assert len(title) > 4
     assert title[-1] == "13 circuits"
     legend = [text.get_text() for entry in page.legends for text in entry.get_texts()]
+    for ax in page.axes:
+        label, inside = ax.yaxis.label.get_window_extent(), ax.get_window_extent()
+        assert inside.y0 <= label.y0 < label.y1 <= inside.y1
     # the last panels have circuits 1 to 3 only, which are in the legend already
     assert legend == [*(f"circuit {k}" for k in range(1, 14)), "change point", "dead point"]
 

@@ -155,6 +155,9 @@ def test_faint_parts_lie_below_everything_else_and_inside_the_picture(sample):
         for x, y in primitive.outline:
             assert scene.box.left <= x <= scene.box.right
             assert scene.box.bottom <= y <= scene.box.top
+    # symbols are measured by all that is shown, not by the start alone
+    for disc in scene.select(Disc, Role.PIN):
+        assert scene.within.distance(disc.centre) == 0
 
 
 def test_what_stands_still_is_drawn_once(sample):

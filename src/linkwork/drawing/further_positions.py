@@ -106,7 +106,7 @@ def driven_point(pose: Pose) -> str:
                 pivot = pose.points[part.pivot or bar.points[0]]
                 wanted += sorted(bar.points, key=lambda name: -abs(pose.points[name] - pivot))
         wanted += [guide.point for guide in skeleton.guides if guide.name == part.name]
-        wanted += [end for s in skeleton.struts if s.name == part.name for end in s.between[::-1]]
+        wanted += [end for s in skeleton.struts if s.name == part.name for end in s.between]
     wanted += skeleton.traced
     most = max(travel, key=lambda name: travel[name])
     return next((name for name in wanted if travel[name] > _SAME * travel[most]), most)
