@@ -10,7 +10,7 @@ import numpy as np
 from linkwork.equations.leading import LeadTable
 from linkwork.foundation.arrays import Array
 from linkwork.motion.model import Model
-from linkwork.motion.tracking import turns_freely
+from linkwork.motion.tracking import unchanged_by
 from linkwork.numerics.curve import CurveOptions, trace
 from linkwork.numerics.proven_curve import prove_curve
 from linkwork.numerics.track import BOLD, InputPath
@@ -19,7 +19,7 @@ __all__ = ["Laps", "laps_to"]
 
 _TURN = 2.0 * np.pi
 _FAR = 3.0  # turns up to which the motion is simply followed
-_OPTIONS = CurveOptions(most_turns=12, most_legs=200, track=replace(BOLD, most_steps=2000))
+_OPTIONS = CurveOptions(most_turns=60, most_legs=200, track=replace(BOLD, most_steps=10_000))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -34,7 +34,7 @@ class Laps:
 
 
 def laps_to(model: Model, v: Array, target: Array) -> Laps | None:
-    """The laps between a position and a far value of a single input that turns freely.
+    """The laps between a position and a far value of a single input angle.
 
     Parameters
     ----------
@@ -49,7 +49,8 @@ def laps_to(model: Model, v: Array, target: Array) -> Laps | None:
         ``None`` if the value is near, or if the motion does not come back to its start while the
         input turns on (one lap may take several turns).
     """
-    if not turns_freely(model):
+    inputs = model.equations.inputs
+    if len(inputs) != 1 or inputs[0].kind != "angle":
         return None
     n, unit = model.compiled.solver.unknowns, model.units.angle.turn
     begin = float(model.everyday_start[0])
@@ -62,9 +63,10 @@ def laps_to(model: Model, v: Array, target: Array) -> Laps | None:
         return None
     gain = curve.legs[-1].v[-1] - v
     turns = round(float(gain[n]) / _TURN)
-    if turns == 0:
+    whole = np.where(leads.turns, np.round(gain / _TURN), 0.0)
+    if turns == 0 or not unchanged_by(model.compiled.table, whole):
         return None
-    gain = np.where(leads.turns, _TURN * np.round(gain / _TURN), 0.0)
+    gain = _TURN * whole
     laps = math.floor(abs(span) / (abs(turns) * unit))
     if laps * abs(turns) * unit == abs(span):
         laps -= 1  # the last one is followed
