@@ -70,6 +70,31 @@ def test_far_values_of_geared_wheels_leave_out_the_laps_that_bring_both_back() -
         assert far["right"] == pytest.approx(near["right"] + laps * 360, abs=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("sizes", "weights"),
+    [
+        ({"teeth": (40, 15)}, (8, 3)),
+        ({"teeth": (100_003, 100_019)}, (100_003, 100_019)),  # two primes
+        ({"radii": (10, 30)}, (1, 3)),
+        ({"radii": (0.7, 0.3)}, (7, 3)),
+        ({"radii": (2 / 3, 4 / 9)}, (3, 2)),
+        ({"radii": (math.pi, 1)}, (math.pi, 1)),
+    ],
+)
+def test_sizes_in_a_ratio_of_whole_numbers_tie_angles_by_these(
+    sizes: dict[str, tuple[float, float]], weights: tuple[float, float]
+) -> None:
+    mechanism = lw.linkage(
+        points=xy(O=0j, P=60 + 0j, A=10 + 0j, B=60 + 12j),
+        links={"ground": ("O", "P"), "left": ("O", "A"), "right": ("P", "B")},
+        belts=(lw.Belt(name="b", wheels=("left", "right"), centers=("O", "P"), **sizes),),  # type: ignore[arg-type]
+        inputs=(lw.Input(link="left"),),
+    )
+    (line,) = mechanism.loop_equations.linear
+    found = dict(line.terms)
+    assert (-found["left"], found["right"]) == weights
+
+
 def test_a_turn_that_a_law_does_not_repeat_is_a_change() -> None:
     table = contact("cam by its follower, swinging knife", 1).model.compiled.table
     arm, cam = 0, table.unknowns

@@ -85,7 +85,7 @@ class Contacts:
         numbers = self.frames.linkage.numbers
         sizes = pair.radii if pair.radii is not None else pair.teeth
         assert sizes is not None
-        p, q = _ratio(*map(numbers, sizes))
+        p, q = _ratio(*map(numbers, sizes), whole=pair.teeth is not None)
         together = pair.internal if isinstance(pair, Gear) else not pair.crossed
         p = -p if together else p
         phase = None
@@ -433,12 +433,15 @@ class Contacts:
         frames.places[body][contact] = Place(own_place.fixed, (*own_place.sliding, term), base=base)
 
 
-def _ratio(first: float, second: float) -> tuple[float, float]:
+def _ratio(first: float, second: float, *, whole: bool = False) -> tuple[float, float]:
     """Two sizes as the smallest whole numbers in their ratio, if there are such; else as they are.
 
     With whole numbers a whole number of turns of one wheel is exactly one of the other.
     """
-    fraction = Fraction(first / second).limit_denominator(_LARGEST)
+    if whole:
+        fraction = Fraction(int(first), int(second))
+    else:
+        fraction = Fraction(first / second).limit_denominator(_LARGEST)
     if fraction > 0 and abs(float(fraction) * second - first) <= _RATIO * first:
         return float(fraction.numerator), float(fraction.denominator)
     return first / second, 1.0

@@ -126,7 +126,9 @@ class _Writer:
                 link, against = against, link
         angle, base = self.frames.angle[link], self.frames.angle[against]
         if angle.variable == base.variable:
-            self.problems.add(key, f'"{link}" cannot turn against "{against}": a slider or a weld holds its angle')
+            self.problems.add(
+                key, f'"{link}" cannot turn against "{against}": a slider or a weld holds its angle'
+            )
         elif (
             kind == "link"
             and base.variable is None
