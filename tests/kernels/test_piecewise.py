@@ -165,6 +165,29 @@ def test_derivatives_agree_with_differences(name: str) -> None:
     )
 
 
+@pytest.mark.parametrize("number", range(6))
+def test_a_turn_of_the_rounded_two_pi_or_of_the_true_one_differ_by_rounding(number: int) -> None:
+    ctx.prec = 200
+    law = random_program(number)
+    rng = np.random.default_rng(number)
+    x = rng.uniform(-3000, 3000, 60)
+    value, first, _ = law.jet(x)
+    error, slope_error = law.rounding(x)
+    turn = 2 * arb.pi()
+    for k, at in enumerate(x):
+        true = ball_jet(law, arb(float(at)) - turn * math.floor(at / (2 * math.pi)))
+        assert abs(true[0] - arb(float(value[k]))) <= arb(float(error[k]))
+        assert abs(true[1] - arb(float(first[k]))) <= arb(float(slope_error[k]))
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_the_slope_of_a_program_has_its_slopes_as_values(number: int) -> None:
+    law = random_program(number)
+    x = places(law, 6)
+    first = law.jet(x)[1]
+    np.testing.assert_allclose(law.slope()(x), first, rtol=0, atol=1e-11 * law.bend)
+
+
 @pytest.mark.parametrize("number", range(1, 12, 2))
 def test_the_slope_of_a_closed_spline_is_a_function_of_its_own(number: int) -> None:
     law = random_spline(number)

@@ -164,6 +164,165 @@ f = "x^3 - c*x + c = 0"
 x = -2
 """
 
+WHEELS = """\
+format = 1
+name = "Every kind of wheel"
+
+[dimensions]
+r = 20
+
+[points]
+O = [0, 0]
+P = [60, 0]
+A = [10, 0]
+B = [70, 5]
+S = [-50, -20]
+T = [50, -20]
+R = [0, -20]
+C = [200, 30]
+D = [200, 50]
+E = [150, 0]
+F = [250, 0]
+G = [0, 90]
+H = [0, 100]
+
+[links]
+ground = ["O", "P", "S", "T", "E", "F", "G"]
+left = ["O", "A"]
+right = ["P"]
+flag = ["P", "B"]
+rack = ["R"]
+roller = ["C", "D"]
+planet = ["H"]
+
+[[sliders]]
+name = "s"
+link = "rack"
+points = ["R"]
+on = "ground"
+line = ["S", "T"]
+
+[[welds]]
+links = ["flag", "right"]
+angle = 15
+
+[[gears]]
+name = "mesh"
+wheels = ["left", "right"]
+centers = ["O", "P"]
+radii = ["2*r", "r"]
+phase = 45
+
+[[belts]]
+name = "belt"
+wheels = ["left", "right"]
+centers = ["O", "P"]
+arm = "ground"
+teeth = [20, 30]
+crossed = true
+
+[[racks]]
+name = "rack_and_pinion"
+pinion = "left"
+center = "O"
+slider = "s"
+radius = "r"
+
+[[rolling]]
+name = "x"
+wheel = "roller"
+center = "C"
+radius = 30
+line = ["E", "F"]
+
+[[rolling]]
+name = "around"
+wheel = "planet"
+center = "H"
+radius = 5
+on = "ground"
+circle = "G"
+circle_radius = 15
+inside = true
+
+[input]
+link = "left"
+"""
+
+CAMS = """\
+format = 1
+name = "Every kind of cam"
+
+[points]
+O = [0, 0]
+P = [80, 0]
+R = [20, 45]
+S = [5, 0]
+T = [5, 100]
+K = [5, 50]
+B = [100, 20]
+
+[links]
+ground = ["O", "P", "S", "T"]
+disc = ["O"]
+arm = ["P", "R"]
+stem = ["K"]
+rod = ["R", "B"]
+
+[lengths]
+"P R" = 75
+
+[[sliders]]
+name = "s"
+link = "stem"
+points = ["K"]
+on = "ground"
+line = ["S", "T"]
+
+[[cams]]
+name = "lift"
+cam = "disc"
+center = "O"
+slider = "s"
+contact = "roller"
+radius = 10
+base = 40
+start = 15
+segments = [
+    { law = "dwell", over = 60 },
+    { law = "cycloidal", over = 100, lift = 20 },
+    { law = "modified sine", over = 200, lift = -20 },
+]
+
+[[cams]]
+name = "swing"
+cam = "disc"
+center = "O"
+link = "arm"
+pivot = "P"
+point = "R"
+contact = "flat"
+profile = [[40, 0], [28, 28], [0, 41], [-30, 30], [-42, 0], [-28, -29], [0, -40], [29, -28]]
+
+[[curves]]
+name = "u"
+point = "B"
+on = "ground"
+origin = "O"
+through = [[60, 0], [80, 20], [100, 25], [120, 20], [150, 0]]
+
+[[curves]]
+name = "ring"
+point = "B"
+on = "arm"
+origin = "P"
+through = [[10, 0], [0, 10], [-10, 0], [0, -10]]
+closed = true
+
+[input]
+link = "disc"
+"""
+
 SAMPLES = {
     "four_bar": FOUR_BAR,
     "sketched": FOUR_BAR.replace("\n\n[points]", "\nsketch = true\n\n[points]"),
@@ -171,4 +330,6 @@ SAMPLES = {
     "quick_return": QUICK_RETURN,
     "rapier": RAPIER,
     "cubic": CUBIC,
+    "wheels": WHEELS,
+    "cams": CAMS,
 }

@@ -79,8 +79,8 @@ def _sliding(cam: Cam, guide: Slider | Slot, frames: Frames, motion: Piecewise) 
     deepest = float(motion(motion.breaks).min())
     if low + deepest <= 0.0:
         return (
-            f"is too small: the segments lead the follower {-deepest:.6g} towards the centre of "
-            f"the cam, which is only {low:.6g} away"
+            f"is too small: the segments lead the follower {-deepest:.6g} towards the cam's "
+            f"centre, which is only {low:.6g} away"
         )
 
     def place(s: Array, s1: Array, s2: Array) -> tuple[ComplexArray, ...]:
@@ -131,7 +131,8 @@ def _swinging(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
         unit = linkage.angle
         return (
             f"does not fit: on it the arm stands {unit.from_radians(low):.6g} {unit.value} beside "
-            "the line from the pivot to the centre, and the segments swing it across that line"
+            "the line from the pivot to the cam's centre, and the segments swing it across that "
+            "line"
         )
     pivot, center, tip = (linkage.sketched(q) for q in (cam.pivot, cam.center, cam.point))
     sign = math.copysign(1.0, ((tip - pivot) * (center - pivot).conjugate()).imag)

@@ -219,6 +219,14 @@ class _Checker:
         if part.circle_radius is None:
             self.problems.add((*key, "circle_radius"), "is missing: the size of the circle")
             return
+        both = {part.center, part.circle}
+        arm = next((name for name, own in self.linkage.links.items() if both <= set(own)), None)
+        if arm is not None:
+            self.problems.add(
+                (*key, "circle"),
+                f'"{arm}" carries both centres {part.circle} and {part.center} already: two wheels '
+                "on an arm are [[gears]]",
+            )
         size = self._positive(part.circle_radius, (*key, "circle_radius"), "radius")
         if part.inside and radius == size:
             self.problems.add(
