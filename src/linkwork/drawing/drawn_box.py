@@ -8,6 +8,8 @@ from itertools import chain
 import numpy as np
 
 from linkwork.drawing.box import Box
+from linkwork.drawing.follower_symbols import stems
+from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError
@@ -28,7 +30,14 @@ def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Bo
     paths = [pose.paths[name] for name in (*traces, *along) if name in pose.paths]
     travelled = chain.from_iterable(path[np.isfinite(path)] for path in paths)
     rounds = chain.from_iterable(map(_round_parts, poses))
-    return Box.around((float(z.real), float(z.imag)) for z in chain(places, travelled, rounds))
+    box = Box.around((float(z.real), float(z.imag)) for z in chain(places, travelled, rounds))
+    # Blocks on stems stand further out, by some sizes of symbols.
+    ends = (
+        one.points[name] + stem
+        for one in poses
+        for name, stem in stems(one, Measures.of(box, pose.gaps)).items()
+    )
+    return Box.around([*box.corners, *((float(z.real), float(z.imag)) for z in ends)])
 
 
 def _round_parts(pose: Pose) -> Iterator[complex]:

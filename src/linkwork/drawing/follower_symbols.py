@@ -51,7 +51,10 @@ def stems(pose: Pose, measures: Measures) -> dict[str, complex]:
             away = pose.points[follower.point] - pose.points[follower.center]
             outwards = math.copysign(1.0, (away * along.conjugate()).real)
             alone = all(guide.point == follower.point for guide in guides)
-            found[follower.point] = 9 * measures.pin * outwards * along if alone else 0j
+            travel = pose.displacement(guides[0])
+            # So long that the block's rail ends before the cam at its highest.
+            length = travel.high - travel.low + 9 * measures.pin
+            found[follower.point] = length * outwards * along if alone else 0j
     return found
 
 

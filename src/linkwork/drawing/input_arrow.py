@@ -27,6 +27,7 @@ from linkwork.mechanism.skeleton import Bar, DrivenPart, Strut
 __all__ = ["input_arrows"]
 
 _SWEEP = math.radians(110)
+_LONGEST = 15.0  # radii of a pin: an arrow around a large ring
 _TURNED = 0.5  # what it costs to turn an arrow around its pivot away from the usual place [1/rad]
 _OTHER_SIDE = 2.0  # what it costs to stand on the other side of a slider or cylinder
 _FURTHER = 2.0  # and further away from it
@@ -136,13 +137,14 @@ def _around_pivot(
         radius = _around_wheel(discs, measures)
     usual = cmath.phase(reach) + math.radians(75) * turn
     for away in np.linspace(0.0, math.tau, 24, endpoint=False).tolist():
+        sweep = turn * min(_SWEEP, _LONGEST * measures.pin / radius)
         arrow = Arc(
             role=Role.INPUT,
             of=part.name,
             centre=xy(pivot),
             radius=radius,
-            start=usual + away - turn * _SWEEP / 2,
-            sweep=turn * _SWEEP,
+            start=usual + away - sweep / 2,
+            sweep=sweep,
             head=measures.head,
         )
         yield _Place(arrow, _TURNED * abs(math.remainder(away, math.tau)))

@@ -39,7 +39,7 @@ def _rack(pose: Pose, rack: RackBar, measures: Measures) -> Iterator[Primitive]:
     start = min(center.real + way.now - way.high - margin, *own)
     end = max(center.real + way.now - way.low + margin, *own)
     beyond = addendum_of(rack.radius, measures)
-    low, high = pitch - side * 2.5 * beyond, pitch + side * beyond
+    low, high = pitch - side * 1.5 * beyond, pitch + side * beyond
     corners = [complex(start, low), complex(end, low), complex(end, high), complex(start, high)]
     tone = tones(pose)[rack.link]
     points = tuple(xy(foot + corner * along) for corner in corners)

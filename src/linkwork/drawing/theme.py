@@ -85,7 +85,7 @@ LIGHT = Theme(
             Role.BAND: Style(fill="tone", opacity=0.16),
             Role.WHEEL: Style(line="tone", width=1.5, fill="tone", opacity=0.16),
             Role.PITCH: Style(line=_GREY, width=0.7, dashes=(14.0, 4.0, 2.0, 4.0)),
-            Role.MARK: Style(line="tone", width=1.5),
+            Role.MARK: Style(line="tone", width=1.5, fill="tone"),
             Role.BELT: Style(line=_INK, width=1.8),
             Role.PLATE: Style(line="tone", width=1.9, fill="tone", opacity=0.2),
             Role.HATCH: Style(line=_GREY, width=0.8),

@@ -104,7 +104,7 @@ def _wheel(wheel: _Wheel, measures: Measures) -> Iterator[Primitive]:
     if disc.kind == "gear":
         yield Circle(role=Role.PITCH, of=disc.name, centre=xy(wheel.centre), radius=disc.radius)
     if disc.link != GROUND and disc.kind != "roller" and wheel.spoke:
-        yield _mark(wheel, measures)
+        yield from _mark(wheel, measures)
 
 
 def _edge(wheel: _Wheel, measures: Measures) -> ComplexArray:
@@ -164,14 +164,17 @@ def _ring(wheel: _Wheel, edge: ComplexArray, measures: Measures) -> Iterator[Pri
         yield round_hatching(wheel.centre, outside, measures.hatch, disc.name)
 
 
-def _mark(wheel: _Wheel, measures: Measures) -> Polyline:
-    """A spoke from the pin outwards; on a ring a stroke across its rim."""
+def _mark(wheel: _Wheel, measures: Measures) -> Iterator[Primitive]:
+    """A spoke from the pin to a dot; on a ring a stroke across its rim."""
     disc, way = wheel.disc, cmath.exp(1j * wheel.angle)
     start, end = min(measures.pin, 0.4 * disc.radius), 0.78 * disc.radius
     if disc.ring:
         start, end = disc.radius, outer_radius(disc, measures)
     ends = (xy(wheel.centre + start * way), xy(wheel.centre + end * way))
-    return Polyline(role=Role.MARK, of=disc.link, tone=wheel.tone, points=ends)
+    yield Polyline(role=Role.MARK, of=disc.link, tone=wheel.tone, points=ends)
+    if not disc.ring:
+        dot = min(0.8 * measures.pin, 0.15 * disc.radius)
+        yield Circle(role=Role.MARK, of=disc.link, tone=wheel.tone, centre=ends[1], radius=dot)
 
 
 def round_hatching(centre: complex, radius: float, depth: float, of: str) -> Hatch:
