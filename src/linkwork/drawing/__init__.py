@@ -8,8 +8,9 @@ from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
     from linkwork.drawing.chart import Chart, circuit_chart
+    from linkwork.drawing.drawn_box import reach_of
     from linkwork.drawing.matplotlib_writer import figure, render, write
-    from linkwork.drawing.mechanism_scene import SceneOptions, reach_of, scene_of
+    from linkwork.drawing.mechanism_scene import SceneOptions, scene_of
     from linkwork.drawing.scene import Arc, Box, Disc, Hatch, Polygon, Polyline, Role, Scene, Text
     from linkwork.drawing.sheet import Sheet, configuration_sheet
     from linkwork.drawing.theme import LIGHT, Style, Theme
@@ -18,8 +19,9 @@ else:
         __name__,
         {
             "chart": ("Chart", "circuit_chart"),
+            "drawn_box": ("reach_of",),
             "matplotlib_writer": ("figure", "render", "write"),
-            "mechanism_scene": ("SceneOptions", "reach_of", "scene_of"),
+            "mechanism_scene": ("SceneOptions", "scene_of"),
             "scene": (
                 "Arc",
                 "Box",

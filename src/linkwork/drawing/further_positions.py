@@ -8,13 +8,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.drawing.captions import lead_text
+from linkwork.drawing.contour_symbols import cam_symbols, curve_symbols
 from linkwork.drawing.cylinder_symbol import cylinder_symbols
+from linkwork.drawing.follower_symbols import follower_symbols
 from linkwork.drawing.guide_symbols import guide_symbols, track_gaps, tracks
 from linkwork.drawing.label_placement import Choice, places_beside
 from linkwork.drawing.link_symbols import link_symbols, pin_symbols, tones
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Polygon, Polyline, Primitive, Role, xy
+from linkwork.drawing.wheel_symbols import wheel_symbols
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.results.motion import LimitKind, Motion
 
@@ -70,7 +73,14 @@ def further_positions(pose: Pose, motion: Motion, count: int) -> list[Further]:
     return [
         Further(
             row=int(found[k]),
-            pose=replace(pose, points=dict(zip(pose.paths, places[k].tolist(), strict=True))),
+            pose=replace(
+                pose,
+                points=dict(zip(pose.paths, places[k].tolist(), strict=True)),
+                angles={
+                    name: float(series.value[found[k]]) * motion.units.angle.radians
+                    for name, series in motion.links.items()
+                },
+            ),
             limit=limit[k],
         )
         for k in shown
@@ -84,14 +94,19 @@ def faint_symbols(shown: Sequence[Further], measures: Measures) -> Iterator[Prim
         found = tracks(pose, measures, tones(pose))
         still = set(pose.skeleton.fixed)
         moving = [
+            *wheel_symbols(pose, measures, moving=True),
+            *cam_symbols(pose, measures),
+            *curve_symbols(pose, measures),
+            *follower_symbols(pose, measures),
             *link_symbols(pose, track_gaps(found, measures)),
             *guide_symbols(found, measures),
             *cylinder_symbols(pose, measures),
             *(p for p in pin_symbols(pose, measures) if p.role is Role.PIN and p.of not in still),
         ]
+        lying = (Role.GROUND, Role.HATCH, Role.FRAME, Role.MARK)
         fade = _FADE if further.limit is None else _FADE_OF_LIMITS
         for primitive in moving:
-            if primitive.role not in (Role.GROUND, Role.HATCH):
+            if primitive.role not in lying:
                 yield replace(primitive, fade=fade)
 
 

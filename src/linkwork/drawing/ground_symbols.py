@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
+from linkwork.drawing.link_symbols import pin_radius
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Hatch, Polygon, Polyline, Primitive, Role, xy
@@ -19,7 +21,8 @@ def ground_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
     carried |= {point for strut in skeleton.struts for point in strut.between}
     for name in skeleton.fixed:
         if name in carried:
-            yield from _pivot(name, pose.points[name], measures)
+            own = replace(measures, pin=pin_radius(pose, name, measures))
+            yield from _pivot(name, pose.points[name], own)
 
 
 def _pivot(name: str, place: complex, measures: Measures) -> Iterator[Primitive]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linkwork.drawing.follower_symbols import stems
 from linkwork.drawing.ground_symbols import hatching
 from linkwork.drawing.link_symbols import Gap, uncovered
 from linkwork.drawing.measures import Measures
@@ -64,11 +65,15 @@ def _track(
     guide = guides[0]
     along = pose.direction(guide)
     fixed = pose.on_ground(guide)
-    # A block sits where the sliding link is joined to another one, or else at its first point.
-    carrying = [g for g in guides if g.point in pose.skeleton.pins] or guides[:1]
-    places = tuple(pose.points[g.point] for g in carrying)
+    # A block sits where the sliding link is joined to another one, or else at its first point;
+    # away from a cam that it follows.
+    stem = stems(pose, measures)
+    free = [g for g in guides if g.point not in stem] or guides
+    carrying = [g for g in free if g.point in pose.skeleton.pins] or free[:1]
+    back = stem.get(carrying[0].point, 0j)
+    places = tuple(pose.points[g.point] + back for g in carrying)
     travels = [pose.displacement(g) for g in carrying]
-    first = pose.points[carrying[0].point] - travels[0].now * along
+    first = places[0] - travels[0].now * along
     low, high = min(t.low for t in travels), max(t.high for t in travels)
     if not guide.block and not fixed and not pose.paths:
         low, high = _slot_without_motion(pose, guide, low, high, measures)

@@ -20,11 +20,14 @@ from linkwork.drawing.measures import Measures
 from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, xy
+from linkwork.drawing.wheel_symbols import outer_radius
+from linkwork.mechanism.contact_shapes import Disc
 from linkwork.mechanism.skeleton import Bar, DrivenPart, Strut
 
 __all__ = ["input_arrows"]
 
 _SWEEP = math.radians(110)
+_LONGEST = 15.0  # radii of a pin: an arrow around a large ring
 _TURNED = 0.5  # what it costs to turn an arrow around its pivot away from the usual place [1/rad]
 _OTHER_SIDE = 2.0  # what it costs to stand on the other side of a slider or cylinder
 _FURTHER = 2.0  # and further away from it
@@ -57,7 +60,7 @@ def input_arrows(
             places = list(_along_track(part, guided[part.name], measures, turn))
         elif part.name in struts:
             places = list(_along_strut(pose, struts[part.name], measures, turn))
-        elif part.name in bars and len(bars[part.name].points) > 1:
+        elif part.name in bars:
             places = list(_around_pivot(pose, part, bars[part.name], measures, turn))
         if places:
             arrows.append(_freest(places, Obstacles.of([*drawn, *arrows]), measures))
@@ -124,17 +127,33 @@ def _around_pivot(
     """Around the pivot, usually ahead of the link."""
     name = part.pivot or bar.points[0]
     pivot = pose.points[name]
-    reach = max((pose.points[other] - pivot for other in bar.points if other != name), key=abs)
+    others = [pose.points[other] - pivot for other in bar.points if other != name]
+    reach = max(others, key=abs, default=0j)
+    # A wheel of one point shows its angle by a mark; an arrow stands ahead of that.
+    reach = reach or measures.size * cmath.exp(1j * pose.angle(bar.name))
     radius = max(2.2 * measures.pin, min(4.6 * measures.pin, 0.6 * abs(reach)))
+    discs = [d for d in pose.skeleton.contacts.discs if (d.link, d.center) == (bar.name, name)]
+    if discs:
+        radius = _around_wheel(discs, measures)
     usual = cmath.phase(reach) + math.radians(75) * turn
     for away in np.linspace(0.0, math.tau, 24, endpoint=False).tolist():
+        sweep = turn * min(_SWEEP, _LONGEST * measures.pin / radius)
         arrow = Arc(
             role=Role.INPUT,
             of=part.name,
             centre=xy(pivot),
             radius=radius,
-            start=usual + away - turn * _SWEEP / 2,
-            sweep=turn * _SWEEP,
+            start=usual + away - sweep / 2,
+            sweep=sweep,
             head=measures.head,
         )
         yield _Place(arrow, _TURNED * abs(math.remainder(away, math.tau)))
+
+
+def _around_wheel(discs: Sequence[Disc], measures: Measures) -> float:
+    """The radius of an arrow about a wheel: inside it if there is room, around a ring."""
+    most = max(discs, key=lambda disc: disc.radius)
+    inside = min(4.6 * measures.pin, 0.6 * most.radius)
+    if most.ring or inside < 2.8 * measures.pin:
+        return outer_radius(most, measures) + 2.0 * measures.pin
+    return inside

@@ -7,8 +7,9 @@ one by one and moved until none can do better alone.
 
 from __future__ import annotations
 
+import cmath
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,11 +84,15 @@ def link_names(pose: Pose, measures: Measures) -> list[Choice]:
     spans |= {s.name: [pose.points[name] for name in s.between] for s in pose.skeleton.struts}
     found = []
     for name, points in spans.items():
-        outline = convex_outline(points)
-        if len(set(points)) < 2:
+        rounds = _rounds(pose, name)
+        if len(set(points)) < 2 and not rounds:
             continue
-        spots = _beside_bar(outline, name, height, measures)
-        if not in_line(outline):
+        outline = convex_outline(points)
+        if rounds:
+            spots = list(_about_round(rounds, name, height, measures))
+        else:
+            spots = _beside_bar(outline, name, height, measures)
+        if not rounds and not in_line(outline):
             centre = sum(outline) / len(outline)
             spots = [(centre, 0.0), *((spot, cost + 2.0) for spot, cost in spots)]
         places = tuple(
@@ -104,6 +109,33 @@ def link_names(pose: Pose, measures: Measures) -> list[Choice]:
         )
         found.append(Choice(places, tuple(cost for _, cost in spots)))
     return found
+
+
+def _rounds(pose: Pose, link: str) -> list[tuple[complex, float]]:
+    """Centres and radii of a link's wheels and cams, the largest first."""
+    contacts = pose.skeleton.contacts
+    found = [(d.center, d.radius) for d in contacts.discs if d.link == link and d.kind != "roller"]
+    found += [
+        (c.center, float(np.abs(np.array(c.points)).max()))
+        for c in contacts.contours
+        if c.link == link and not c.slot
+    ]
+    return [(pose.points[name], radius) for name, radius in sorted(found, key=lambda r: -r[1])]
+
+
+def _about_round(
+    rounds: list[tuple[complex, float]], name: str, height: float, measures: Measures
+) -> Iterator[tuple[complex, float]]:
+    """Middles of the name inside the largest wheel or cam of a link, else just outside it."""
+    centre, radius = rounds[0]
+    half_width = text_width(printed_name(name), height) / 2
+    for k in range(16):
+        way = cmath.exp(1j * math.pi * (k / 8 - 0.5))
+        for share in (0.6, 0.45, 0.75):
+            if half_width < (1 - share) * radius or 1.2 * half_width < share * radius:
+                yield centre + share * radius * way, 0.1 * k
+        clear = abs(way.real) * half_width + abs(way.imag) * 0.5 * height + 1.6 * measures.pin
+        yield centre + (radius + clear) * way, _FURTHER + 0.1 * k
 
 
 def _beside_bar(

@@ -15,6 +15,7 @@ __all__ = [
     "convex_outline",
     "in_line",
     "link_symbols",
+    "pin_radius",
     "pin_symbols",
     "tones",
     "uncovered",
@@ -52,6 +53,12 @@ def _link(pose: Pose, bar: Bar, tone: int, gaps: list[Gap]) -> Iterator[Primitiv
         yield Polygon(role=Role.PLATE, of=bar.name, tone=tone, points=tuple(map(xy, outline)))
 
 
+def pin_radius(pose: Pose, name: str, measures: Measures) -> float:
+    """The radius of a pin: smaller than usual in the middle of a small wheel."""
+    discs = pose.skeleton.contacts.discs
+    return min([measures.pin, *(0.4 * d.radius for d in discs if d.center == name)])
+
+
 def pin_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
     """A circle at every pin, a dot at every other point that something is drawn at."""
     skeleton = pose.skeleton
@@ -60,7 +67,8 @@ def pin_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
         if name in pose.construction:
             continue
         if name in joined:
-            yield Disc(role=Role.PIN, of=name, centre=xy(place), radius=measures.pin)
+            radius = pin_radius(pose, name, measures)
+            yield Disc(role=Role.PIN, of=name, centre=xy(place), radius=radius)
         else:
             role = Role.TRACED if name in skeleton.traced else Role.POINT
             yield Disc(role=role, of=name, centre=xy(place), radius=measures.dot)

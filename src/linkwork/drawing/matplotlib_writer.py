@@ -306,7 +306,7 @@ class _Brush:
                 list(lines),
                 colors=self.theme.line(primitive),
                 linewidths=style.width * self.stroke * (1 - 0.5 * primitive.fade),
-                linestyles=[(0, (0.01, 2.2))] if style.dotted else "solid",
+                linestyles=[(0, style.dashes)] if style.dashes else "solid",
                 capstyle="round",
                 joinstyle="round",
                 **self._common(primitive),
@@ -335,6 +335,7 @@ class _Brush:
             "facecolor": to_rgba(fill, style.opacity ** (1 + primitive.fade)) if fill else "none",
             "edgecolor": line or "none",
             "linewidth": style.width * width * self.stroke if line else 0.0,
+            "linestyle": (0, style.dashes) if style.dashes else "solid",
             **self._common(primitive),
         }
 

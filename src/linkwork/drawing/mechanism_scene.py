@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain
-
-import numpy as np
 
 from linkwork.drawing.captions import inputs_caption, reached_caption
+from linkwork.drawing.belt_symbols import belt_symbols
+from linkwork.drawing.contour_symbols import cam_symbols, curve_symbols
 from linkwork.drawing.cylinder_symbol import cylinder_symbols
+from linkwork.drawing.drawn_box import drawn_box
+from linkwork.drawing.follower_symbols import follower_symbols
 from linkwork.drawing.further_positions import (
     Further,
     faint_symbols,
@@ -23,13 +24,15 @@ from linkwork.drawing.label_placement import link_names, placed, point_names
 from linkwork.drawing.link_symbols import link_symbols, pin_symbols, tones
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
+from linkwork.drawing.rack_symbols import rack_symbols, rolling_symbols
 from linkwork.drawing.scene import Box, Primitive, Scene
 from linkwork.drawing.trace_path import trace_symbols
+from linkwork.drawing.wheel_symbols import wheel_symbols
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
-__all__ = ["SceneOptions", "reach_of", "scene_of"]
+__all__ = ["SceneOptions", "scene_of"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +54,8 @@ class SceneOptions:
         How much larger than usual names are, for small pictures; symbols grow by its root.
     within : Box, optional
         What the picture shows at least, and what the sizes of symbols are measured by: give all
-        pictures of one animation the same, from :func:`reach_of`.
+        pictures of one animation the same, from
+        :func:`~linkwork.drawing.drawn_box.reach_of`.
     """
 
     link_names: bool = False
@@ -104,7 +108,7 @@ def scene_of(
     further: list[Further] = []
     if motion is not None and chosen.further:
         further = further_positions(pose, motion, chosen.further)
-    within = chosen.within or _drawn_box(pose, names, further)
+    within = chosen.within or drawn_box(pose, names, [other.pose for other in further])
     measures = Measures.of(within, pose.gaps, chosen.larger)
     found = tracks(pose, measures, tones(pose))
     sense = -1.0 if motion is not None and (motion.speed or 0.0) < 0 else 1.0
@@ -112,6 +116,7 @@ def scene_of(
     primitives: list[Primitive] = [
         *faint_symbols(further, measures),
         *ground_symbols(pose, measures),
+        *_contact_symbols(pose, measures),
         *guide_symbols(found, measures),
         *link_symbols(pose, track_gaps(found, measures)),
         *cylinder_symbols(pose, measures),
@@ -137,31 +142,15 @@ def scene_of(
     )
 
 
-def reach_of(motion: Motion) -> Box:
-    """The box of every point of a mechanism over a whole motion.
-
-    Raises
-    ------
-    InputError
-        If the motion has no points, or no position was found.
-    """
-    rows = motion.found
-    ends = [
-        (float(x.value[row]), float(y.value[row]))
-        for x, y in motion.points.values()
-        for series in (x, y)
-        if rows.any()
-        for row in (
-            np.flatnonzero(rows)[np.argmin(series.value[rows])],
-            np.flatnonzero(rows)[np.argmax(series.value[rows])],
-        )
-    ]
-    if not ends:
-        raise InputError(
-            f'the motion of "{motion.mechanism}" has nothing to draw: '
-            f"{int(rows.sum())} positions, {len(motion.points)} points"
-        )
-    return Box.around(ends)
+def _contact_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
+    """Wheels and what they run on, belts, cams with their followers, curved slots."""
+    yield from wheel_symbols(pose, measures)
+    yield from rack_symbols(pose, measures)
+    yield from rolling_symbols(pose, measures)
+    yield from belt_symbols(pose)
+    yield from cam_symbols(pose, measures)
+    yield from follower_symbols(pose, measures)
+    yield from curve_symbols(pose, measures)
 
 
 def _traced(pose: Pose, wanted: Sequence[str] | None) -> tuple[str, ...]:
@@ -178,17 +167,6 @@ def _traced(pose: Pose, wanted: Sequence[str] | None) -> tuple[str, ...]:
             "give the motion too"
         )
     return tuple(dict.fromkeys(wanted))
-
-
-def _drawn_box(pose: Pose, traces: tuple[str, ...], further: Sequence[Further]) -> Box:
-    """The box of what is drawn: points now and at further positions, traces, fixed guides."""
-    poses = [pose, *(other.pose for other in further)]
-    drawn = [name for name in pose.points if name not in pose.construction]
-    places = (one.points[name] for one in poses for name in drawn)
-    along = {guide.point for guide in pose.skeleton.guides if pose.on_ground(guide)}
-    paths = [pose.paths[name] for name in (*traces, *along) if name in pose.paths]
-    travelled = chain.from_iterable(path[np.isfinite(path)] for path in paths)
-    return Box.around((float(z.real), float(z.imag)) for z in chain(places, travelled))
 
 
 def _caption(position: Position, motion: Motion | None) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -15,11 +16,13 @@ __all__ = ["Obstacles"]
 
 #: What it costs to cover a line or disc of a role; covering a pin is worst.
 _PENALTY = {
+    Role.FRAME: 6.0, Role.WHEEL: 6.0, Role.PITCH: 1.5, Role.MARK: 8.0, Role.BELT: 14.0,
     Role.PLATE: 9.0, Role.HATCH: 6.0, Role.GROUND: 10.0, Role.TRACE: 2.5, Role.SLOT: 12.0,
     Role.SLIDER: 12.0, Role.LINK: 14.0, Role.CYLINDER: 14.0, Role.PIN: 60.0, Role.POINT: 40.0,
     Role.TRACED: 40.0, Role.LIMIT: 40.0, Role.INPUT: 14.0,
 }  # fmt: skip
 _INSIDE_PLATE = 1.5
+_OPEN = (Role.FRAME, Role.WHEEL, Role.PITCH)  # discs that names and arrows may stand inside
 
 
 @dataclass(frozen=True)
@@ -43,7 +46,9 @@ class Obstacles:
         for p in drawn:
             found = []
             penalty = _PENALTY.get(p.role, 0.0) * (1.0 - p.fade) ** 2
-            if isinstance(p, Disc):
+            if isinstance(p, Disc) and p.role in _OPEN:
+                found = list(pairwise(p.rim))
+            elif isinstance(p, Disc):
                 discs.append((*p.centre, p.radius))
                 disc_cost.append(penalty)
             elif isinstance(p, Polyline | Arc):

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+import cmath
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.errors import InputError, choices
+from linkwork.mechanism.contact_shapes import Contour
 from linkwork.mechanism.linkage import GROUND
 from linkwork.mechanism.skeleton import Guide, Skeleton, Strut
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
-__all__ = ["Pose", "Travel", "no_points"]
+__all__ = ["Pose", "Travel", "no_points", "travel_along"]
 
 Path = ComplexArray
 Real = Array
+
+_STILL = 1e-6  # of the largest travel: points that move less stand still
 
 
 @dataclass(frozen=True)
@@ -34,12 +38,14 @@ class Travel:
 class Pose:
     """Coordinates x + iy of every point now, and along the motion if there is one.
 
-    ``paths`` hold one entry per row of the motion, NaN where there is no position.
+    ``paths`` hold one entry per row of the motion, NaN where there is no position. ``angles`` are
+    those of the links now [rad].
     """
 
     skeleton: Skeleton
     points: dict[str, complex]
     paths: dict[str, Path]
+    angles: dict[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(cls, position: Position, motion: Motion | None) -> Pose:
@@ -53,7 +59,23 @@ class Pose:
         _check(position, motion)
         points = {name: complex(*place) for name, place in position.points.items()}
         paths = {} if motion is None else {name: _path(motion, name) for name in points}
-        return cls(skeleton=position.skeleton, points=points, paths=paths)
+        radians = position.units.angle.radians
+        angles = {name: value * radians for name, value in position.links.items()}
+        return cls(skeleton=position.skeleton, points=points, paths=paths, angles=angles)
+
+    def angle(self, link: str) -> float:
+        """The angle of a link [rad]; ground has none."""
+        return 0.0 if link == GROUND else self.angles[link]
+
+    def placed(self, contour: Contour) -> ComplexArray:
+        """The points of a cam's outline or of a curve, where they are now."""
+        turned = cmath.exp(1j * self.angle(contour.link))
+        points: ComplexArray = self.points[contour.center] + turned * np.array(contour.points)
+        return points
+
+    def moves(self, point: str) -> bool:
+        """Whether a point travels in the motion; never without one."""
+        return point in self.moving
 
     def direction(self, guide: Guide) -> complex:
         """The unit vector of a guide's line."""
@@ -62,13 +84,7 @@ class Pose:
 
     def displacement(self, guide: Guide) -> Travel:
         """How far the point of a guide is from the first point of the line."""
-        start, end = guide.line
-        p, a, b = (self.points[name] for name in (guide.point, start, end))
-        now = float(_along(*(np.array([z]) for z in (p, a, b)))[0])
-        if not self.paths:
-            return Travel(now, now, now)
-        rows = _along(self.paths[guide.point], self.paths[start], self.paths[end])
-        return _travel(now, rows)
+        return travel_along(self, guide.point, guide.line)
 
     def length(self, strut: Strut) -> Travel:
         """The length of a cylinder."""
@@ -96,8 +112,32 @@ class Pose:
         used = {point for bar in skeleton.bars for point in bar.points}
         used |= {point for strut in skeleton.struts for point in strut.between}
         used |= {guide.point for guide in skeleton.guides} | set(skeleton.traced)
+        contacts = skeleton.contacts
+        used |= {disc.center for disc in contacts.discs}
         lines = {p for g in skeleton.guides if self.on_ground(g) for p in g.line}
+        lines |= {p for track in contacts.rolling if track.on == GROUND for p in track.line}
+        lines |= {curve.center for curve in contacts.contours if curve.link == GROUND}
         return lines - used
+
+    @cached_property
+    def moving(self) -> set[str]:
+        """The points that travel in the motion."""
+        travel = {
+            name: float(np.nanmax(np.abs(path - self.points[name]), initial=0.0))
+            for name, path in self.paths.items()
+        }
+        most = max(travel.values(), default=0.0)
+        return {name for name, far in travel.items() if far > _STILL * most}
+
+
+def travel_along(pose: Pose, point: str, line: tuple[str, str]) -> Travel:
+    """How far a point is from the first point of a line, along it."""
+    start, end = line
+    p, a, b = (pose.points[name] for name in (point, start, end))
+    now = float(_along(*(np.array([z]) for z in (p, a, b)))[0])
+    if not pose.paths:
+        return Travel(now, now, now)
+    return _travel(now, _along(pose.paths[point], pose.paths[start], pose.paths[end]))
 
 
 def no_points(mechanism: str) -> InputError:

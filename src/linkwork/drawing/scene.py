@@ -37,6 +37,13 @@ _COVERED = 0.7  # of an arrow head's length is where its line ends, so that its 
 class Role(Enum):
     """What a primitive stands for. Its style follows from it; later members lie on top."""
 
+    FRAME = "a wheel that stands still"
+    FRAME_BAND = "the rim of a ring that stands still"
+    BAND = "the rim of a ring"
+    WHEEL = "a gear, pulley, wheel, roller, cam or rack"
+    PITCH = "the pitch circle of a gear, the pitch line of a rack"
+    MARK = "the spoke that shows a wheel's angle"
+    BELT = "a belt or chain"
     PLATE = "a link of three or more points"
     HATCH = "the hatching of what stands still"
     GROUND = "what stands still: pivots and rails"
@@ -134,6 +141,13 @@ class Disc(Primitive):
     def outline(self) -> tuple[XY, ...]:
         (x, y), r = self.centre, self.radius
         return (x - r, y - r), (x + r, y + r)
+
+    @property
+    def rim(self) -> tuple[XY, ...]:
+        """The circle as a closed line of short pieces."""
+        return Arc(
+            role=self.role, centre=self.centre, radius=self.radius, start=0.0, sweep=math.tau
+        ).points
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -27,14 +27,15 @@ class Style:
     """How a role is drawn.
 
     ``line`` and ``fill`` are a colour, ``tone`` (the colour of the link) or nothing; ``width``
-    counts strokes (:attr:`linkwork.drawing.measures.Measures.stroke`).
+    counts strokes (:attr:`linkwork.drawing.measures.Measures.stroke`), as do the lengths of
+    ``dashes`` and of the gaps between them, in widths of the line.
     """
 
     line: str = ""
     width: float = 1.0
     fill: str = ""
     opacity: float = 1.0
-    dotted: bool = False
+    dashes: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,10 +80,17 @@ LIGHT = Theme(
     tones=(_BLUE, _GREEN, _PURPLE, _ORANGE, _SKY),
     styles=FrozenDict.of(
         {
+            Role.FRAME: Style(line=_GREY, width=1.3, fill="#EDEDED"),
+            Role.FRAME_BAND: Style(fill="#EDEDED"),
+            Role.BAND: Style(fill="tone", opacity=0.16),
+            Role.WHEEL: Style(line="tone", width=1.5, fill="tone", opacity=0.16),
+            Role.PITCH: Style(line=_GREY, width=0.7, dashes=(14.0, 4.0, 2.0, 4.0)),
+            Role.MARK: Style(line="tone", width=1.5, fill="tone"),
+            Role.BELT: Style(line=_INK, width=1.8),
             Role.PLATE: Style(line="tone", width=1.9, fill="tone", opacity=0.2),
             Role.HATCH: Style(line=_GREY, width=0.8),
             Role.GROUND: Style(line=_GREY, width=1.3, fill="#E6E6E6"),
-            Role.TRACE: Style(line=_INK, width=1.3, fill=_INK, dotted=True),
+            Role.TRACE: Style(line=_INK, width=1.3, fill=_INK, dashes=(0.01, 2.2)),
             Role.SLOT: Style(line="tone", width=1.7, fill=_PAPER),
             Role.SLIDER: Style(line=_INK, width=1.3, fill="#EDEDED"),
             Role.LINK: Style(line="tone", width=2.8),

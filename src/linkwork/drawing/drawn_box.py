@@ -1,0 +1,81 @@
+"""How large a picture is: everything that a mechanism shows, now and over a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import chain
+
+import numpy as np
+
+from linkwork.drawing.box import Box
+from linkwork.drawing.follower_symbols import stems
+from linkwork.drawing.measures import Measures
+from linkwork.drawing.pose import Pose
+from linkwork.foundation.arrays import ComplexArray
+from linkwork.foundation.errors import InputError
+from linkwork.mechanism.linkage import GROUND
+from linkwork.results.motion import Motion
+
+__all__ = ["drawn_box", "reach_of"]
+
+_OF_OUTLINE = 90  # points of an outline that are followed through a motion
+
+
+def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Box:
+    """The box of what is drawn: points and round parts in all poses, traces, fixed guides."""
+    poses = [pose, *others]
+    drawn = [name for name in pose.points if name not in pose.construction]
+    places = (one.points[name] for one in poses for name in drawn)
+    along = {guide.point for guide in pose.skeleton.guides if pose.on_ground(guide)}
+    paths = [pose.paths[name] for name in (*traces, *along) if name in pose.paths]
+    travelled = chain.from_iterable(path[np.isfinite(path)] for path in paths)
+    rounds = chain.from_iterable(map(_round_parts, poses))
+    box = Box.around((float(z.real), float(z.imag)) for z in chain(places, travelled, rounds))
+    # Blocks on stems stand further out, by some sizes of symbols.
+    ends = (
+        one.points[name] + stem
+        for one in poses
+        for name, stem in stems(one, Measures.of(box, pose.gaps)).items()
+    )
+    return Box.around([*box.corners, *((float(z.real), float(z.imag)) for z in ends)])
+
+
+def _round_parts(pose: Pose) -> Iterator[complex]:
+    """Outermost points of wheels, cams and curves."""
+    for disc in pose.skeleton.contacts.discs:
+        yield from (pose.points[disc.center] + disc.radius * 1j**k for k in range(4))
+    for contour in pose.skeleton.contacts.contours:
+        yield from map(complex, pose.placed(contour))
+
+
+def reach_of(motion: Motion) -> Box:
+    """The box of every point, wheel and cam of a mechanism over a whole motion.
+
+    Raises
+    ------
+    InputError
+        If the motion has no points, or no position was found.
+    """
+    rows = motion.found
+    if not rows.any() or not motion.points:
+        raise InputError(
+            f'the motion of "{motion.mechanism}" has nothing to draw: '
+            f"{int(rows.sum())} positions, {len(motion.points)} points"
+        )
+    shapes = motion.skeleton.contacts
+    places = [motion.trace(name)[rows] for name in motion.points]
+    for disc in shapes.discs:
+        centre = motion.trace(disc.center)[rows]
+        places += [centre + disc.radius * 1j**k for k in range(4)]
+    for contour in shapes.contours:
+        points = np.array(contour.points)
+        points = points[:: max(1, len(points) // _OF_OUTLINE)]
+        turned: ComplexArray = np.ones(int(rows.sum()), dtype=complex)
+        if contour.link != GROUND:
+            degrees = motion.links[contour.link].value[rows]
+            turned = np.exp(1j * degrees * motion.units.angle.radians)
+        centre = motion.trace(contour.center)[rows]
+        places.append((centre[:, None] + turned[:, None] * points).ravel())
+    everything = np.concatenate(places)
+    x, y = everything.real, everything.imag
+    return Box(float(x.min()), float(y.min()), float(x.max()), float(y.max()))

@@ -1,0 +1,88 @@
+"""The outline of a gear: involute teeth of 20° on its pitch circle."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+
+from linkwork.drawing.pose import Pose
+from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.mechanism.contact_shapes import Disc
+
+__all__ = ["ADDENDUM", "DEDENDUM", "tooth_outline", "tooth_phases"]
+
+#: From the pitch circle to tips and roots, in modules (ISO 53).
+ADDENDUM, DEDENDUM = 1.0, 1.25
+
+_PRESSURE = math.radians(20.0)
+_FLANK = 4  # points along a flank
+
+
+def tooth_outline(disc: Disc) -> ComplexArray:
+    """The outline of a gear about its centre, the first tooth on the real axis.
+
+    The outline of a ring is that of the gear which fills it: its first gap is on the real axis.
+
+    Notes
+    -----
+    At radius ρ half a tooth is π/(2z) + inv 20° - inv α wide, cos α = r cos 20°/ρ,
+    inv α = tan α - α.
+
+    References
+    ----------
+    R. L. Norton, Design of Machinery, section 9.3 (involute tooth form).
+    """
+    assert disc.teeth is not None
+    module = 2.0 * disc.radius / disc.teeth
+    up, down = (DEDENDUM, ADDENDUM) if disc.ring else (ADDENDUM, DEDENDUM)
+    root, tip = disc.radius - down * module, disc.radius + up * module
+    base = disc.radius * math.cos(_PRESSURE)
+    radii = np.linspace(max(root, base), tip, _FLANK)
+    half = math.pi / (2 * disc.teeth) + _involute(np.array(_PRESSURE))
+    half = np.maximum(half - _involute(np.arccos(base / radii)), 0.0)
+    # Below the base circle there is no involute: a flank goes on straight to the centre.
+    flank = np.concatenate(([root], radii)) * np.exp(1j * np.concatenate((half[:1], half)))
+    tooth = np.concatenate((flank.conj(), flank[::-1]))
+    steps = np.exp(2j * math.pi * np.arange(disc.teeth) / disc.teeth)
+    outline: ComplexArray = (steps[:, None] * tooth).ravel()
+    return outline
+
+
+def _involute(angle: Array) -> Array:
+    found: Array = np.tan(angle) - angle
+    return found
+
+
+def tooth_phases(pose: Pose) -> dict[Disc, float]:
+    """The direction [rad] of the first tooth (of a ring: gap) of every gear whose teeth are known.
+
+    The teeth of the first wheel of a train turn with its link; those of the next ones follow so
+    that they are in mesh. As the wheels roll off each other, they turn with their links too.
+    """
+    phases: dict[Disc, float] = {}
+    meshes = [m.discs for m in pose.skeleton.contacts.meshes if all(d.teeth for d in m.discs)]
+    while meshes:
+        # A mesh with a wheel that has its phase already, if there is one, goes first.
+        one, other = min(meshes, key=lambda pair: not phases.keys() & set(pair))
+        meshes.remove((one, other))
+        if other in phases:
+            one, other = other, one
+        phases.setdefault(one, pose.angle(one.link))
+        phases.setdefault(other, _meshing(pose, one, phases[one], other))
+    return phases
+
+
+def _meshing(pose: Pose, one: Disc, phase: float, other: Disc) -> float:
+    """The phase of a wheel that meshes with one of a known phase."""
+    assert one.teeth is not None
+    assert other.teeth is not None
+    line = cmath.phase(pose.points[other.center] - pose.points[one.center])
+    if one.ring or other.ring:
+        # The point of contact lies beyond the smaller wheel; its teeth stand in the ring's gaps.
+        line = line if one.ring else line + math.pi
+        return line - (line - phase) * one.teeth / other.teeth
+    passed = (line - phase) * one.teeth / math.tau
+    return line + math.pi - (0.5 - passed) * math.tau / other.teeth
+
