@@ -19,7 +19,8 @@ from linkwork.numerics.change_point import (
     locate_change_point,
     most_singular,
 )
-from linkwork.numerics.curve import Leads, Led, Leg
+from linkwork.numerics.curve import Leg
+from linkwork.numerics.leaders import Leads, Led
 from linkwork.numerics.proof import prove
 from linkwork.numerics.proven_curve import leg_is_proved, same_solution
 from linkwork.numerics.track import End, InputPath, Node, Track

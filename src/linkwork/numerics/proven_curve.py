@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
-from linkwork.numerics.curve import Curve, Leads, Led, Leg, apart
+from linkwork.numerics.curve import Curve, Leg
+from linkwork.numerics.leaders import Leads, Led, apart
 from linkwork.numerics.proof import prove
 from linkwork.numerics.proven_path import Beads, ProvenPath, prove_path
 

@@ -15,15 +15,9 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
-from linkwork.numerics.curve import (
-    Curve,
-    CurveOptions,
-    Leads,
-    Led,
-    Leg,
-    divided,
-    fastest_leader,
-)
+from linkwork.numerics.curve import Curve, CurveOptions, Leg
+from linkwork.numerics.divided_steps import divided
+from linkwork.numerics.leaders import Leads, Led, fastest_leader
 from linkwork.numerics.track import Node, follow, node_at
 
 __all__ = ["TurningPoint", "turn_beyond", "turning_points"]

@@ -16,7 +16,7 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
 from linkwork.motion.circuit.branches import CurveBranch, Traced, branches_of, traced
 from linkwork.numerics.change_point import ChangePoint, Crossing
-from linkwork.numerics.curve import Leads, Led, apart, fastest_leader, same_position
+from linkwork.numerics.leaders import Leads, Led, apart, fastest_leader, same_position
 
 __all__ = ["Arc", "Explorer", "positions_near"]
 

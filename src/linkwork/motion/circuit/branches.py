@@ -10,7 +10,8 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
-from linkwork.numerics.curve import Curve, CurveOptions, Leads, Led, Leg, trace
+from linkwork.numerics.curve import Curve, CurveOptions, Leg, trace
+from linkwork.numerics.leaders import Leads, Led
 from linkwork.numerics.proven_curve import ProvenCurve, prove_curve, same_solution
 from linkwork.numerics.track import Track, TrackOptions, rows_on_track
 from linkwork.numerics.turning_point import TurningPoint, turning_points

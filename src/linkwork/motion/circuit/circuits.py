@@ -23,7 +23,7 @@ from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import motion_of_rows
 from linkwork.motion.rows import SolvedRows
 from linkwork.numerics.change_point import Crossing
-from linkwork.numerics.curve import same_position
+from linkwork.numerics.leaders import same_position
 from linkwork.numerics.track import InputPath
 from linkwork.results.circuits import Branch, Circuit, Circuits
 from linkwork.results.motion import Motion
