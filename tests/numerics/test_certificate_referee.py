@@ -291,13 +291,13 @@ def test_rows_a_whole_turn_away_count_the_rounding_of_two_pi() -> None:
     solver, path = blocks_of(four_bar_table(bar)), PATH
     e3, e4 = bar.phasors(np.array(math.pi), 1)
     start = node_at(solver, path, math.pi, np.array([np.angle(e3), np.angle(e4), math.pi]))
-    nodes, _ = follow(solver, path, start, 4.0, 1.0)
+    nodes, _ = follow(solver, path, start, 4.0)
     track = Track(nodes=(start, *nodes), start=0)
     t = np.array([3.5])
-    rows = rows_on_track(solver, path, track, t, 1.0)
-    same = prove_rows(solver, path, track, t, rows, t[:, None])
-    turned = prove_rows(solver, path, track, t, rows, t[:, None] - 2 * math.pi)
-    apart = prove_rows(solver, path, track, t, rows, t[:, None] + 1e-12)
+    rows = rows_on_track(solver, path, track, t)
+    same = prove_rows(solver, path, track, rows, t[:, None])
+    turned = prove_rows(solver, path, track, rows, t[:, None] - 2 * math.pi)
+    apart = prove_rows(solver, path, track, rows, t[:, None] + 1e-12)
     assert {int(p.code[0]) for p in (same, turned, apart)} == {Certification.CERTIFIED.code}
     assert same.radius[0] < turned.radius[0] < 3 * same.radius[0]
     # what the inputs differ by is part of the radius, 1e-12 times a rate of order one
@@ -393,11 +393,11 @@ def test_every_reason_for_a_missing_certificate_is_reached() -> None:
     (dead,) = FOLDING.dead_points()
     solver, v = four_bar_at(FOLDING, np.array([2.0]), 1)
     start = node_at(solver, PATH, 2.0, v[0])
-    nodes, end = follow(solver, PATH, start, 0.0, 1.0)
+    nodes, end = follow(solver, PATH, start, 0.0)
     assert end is not None
     track = Track(nodes=(*reversed(nodes), start), start=len(nodes))
     t = np.array([1.8, 1.3, 1.0, dead])
-    rows = rows_on_track(solver, PATH, track, t[:3], 1.0)
+    rows = rows_on_track(solver, PATH, track, t[:3])
     folded = np.angle(4.0 - 2.0 * np.exp(1j * dead))
     places = np.concatenate([rows.v, [[folded, folded, dead]]])
     places[1] = four_bar_at(FOLDING, t[1:2], -1)[1][0]
@@ -405,13 +405,14 @@ def test_every_reason_for_a_missing_certificate_is_reached() -> None:
     status[2] = Status.LOST.code
     doctored = replace(
         rows,
+        t=t,
         v=places,
         status=status,
         iterations=np.zeros(4, dtype=np.int64),
         residual=np.zeros(4),
         rates=solver.rates(places, PATH.rate),
     )
-    proofs = prove_rows(solver, PATH, track, t, doctored, t[:, None])
+    proofs = prove_rows(solver, PATH, track, doctored, t[:, None])
     reasons = [Certification.of_code(int(code)) for code in proofs.code]
     proved = np.isfinite(proofs.radius) & np.isfinite(proofs.unique)
     np.testing.assert_array_equal(proved, [True, True, False, False])

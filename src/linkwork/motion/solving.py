@@ -116,6 +116,7 @@ def _arrived(model: Model, target: Array, start: Start, certify: bool) -> Positi
     path = InputPath(origin=own - input_rate(model) * t, rate=input_rate(model))
     node = node_at(solver, path, t, start.v)
     rows = Rows(
+        t=np.array([t]),
         v=start.v[None, :],
         status=np.array([Status.CONVERGED.code], dtype=np.int8),
         iterations=np.array([start.iterations]),
@@ -136,15 +137,16 @@ def _followed(model: Model, target: Array, start: Start, certify: bool) -> Posit
     inputs = asked * model.input_scale
     span = inputs - origin
     lead = int(np.argmax(np.abs(span / _input_weights(model))))
-    scale = leading_scale(model, lead)
     rate = span / span[lead]
-    path = InputPath(origin=origin - rate * origin[lead], rate=rate)
+    path = InputPath(
+        origin=origin - rate * origin[lead], rate=rate, size=leading_scale(model, lead)
+    )
     first = node_at(solver, path, float(origin[lead]), start.v)
     goal = float(inputs[lead])
     limits: tuple[Limit, ...] = ()
     for turns in _turns_away(model, goal - first.t):
         t = goal - turns * 2.0 * np.pi
-        track = track_to(solver, path, first, [t], scale)
+        track = track_to(solver, path, first, [t])
         if not track.ends:
             break
         met = why.limits_met(model, path, track, lead)
@@ -154,7 +156,7 @@ def _followed(model: Model, target: Array, start: Start, certify: bool) -> Posit
         status = reasons.pop() if len(reasons) == 1 else limits[0].status
         failure = why.beyond_reach(model, start.v, (path, lead, goal), status, limits)
         return _failed(model, target, status, failure, start)
-    rows = rows_on_track(solver, path, track, np.array([t]), scale)
+    rows = rows_on_track(solver, path, track, np.array([t]))
     place = _Place(
         path=path,
         track=track,
@@ -224,7 +226,7 @@ def _from_row(
     certificate = Certificate()
     if certify:
         asked = (place.asked * model.input_scale)[None, :]
-        proofs = prove_rows(solver, place.path, place.track, np.array([place.t]), rows, asked)
+        proofs = prove_rows(solver, place.path, place.track, rows, asked)
         proved = bool(np.isfinite(proofs.radius[0]))
         certification = Certification.of_code(int(proofs.code[0]))
         if certification is Certification.CERTIFIED and not place.joined:

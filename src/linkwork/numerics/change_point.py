@@ -57,8 +57,9 @@ class ChangePoint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Crossing:
-    """A change point: position (N,), directions of both curves (2, N), parameter with bracket."""
+    """A change point: parameter with bracket, position (N,), directions of both curves (2, N)."""
 
+    t: float
     v: Array
     directions: Array
     bracket: tuple[float, float]

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -214,7 +214,8 @@ class _Tracer:
         goal = node.t + sign * _LEG * size
         if own:
             goal = self._next_plane(node.t, sign)
-        nodes, end = follow(led.solver, led.path, node, goal, size, opt.track, until=done)
+        path = replace(led.path, size=size)
+        nodes, end = follow(led.solver, path, node, goal, opt.track, watch=done)
         chain = [node, *nodes]
         if passed:
             crossing = self._crossing(led, passed[0])

@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
+from linkwork.foundation.angles import within_half_a_turn
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.track import InputPath, Node, node_at
@@ -30,7 +31,8 @@ class Led:
     @property
     def path(self) -> InputPath:
         """The leading variable is its own path."""
-        return InputPath(origin=np.zeros(1), rate=np.ones(1))
+        size = float(self.solver.variable_scale[-1])
+        return InputPath(origin=np.zeros(1), rate=np.ones(1), size=size)
 
     def node(self, v: Array) -> Node:
         """The node of a position (N,) given in the whole's order."""
@@ -74,9 +76,7 @@ def fastest_leader(
 
 def apart(leads: Leads, a: Array, b: Array) -> Array:
     """b - a with angles reduced to half a turn, (..., N)."""
-    gap: Array = b - a
-    turned = gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi))
-    return np.where(leads.turns, turned, gap)
+    return within_half_a_turn(b - a, leads.turns)
 
 
 def same_position(leads: Leads, a: Array, b: Array) -> bool:

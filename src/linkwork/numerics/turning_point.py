@@ -104,9 +104,8 @@ def turn_beyond(
         led.path,
         node,
         node.t + sign * weight,
-        weight,
         replace(opt.track, most_steps=_MOST_STEPS),
-        until=lambda _, after: bool(after.first[place] * node.first[place] <= 0.0),
+        watch=lambda _, after: bool(after.first[place] * node.first[place] <= 0.0),
     )
     if not nodes or nodes[-1].first[place] * node.first[place] > 0.0:
         return None

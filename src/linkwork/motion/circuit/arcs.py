@@ -153,6 +153,7 @@ class Explorer:
             width = 0.5 * (found.bracket[1] - found.bracket[0])
             self.crossings.append(
                 Crossing(
+                    t=float(v[p]),
                     v=v,
                     directions=directions,
                     bracket=(float(v[p]) - width, float(v[p]) + width),

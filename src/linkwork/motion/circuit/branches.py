@@ -155,7 +155,7 @@ def _samples(leads: Leads, leg: Leg, fine: int) -> tuple[Array, Array, Array]:
     track = Track(nodes=tuple(ordered), start=0)
     led = leg.led
     if fine > 1 and len(t) > 1:
-        rows = rows_on_track(led.solver, led.path, track, t, float(leads.scale[led.lead]))
+        rows = rows_on_track(led.solver, led.path, track, t)
         good = rows.status == Status.CONVERGED.code
         t, v, first = t[good], led.whole(rows.v[good]), led.whole(rows.rates.first[good])
     else:
