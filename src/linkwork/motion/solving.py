@@ -93,7 +93,7 @@ def solve(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Place:
-    """Where on a track the position lies.
+    """Where on a track the position lies, as a batch of one row.
 
     ``asked`` (p,): the input values meant there, everyday units, whole turns aside. ``gain`` (N,):
     what whole turns that were left out add to the variables; ``joined``: whether they are proved.
@@ -101,7 +101,7 @@ class _Place:
 
     path: InputPath
     track: Track
-    t: float
+    rows: Rows
     asked: Array
     gain: Array | None = None
     joined: bool = True
@@ -124,8 +124,8 @@ def _arrived(model: Model, target: Array, start: Start, certify: bool) -> Positi
         rates=solver.rates(start.v[None, :], input_rate(model)),
     )
     track = Track(nodes=(node,), start=0)
-    place = _Place(path=path, track=track, t=t, asked=target)
-    return _from_row(model, target, place, rows, start, certify, _other_root(model, start.v))
+    place = _Place(path=path, track=track, rows=rows, asked=target)
+    return _from_row(model, target, place, start, certify, _other_root(model, start.v))
 
 
 def _followed(model: Model, target: Array, start: Start, certify: bool) -> Position:
@@ -160,12 +160,12 @@ def _followed(model: Model, target: Array, start: Start, certify: bool) -> Posit
     place = _Place(
         path=path,
         track=track,
-        t=t,
+        rows=rows,
         asked=asked - (turns * model.units.angle.turn if turns else 0.0),
         gain=None if laps is None else laps.gain,
         joined=laps is None or laps.proved,
     )
-    return _from_row(model, target, place, rows, start, certify)
+    return _from_row(model, target, place, start, certify)
 
 
 def _turns_away(model: Model, way: float) -> list[int]:
@@ -216,13 +216,12 @@ def _from_row(
     model: Model,
     target: Array,
     place: _Place,
-    rows: Rows,
     start: Start,
     certify: bool,
     failure: Failure | None = None,
 ) -> Position:
     """The one row of a batch as a position, with its certificate."""
-    solver = model.compiled.solver
+    solver, rows = model.compiled.solver, place.rows
     certificate = Certificate()
     if certify:
         asked = (place.asked * model.input_scale)[None, :]

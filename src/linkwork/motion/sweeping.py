@@ -275,11 +275,9 @@ class _Sweep:
         """Everything in one result."""
         first, *further = (table.finished() for table in self.tables)
         added = [first[1], *(np.ones(len(rows), dtype=bool) for rows, _ in further)]
-        return motion_of_rows(
-            self.model,
-            SolvedRows.joined([first[0], *(rows for rows, _ in further)]),
-            message,
-            added=np.concatenate(added),
+        rows = SolvedRows.joined([first[0], *(rows for rows, _ in further)])
+        return replace(
+            motion_of_rows(self.model, rows, message, np.concatenate(added)),
             limits=tuple(self.limits),
             output_limits=tuple(self.output_limits),
             circuit=self.circuit,
@@ -322,5 +320,5 @@ def _led_to(drive: Drive, start: Start, t: float, certify: bool) -> tuple[Node, 
 def _without_start(model: Model, start: Start) -> Motion:
     rows = SolvedRows.blank(model.everyday_rows, model.compiled.solver.variables, Status.NO_START)
     nothing_added = np.zeros(len(rows), dtype=bool)
-    motion = motion_of_rows(model, rows, start.message, added=nothing_added)
+    motion = motion_of_rows(model, rows, start.message, nothing_added)
     return replace(motion, failure=start.failure)

@@ -82,12 +82,12 @@ def bounds(system: System, v: Array, jacobian: Array, matrix: Array, known: Arra
     pairs = _Pairs(bend, w, known)
     loss = size @ bend.jacobian_rounding
 
-    residual = system.residual(v)
+    residual, slope_known = system.residual(v), jacobian[:, :, n:]
     y = np.abs(_apply(matrix, residual))
     y += _apply(size, bend.rounding + (n + 2) * _UNIT * np.abs(residual))
     y += np.minimum(
-        _first_order(bend, pairs, matrix, jacobian, loss, known, turned),
-        _as_a_whole(bend, pairs, matrix, jacobian, known, turned),
+        _first_order(bend, pairs, np.abs(matrix @ slope_known) + loss[:, :, n:], known, turned),
+        _as_a_whole(bend, pairs, _lines(bend, matrix, slope_known), known, turned),
     )
 
     z = np.abs(np.eye(n) - matrix @ jacobian[:, :, :n]) + loss[:, :, :n]
@@ -120,35 +120,25 @@ class _Pairs:
 
 
 def _first_order(
-    bend: Curvature,
-    pairs: _Pairs,
-    matrix: Array,
-    jacobian: Array,
-    loss: Array,
-    known: Array,
-    turned: Array,
+    bend: Curvature, pairs: _Pairs, slope: Array, known: Array, turned: Array
 ) -> Array:
-    """|A (F(x0, k) - F(x0, k0))| by the derivative, plus what the phases bend."""
-    n = matrix.shape[1]
-    change = _apply(np.abs(matrix @ jacobian[:, :, n:]) + loss[:, :, n:], known)
+    """|A (F(x0, k) - F(x0, k0))| by the derivative (B, n, p), plus what the phases bend."""
+    change = _apply(slope, known)
     change += 0.5 * _apply(bend.phase, turned**2)
     return change + _apply(pairs.known, pairs.spread * turned[:, pairs.known_group])
 
 
-def _as_a_whole(
-    bend: Curvature,
-    pairs: _Pairs,
-    matrix: Array,
-    jacobian: Array,
-    known: Array,
-    turned: Array,
-) -> Array:
+def _as_a_whole(bend: Curvature, pairs: _Pairs, lines: Array, known: Array, turned: Array) -> Array:
     """The same by the moduli alone; better where a phase turns far."""
-    n, loops = matrix.shape[1], bend.loop_rows
-    lines = np.abs(matrix[:, :, loops:] @ jacobian[:, loops:, n:])
-    lines += np.abs(matrix[:, :, loops:]) @ bend.jacobian_rounding[:, loops:, n:]
     change = _apply(bend.phase, turned) + _apply(pairs.known, pairs.spread)
     return change + _apply(lines, known)
+
+
+def _lines(bend: Curvature, matrix: Array, slope_known: Array) -> Array:
+    """What linear rows make of known variables, (B, n, p)."""
+    n, rest = matrix.shape[1], slice(bend.loop_rows, None)
+    size = np.abs(matrix[:, :, rest]) @ bend.jacobian_rounding[:, rest, n:]
+    return np.abs(matrix[:, :, rest] @ slope_known[:, rest]) + size
 
 
 def _apply(matrix: Array, vector: Array) -> Array:

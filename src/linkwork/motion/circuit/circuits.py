@@ -241,7 +241,7 @@ class _Circuits:
             rows.branch[here], rows.limit[here] = named.name, branch.limits
             code = Certification.CERTIFIED if named.certified else Certification.MOTION_NOT_PROVED
             rows.certification[here] = (code if self.certify else Certification.NOT_ASKED).code
-        return motion_of_rows(model, rows, "", added=np.zeros(len(v), dtype=bool), circuit=None)
+        return motion_of_rows(model, rows, "", np.zeros(len(v), dtype=bool))
 
 
 def _end_of(group: _Group) -> CircuitEnd:
