@@ -49,6 +49,6 @@ def beyond_change_point(
         off = float(np.abs((done.v[0] - guess)[mine] / weights).max())
         gap = abs(h) * apart if np.isfinite(apart) else abs(h)
         node = node_at(solver, path, crossing.t + h, done.v[0])
-        if off <= _CLOSER * gap and node.condition < _REGULAR:
+        if off <= _CLOSER * gap and node.nearness < _REGULAR:
             return node
     return None

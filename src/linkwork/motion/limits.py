@@ -82,12 +82,12 @@ def _end(drive: Drive, nodes: Sequence[Node], end: End, side: float, certify: bo
         crossing = locate_change_point(drive.solver, drive.path, nodes[-1], side)
         if crossing is not None:
             return _crossing_end(drive, crossing, side, certify)
-        # a node that is proved with the others; rounding is worst at the very last ones
-        sound = (node for node in reversed(nodes) if node.condition < _SOUND)
-        last = next(sound, nodes[-1])
-        turning = turn_beyond(drive.leads, last.v, last.first, side)
-        if turning is not None:
-            return _dead_end(drive, last, turning, side, certify)
+        # first from a node that is proved with the others; rounding is worst at the very last ones
+        sound = (node for node in reversed(nodes) if node.nearness < _SOUND)
+        for last in (next(sound, nodes[-1]), nodes[-1]):
+            turning = turn_beyond(drive.leads, last.v, last.first, side)
+            if turning is not None:
+                return _dead_end(drive, last, turning, side, certify)
     edges = sorted((end.reached, end.failed))
     return BranchEnd(
         side=side,

@@ -66,17 +66,20 @@ def prove_rows(
         return unproved(count, Certification.NO_POSITION)
     nodes = _nodes_around(track, rows.t[found])
     beads, place = _beads(solver, [track.nodes[k] for k in nodes], rows, asked, found)
-    proof = prove_path(solver, path, beads, progress)
-    joined = proof.connected_to(int(place[nodes.index(track.start)]))
+    anchor = int(place[nodes.index(track.start)])
+    proof = prove_path(solver, path, beads, anchor=anchor, progress=progress)
+    joined = proof.connected_to(anchor)
     mine = place[len(nodes) :]
     proofs = unproved(count, Certification.NO_POSITION)
     position = proof.position.holds[mine]
-    proofs.code[found] = np.where(
-        joined[mine],
-        Certification.CERTIFIED.code,
-        np.where(
-            position, Certification.MOTION_NOT_PROVED.code, Certification.POSITION_NOT_PROVED.code
-        ),
+    proofs.code[found] = np.select(
+        [joined[mine], ~position, proof.given_up_before(anchor)[mine]],
+        [
+            Certification.CERTIFIED.code,
+            Certification.POSITION_NOT_PROVED.code,
+            Certification.PROOF_TOO_LONG.code,
+        ],
+        default=Certification.MOTION_NOT_PROVED.code,
     )
     proofs.radius[found] = np.where(position, proof.position.radius[mine], np.nan)
     proofs.unique[found] = np.where(position, proof.position.alone_within[mine], np.nan)
@@ -90,7 +93,7 @@ def _nodes_around(track: Track, t: Array) -> list[int]:
     return [
         k
         for k, node in enumerate(track.nodes)
-        if low <= node.t <= high or node.condition < _FAR_FROM_SINGULAR
+        if low <= node.t <= high or node.nearness < _FAR_FROM_SINGULAR
     ]
 
 
@@ -130,7 +133,7 @@ def way_is_proved(solver: BlockSolver, path: InputPath, nodes: Sequence[Node]) -
         second=np.stack([node.second for node in nodes]),
         spread=rounding_of_inputs(v, solver.unknowns),
     )
-    return bool(prove_path(solver, path, beads).connected_to(0).all())
+    return bool(prove_path(solver, path, beads, anchor=0).connected_to(0).all())
 
 
 def _apart(solver: BlockSolver, v: Array, asked: Array) -> Array:

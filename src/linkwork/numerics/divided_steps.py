@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,22 +13,28 @@ from linkwork.foundation.status import Status
 from linkwork.numerics.leaders import Led
 from linkwork.numerics.track import Node, node_at
 
-__all__ = ["divided", "node_between", "one_way", "share_at"]
+__all__ = ["divided", "node_between", "one_way", "share_at", "sign_change"]
 
 _CONVERGED = Status.CONVERGED.code
 _STILL = 1e-11  # relative: a variable that moves less over a step rests
 _UNIT = np.finfo(float).eps
 _DIVISIONS = 12  # halvings of a step in which a variable turns back several times
 _CUBIC = 1e-3  # relative error of a cubic that is good enough
+_SEARCH = 80  # positions solved to find a sign change
+_EDGE = 1e-3  # of a bracket: nearer to its ends nothing is tried
 _SHARES = np.linspace(0.0625, 0.9375, 15)
 
 
-def node_between(led: Led, low: Node, high: Node, s: float) -> Node | None:
-    """The node at the fraction s of a step; ``None`` if Newton-Raphson does not find it."""
+def node_between(led: Led, low: Node, high: Node, s: float, sharp: bool = False) -> Node | None:
+    """The node at the fraction s of a step; ``None`` if Newton-Raphson does not find it.
+
+    ``sharp``: iterate down to rounding.
+    """
     h = high.t - low.t
     guess = _hermite(s, h, low.v, low.first, high.v, high.first)
     guess[-1] = low.t + s * h
-    found = led.solver.solve(guess[None, :])
+    options = replace(led.solver.options, equation_tolerance=_UNIT) if sharp else None
+    found = led.solver.solve(guess[None, :], options)
     if found.status[0] != _CONVERGED:
         return None
     return node_at(led.solver, led.path, float(guess[-1]), found.v[0])
@@ -52,26 +60,46 @@ def one_way(led: Led, place: int, before: Node, after: Node) -> list[Node]:
     chain = [before]
     for low, high in itertools.pairwise(divided(led, place, before, after)):
         if low.first[place] * high.first[place] < 0.0:
-            chain.append(_turned(led, place, low, high))
+            chain.append(sign_change(led, low, high, lambda node: float(node.first[place])))
         chain.append(high)
     return chain
 
 
-def _turned(led: Led, place: int, low: Node, high: Node) -> Node:
-    """Where a variable turns back between two nodes at which it goes opposite ways."""
-    for _ in range(60):
-        reach = min(abs(low.first[place]), abs(high.first[place])) * abs(high.t - low.t)
-        if reach <= _UNIT:
+def sign_change(
+    led: Led, low: Node, high: Node, rate: Callable[[Node], float], sharp: bool = False
+) -> Node:
+    """The node between two at which a rate changes sign, to rounding.
+
+    False position with halved end values (Illinois: Dowell & Jarratt 1971, doi:10.1007/BF01934364),
+    and bisection where the bracket does not shrink.
+    """
+    a, b = rate(low), rate(high)
+    best = low if abs(a) < abs(b) else high
+    least = min(abs(a), abs(b))
+    before, kept = np.inf, 0  # the bracket's width three tries ago, the end that was kept last
+    for number in range(_SEARCH):
+        width = abs(high.t - low.t)
+        if least == 0.0 or width <= 4.0 * _UNIT * max(1.0, abs(low.t)):
             break
-        s = float(low.first[place] / (low.first[place] - high.first[place]))
-        here = node_between(led, low, high, min(max(s, 0.1), 0.9))
-        if here is None:
+        s = a / (a - b)
+        if number % 3 == 0:
+            s = s if width < 0.25 * before else 0.5
+            before = width
+        here = node_between(led, low, high, min(max(s, _EDGE), 1.0 - _EDGE), sharp)
+        if here is None or here.t in (low.t, high.t):
             break
-        if here.first[place] * low.first[place] > 0.0:
-            low = here
+        value = rate(here)
+        if abs(value) < least:
+            best, least = here, abs(value)
+        if (value > 0.0) == (a > 0.0):
+            low, a = here, value
+            b = 0.5 * b if kept < 0 else b
+            kept = -1
         else:
-            high = here
-    return min(low, high, key=lambda node: abs(float(node.first[place])))
+            high, b = here, value
+            a = 0.5 * a if kept > 0 else a
+            kept = 1
+    return best
 
 
 def divided(led: Led, place: int, a: Node, b: Node, depth: int = _DIVISIONS) -> list[Node]:

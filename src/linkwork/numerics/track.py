@@ -50,9 +50,9 @@ class TrackOptions:
     ``largest_correction`` [weighted]: how far Newton may move a prediction. ``aim`` is the
     correction the step size aims at. ``contraction``: largest ratio of successive corrections.
     ``rate_error``: how far the rate times the step may be from its prediction [weighted].
-    ``largest_condition``: of the Jacobian. Beyond, rounding hides on which of two crossing
-    branches a position lies: ‖J⁻¹‖² times the rounding of the equations must stay small
-    (Newton-Kantorovich), and 3e6² · 1e-14 is a tenth.
+    ``largest_condition``: nearness to a singular position. Beyond, rounding hides on which
+    of two crossing branches a position lies: ‖J⁻¹‖² times the rounding of the equations must stay
+    small (Newton-Kantorovich), and 3e6² · 1e-14 is a tenth.
     ``smallest_step``: relative to the path's natural length, below which the track ends.
     """
 
@@ -75,7 +75,10 @@ BOLD = TrackOptions(
 
 @dataclass(frozen=True, kw_only=True)
 class Node:
-    """A solved position on a track with its derivatives by t; ``v`` etc. are (N,)."""
+    """A solved position on a track with its derivatives by t; ``v`` etc. are (N,).
+
+    ``condition``, ``nearness``: see :class:`Rates`.
+    """
 
     t: float
     v: Array
@@ -83,6 +86,7 @@ class Node:
     second: Array
     orientation: StatusArray
     condition: float
+    nearness: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,6 +144,7 @@ def _node(t: float, v: Array, rates: Rates) -> Node:
         second=rates.second[0],
         orientation=rates.orientation[0],
         condition=float(rates.condition[0]),
+        nearness=float(rates.nearness[0]),
     )
 
 
@@ -162,7 +167,7 @@ def follow(
     walk = _Walk(solver, path, start, goal, opt)
     if goal == start.t:
         return walk.nodes, None
-    if not (start.condition <= opt.largest_condition and np.isfinite(start.second).all()):
+    if not (start.nearness <= opt.largest_condition and np.isfinite(start.second).all()):
         failed = End(reached=start.t, failed=start.t, status=Status.START_SINGULAR)
         return walk.nodes, failed
     for _ in range(opt.most_steps):
@@ -258,7 +263,7 @@ def _step(
     rates = solver.rates(found.v, path.rate)
     if not (rates.orientation[0] == here.orientation).all():
         return None, None
-    if not rates.condition[0] <= opt.largest_condition:
+    if not rates.nearness[0] <= opt.largest_condition:
         return None, None
     drift = (rates.first[0] - here.first - h * here.second) / solver.variable_scale
     turn = float(np.abs(drift * h).max())
@@ -305,6 +310,7 @@ def joined_rows(pieces: Sequence[Rows]) -> Rows:
             first=stacked(lambda p: p.rates.first),
             second=stacked(lambda p: p.rates.second),
             condition=stacked(lambda p: p.rates.condition),
+            nearness=stacked(lambda p: p.rates.nearness),
             orientation=np.concatenate([p.rates.orientation for p in pieces]),
         ),
     )

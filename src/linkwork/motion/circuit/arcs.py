@@ -197,7 +197,7 @@ def _beyond(leads: Leads, v: Array, direction: Array, other: Array) -> Array | N
         found = led.whole(done.v[0])
         moving = speed > 0.0
         off = float(np.abs((found - guess) / leads.scale)[moving].max())
-        if off <= _CLOSER * stride * gap and led.node(found).condition < _REGULAR:
+        if off <= _CLOSER * stride * gap and led.node(found).nearness < _REGULAR:
             return found
     return None
 

@@ -18,6 +18,7 @@ from linkwork.foundation.status import Status
 from linkwork.motion.circuit.arcs import Arc, Explorer, positions_near
 from linkwork.motion.circuit.branches import CurveBranch
 from linkwork.motion.circuit.seeding import Seeding
+from linkwork.motion.circuit.weakest import weakest_place
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import change_point_limit, dead_point_limit
 from linkwork.motion.lock_step import lock_step
@@ -125,18 +126,17 @@ class _Circuits:
     def _circuit(self, name: str, group: _Group) -> Circuit:
         p, scale = self.leads.parameter, self.drive.unit
         pieces = [(arc, branch) for arc in group.arcs for branch in arc.branches]
-        branches = tuple(
+        branches = [branch for _, branch in pieces]
+        named = tuple(
             self._branch(f"{name} branch {number}", arc, branch)
             for number, (arc, branch) in enumerate(pieces, start=1)
         )
-        ranges = np.array([branch.range(p) for _, branch in pieces]) / scale
+        ranges = np.array([branch.range(p) for branch in branches]) / scale
         turns = [turn for arc in group.arcs for walk in arc.walks for turn in walk.turns]
         end = _end_of(group)
-        motion = self._motion([branch for _, branch in pieces], branches)
-        singular, weakest = self._weakest([branch for _, branch in pieces])
-        if turns or group.crossings:
-            singular = 0.0
-            weakest = float((turns[0].t if turns else group.crossings[0].v[p]) / scale)
+        motion = self._motion(branches, named)
+        limits = [limit.v for limit in turns] + [limit.v for limit in group.crossings]
+        singular, weakest = (0.0, limits[0]) if limits else weakest_place(self.leads, branches)
         around = self._around(group) if end.closed else None
         return Circuit(
             name=name,
@@ -148,13 +148,13 @@ class _Circuits:
             ),
             turns=self._turns(around),
             turning={} if around is None else self._turning(around),
-            branches=branches,
+            branches=named,
             dead_points=tuple(dead_point_limit(self.drive, turn) for turn in turns),
             change_points=tuple(
                 change_point_limit(self.drive, crossing) for crossing in group.crossings
             ),
             smallest_singular_value=singular,
-            weakest=weakest,
+            weakest=float(weakest[p] / scale),
             motion=motion,
         )
 
@@ -216,14 +216,6 @@ class _Circuits:
             for name, k in (links or angles).items()
         }
 
-    def _weakest(self, pieces: Sequence[CurveBranch]) -> tuple[float, float]:
-        """The smallest singular value of the weighted Jacobian, and the input there."""
-        v = np.concatenate([branch.v for branch in pieces])
-        values = np.linalg.svd(self.leads.jacobian(v), compute_uv=False)[:, -1]
-        k = int(np.argmin(values))
-        scale = self.drive.unit
-        return float(values[k]), float(v[k, self.leads.parameter] / scale)
-
     def _motion(self, pieces: Sequence[CurveBranch], names: Sequence[Branch]) -> Motion:
         model, solver = self.model, self.model.compiled.solver
         v = np.concatenate([branch.v for branch in pieces])
@@ -231,7 +223,7 @@ class _Circuits:
         rows = SolvedRows.blank(inputs, solver.variables, Status.CONVERGED)
         rates = solver.rates(v, self.drive.path.rate)
         rows.v[:] = v
-        regular = rates.condition < _REGULAR
+        regular = rates.nearness < _REGULAR
         rows.first[regular], rows.second[regular] = rates.first[regular], rates.second[regular]
         rows.residual[:], rows.condition[:] = solver.residual(v), rates.condition
         begin = 0

@@ -87,7 +87,7 @@ class Seeding:
         """Whether the input can lead at a position: not at dead points and change points."""
         own = self.drive.leads.by(self.drive.leads.parameter)
         largest = _REGULAR if most is None else most
-        return own is not None and own.node(v).condition < largest
+        return own is not None and own.node(v).nearness < largest
 
     def _further_inputs(self, start: float) -> list[float]:
         """Equally spaced over a turn, or over the input's table."""
