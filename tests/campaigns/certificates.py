@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 from flint import arb
 
-from linkwork.numerics.certificate import Bounds, Radii, bounds, radii
+from linkwork.numerics.certificate import Bounds, Majorant, Radii, bounds, expansion, radii
 from tests.campaigns.positions import Placed
 from tests.oracles.balls import BallTable, ball, certainly_above, exactly, newton
 
@@ -99,6 +99,13 @@ def _case(rng: np.random.Generator, placed: Placed, number: int) -> _Case | None
             10 ** rng.uniform(-14, 0.3, len(known)) if number % 8 < 4 else 10 ** rng.uniform(-6, -2)
         )
         known = size * table.variable_scale[n:] * (rng.random(len(known)) < 0.8)
+    if number % 3 == 2:  # in fitted weights, as a step is proved
+        place = expansion(table, v[None, :], jacobian, matrix[None])
+        weights = table.variable_scale.copy()
+        fitted = Majorant(place, known[None, :]).fitted(weights[:n])[0]
+        weights[:n] = fitted / (fitted / weights[:n]).max()  # their ratios are what matters
+        table = replace(table, variable_scale=weights)
+        placed = replace(placed, table=table)
     claimed = bounds(table, v[None, :], jacobian, matrix[None], known[None, :])
     return _Case(
         placed=placed,

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.proof import links_hold, prove, rounding_of_inputs
+from linkwork.numerics.proof import links_hold, prove, reach, rounding_of_inputs
 from linkwork.numerics.proven_path import Beads, prove_path
 from linkwork.numerics.track import InputPath
 from tests.campaigns.certificates import Verdict
@@ -37,7 +37,7 @@ def judge_steps(count: int, seed: int) -> Verdict:
         verdict.counts["mechanisms"] += 1
         where = f"{kind}, seed {seed}, mechanism {verdict.counts['mechanisms']}: "
         for claim in (
-            *_true_step(table, branch, verdict),
+            *_true_step(rng, table, branch, verdict),
             *_wrong_steps(rng, table, branch, verdict),
         ):
             verdict.false.append(where + claim)
@@ -106,32 +106,37 @@ def beads_of(solver: BlockSolver, v: Array) -> Beads:
     )
 
 
-def _true_step(table: LoopTable, branch: Array, verdict: Verdict) -> list[str]:
+def _true_step(
+    rng: np.random.Generator, table: LoopTable, branch: Array, verdict: Verdict
+) -> list[str]:
     """Whether a step that is proved stays in its ball and arrives where the branch leads."""
     solver = blocks_of(table)
-    n, w = table.unknowns, table.variable_scale[: table.unknowns]
+    n = table.unknowns
     false = []
     balls = BallTable(table)
     for last in (200, 60, 15):
         v, following = branch[:1], branch[last : last + 1]
         spread = np.abs(following - v)[:, n:] + 2 * rounding_of_inputs(following, n)
-        reach = prove(solver, v, spread)
+        around = reach(solver, v, spread)
         arrival = prove(solver, following, rounding_of_inputs(following, n))
-        if not (arrival.holds[0] and links_hold(solver, v, following, reach, arrival.exists)[0]):
+        if not (arrival.holds[0] and links_hold(v, following, around, arrival.each)[0]):
             verdict.counts["steps not proved at once"] += 1
             continue
         verdict.counts["steps proved at once"] += 1
         way = branch[: last + 1]
-        if not (np.abs(way - v)[:, :n] <= reach.each[0, :n] + 1e-9).all():
+        if not (np.abs(way - v)[:, :n] <= around.each[0] + 1e-9).all():
             false.append("the branch leaves the radius of an unknown within a proved step")
-        if not (np.abs((way - v)[:, :n] / w) <= reach.exists[0, 0] + 1e-9).all():
-            false.append("the branch leaves the ball of a proved step")
+        for here in way[::100]:
+            others = _others(rng, table, here)
+            verdict.counts["other roots beside a step"] += len(others)
+            if (np.abs(others - v)[:, :n] < around.alone[0] * (1.0 - 1e-9)).all(axis=1).any():
+                false.append("another root lies in the box in which there is only one")
         for end, place in ((following[0], arrival), (way[last // 2], None)):
             root, proved = newton(balls, exactly(end))
             off = max(abs(float((a - b).mid())) for a, b in zip(root, exactly(end), strict=True))
             if not proved or off > 1e-9:
                 false.append("the branch is lost in balls")
-            if place is not None and not off <= place.exists[0, 0] * max(w):
+            if place is not None and not off <= place.exists[0, 0] * table.variable_scale[:n].max():
                 false.append("a true position is not within r- of the end of a step")
     return false
 

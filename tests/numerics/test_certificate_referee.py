@@ -19,9 +19,10 @@ from linkwork.foundation.status import Status
 from linkwork.kernels.loop_table import LinearRows, LoopTable
 from linkwork.kernels.phasor_rows import PhasorRows
 from linkwork.motion.proving import prove_rows
+from linkwork.numerics import proven_path
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.certificate import Bounds, bounds, radii
-from linkwork.numerics.proof import Proof, links_hold, prove, rounding_of_inputs
+from linkwork.numerics.proof import Proof, links_hold, prove, reach, rounding_of_inputs
 from linkwork.numerics.proven_path import ProvenPath, prove_path
 from linkwork.numerics.track import InputPath, Track, follow, node_at, rows_on_track
 from tests.campaigns.certificates import judge
@@ -291,13 +292,13 @@ def test_rows_a_whole_turn_away_count_the_rounding_of_two_pi() -> None:
     solver, path = blocks_of(four_bar_table(bar)), PATH
     e3, e4 = bar.phasors(np.array(math.pi), 1)
     start = node_at(solver, path, math.pi, np.array([np.angle(e3), np.angle(e4), math.pi]))
-    nodes, _ = follow(solver, path, start, 4.0, 1.0)
+    nodes, _ = follow(solver, path, start, 4.0)
     track = Track(nodes=(start, *nodes), start=0)
     t = np.array([3.5])
-    rows = rows_on_track(solver, path, track, t, 1.0)
-    same = prove_rows(solver, path, track, t, rows, t[:, None])
-    turned = prove_rows(solver, path, track, t, rows, t[:, None] - 2 * math.pi)
-    apart = prove_rows(solver, path, track, t, rows, t[:, None] + 1e-12)
+    rows = rows_on_track(solver, path, track, t)
+    same = prove_rows(solver, path, track, rows, t[:, None])
+    turned = prove_rows(solver, path, track, rows, t[:, None] - 2 * math.pi)
+    apart = prove_rows(solver, path, track, rows, t[:, None] + 1e-12)
     assert {int(p.code[0]) for p in (same, turned, apart)} == {Certification.CERTIFIED.code}
     assert same.radius[0] < turned.radius[0] < 3 * same.radius[0]
     # what the inputs differ by is part of the radius, 1e-12 times a rate of order one
@@ -332,9 +333,8 @@ def test_a_coarse_table_is_proved_by_halving_its_steps(step: int, side: int) -> 
     solver, v = four_bar_at(ROCKER, fine, side)
     v = v[::step]
     spread = np.full((len(v), 1), math.radians(step))
-    reach = prove(solver, v, spread)
     arrival = prove(solver, v, rounding_of_inputs(v, 2))
-    at_once = links_hold(solver, v[:-1], v[1:], _cut(reach, slice(None, -1)), arrival.exists[1:])
+    at_once = links_hold(v[:-1], v[1:], reach(solver, v[:-1], spread[:-1]), arrival.each[1:])
     assert not at_once.any()
     found = prove_path(solver, PATH, beads_of(solver, v))
     assert found.linked.all()
@@ -349,21 +349,14 @@ def test_a_coarse_table_is_proved_by_halving_its_steps(step: int, side: int) -> 
     np.testing.assert_array_equal(found.linked, expected)
 
 
-def _cut(p: Proof, index: slice) -> Proof:
-    return Proof(
-        holds=p.holds[index],
-        exists=p.exists[index],
-        unique=p.unique[index],
-        each=p.each[index],
-    )
-
-
 def test_a_position_is_connected_through_proved_steps_only() -> None:
     holds = np.array([True, True, True, True, False, True, True])
     nothing = np.zeros((7, 1))
     position = Proof(holds=holds, exists=nothing, unique=nothing, each=nothing)
     linked = np.array([True, False, True, True, True, True])
-    path = ProvenPath(position=position, linked=linked, pieces=np.ones(6, dtype=np.int64))
+    path = ProvenPath(
+        position=position, linked=linked, pieces=np.ones(6, dtype=np.int64), given_up=~linked
+    )
     for anchor, expected in (
         (0, [1, 1, 0, 0, 0, 0, 0]),
         (1, [1, 1, 0, 0, 0, 0, 0]),
@@ -371,6 +364,68 @@ def test_a_position_is_connected_through_proved_steps_only() -> None:
         (6, [0, 0, 1, 1, 0, 1, 1]),
     ):
         np.testing.assert_array_equal(path.connected_to(anchor), np.array(expected, dtype=bool))
+
+
+def test_the_first_step_without_a_proof_tells_why_there_is_none_beyond() -> None:
+    position = Proof(
+        holds=np.ones(8, dtype=bool),
+        exists=np.zeros((8, 1)),
+        unique=np.zeros((8, 1)),
+        each=np.zeros((8, 1)),
+    )
+    #        0-1    1-2   2-3   3-4    4-5   5-6    6-7
+    linked = [False, True, True, False, True, False, True]
+    given_up = [True, False, False, False, False, True, False]
+    path = ProvenPath(
+        position=position,
+        linked=np.array(linked),
+        pieces=np.ones(7, dtype=np.int64),
+        given_up=np.array(given_up),
+    )
+    for anchor, expected in (
+        (2, [1, 0, 0, 0, 0, 0, 0, 0]),  # to the right the first one was refused, not given up
+        (4, [0, 0, 0, 0, 0, 0, 1, 1]),
+        (7, [1, 1, 1, 1, 1, 1, 0, 0]),
+        (0, [0, 1, 1, 1, 1, 1, 1, 1]),
+    ):
+        np.testing.assert_array_equal(path.given_up_before(anchor), np.array(expected, dtype=bool))
+
+
+def test_a_proof_stops_at_its_allowance_and_begins_at_the_anchor() -> None:
+    theta = np.radians(np.arange(0.0, 361.0, 60.0))
+    solver, v = four_bar_at(ROCKER, theta, 1)
+    beads = beads_of(solver, v)
+    whole = prove_path(solver, PATH, beads, anchor=3)
+    assert whole.linked.all()
+    assert not whole.given_up.any()
+    spent = int((whole.pieces - 1).sum())
+    assert spent > 12
+    exact = prove_path(solver, PATH, beads, anchor=3, most=spent)
+    assert exact.linked.all()
+    for most in range(spent):
+        found = prove_path(solver, PATH, beads, anchor=3, most=most)
+        assert int((found.pieces - 1).sum()) == most
+        assert found.given_up.any()
+        np.testing.assert_array_equal(found.linked, ~found.given_up)
+        # what was paid for lies next to the anchor
+        away = np.abs(np.arange(6) + 0.5 - 3)
+        assert away[found.linked].max(initial=0.0) <= away[~found.linked].min() + 1.0
+    assert not prove_path(solver, PATH, beads, anchor=3, most=0).linked.all()
+
+
+def test_steps_beyond_one_that_is_refused_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(proven_path, "_LANES", 1)  # one after the other
+    theta = np.radians(np.arange(0.0, 361.0, 60.0))
+    solver, v = four_bar_at(ROCKER, theta, 1)
+    v[2] = four_bar_at(ROCKER, theta, -1)[1][2]
+    beads = beads_of(solver, v)
+    for anchor, beyond in ((4, slice(0, 1)), (0, slice(3, None))):
+        found = prove_path(solver, PATH, beads, anchor=anchor)
+        every = prove_path(solver, PATH, beads)
+        assert every.linked[beyond].all()
+        np.testing.assert_array_equal(found.connected_to(anchor), every.connected_to(anchor))
+        assert every.pieces[beyond].min() > 1
+        assert (found.pieces[beyond] == 1).all()
 
 
 def test_the_proofs_of_a_long_path_are_those_of_its_pieces() -> None:
@@ -389,15 +444,27 @@ def test_the_proofs_of_a_long_path_are_those_of_its_pieces() -> None:
 # ------------------------------------------------------------------ reasons
 
 
-def test_every_reason_for_a_missing_certificate_is_reached() -> None:
+def too_long_to_prove(monkeypatch: pytest.MonkeyPatch) -> Certification:
+    """Of a row three proved halvings away from the start, where none is allowed."""
+    monkeypatch.setattr(proven_path, "_MOST", 0)
+    monkeypatch.setattr(proven_path, "_MOST_EACH", 0)
+    solver, v = four_bar_at(ROCKER, np.radians([0.0, 80.0]), 1)
+    start, last = (node_at(solver, PATH, x[2], x) for x in v)
+    track = Track(nodes=(start, last), start=0)
+    rows = rows_on_track(solver, PATH, track, v[1:, 2])
+    (code,) = prove_rows(solver, PATH, track, rows, v[1:, 2:]).code
+    return Certification.of_code(int(code))
+
+
+def test_every_reason_for_a_missing_certificate_is_reached(monkeypatch: pytest.MonkeyPatch) -> None:
     (dead,) = FOLDING.dead_points()
     solver, v = four_bar_at(FOLDING, np.array([2.0]), 1)
     start = node_at(solver, PATH, 2.0, v[0])
-    nodes, end = follow(solver, PATH, start, 0.0, 1.0)
+    nodes, end = follow(solver, PATH, start, 0.0)
     assert end is not None
     track = Track(nodes=(*reversed(nodes), start), start=len(nodes))
     t = np.array([1.8, 1.3, 1.0, dead])
-    rows = rows_on_track(solver, PATH, track, t[:3], 1.0)
+    rows = rows_on_track(solver, PATH, track, t[:3])
     folded = np.angle(4.0 - 2.0 * np.exp(1j * dead))
     places = np.concatenate([rows.v, [[folded, folded, dead]]])
     places[1] = four_bar_at(FOLDING, t[1:2], -1)[1][0]
@@ -405,13 +472,14 @@ def test_every_reason_for_a_missing_certificate_is_reached() -> None:
     status[2] = Status.LOST.code
     doctored = replace(
         rows,
+        t=t,
         v=places,
         status=status,
         iterations=np.zeros(4, dtype=np.int64),
         residual=np.zeros(4),
         rates=solver.rates(places, PATH.rate),
     )
-    proofs = prove_rows(solver, PATH, track, t, doctored, t[:, None])
+    proofs = prove_rows(solver, PATH, track, doctored, t[:, None])
     reasons = [Certification.of_code(int(code)) for code in proofs.code]
     proved = np.isfinite(proofs.radius) & np.isfinite(proofs.unique)
     np.testing.assert_array_equal(proved, [True, True, False, False])
@@ -431,6 +499,7 @@ def test_every_reason_for_a_missing_certificate_is_reached() -> None:
         lw.example("four-bar").sweep(certify=False).certification[0],
         parallelogram.certification[-1],
         lw.example("four-bar").configurations()[0].certificate.certification,
+        too_long_to_prove(monkeypatch),
     ]
     assert [(reason.name, reason.value) for reason in reasons] == [
         (
@@ -461,6 +530,11 @@ def test_every_reason_for_a_missing_certificate_is_reached() -> None:
         (
             "CONFIGURATION_CERTIFIED",
             "a true position is proved to lie within the radius, and no other near it",
+        ),
+        (
+            "PROOF_TOO_LONG",
+            "the position is proved; that the motion from the start to it stays on one branch "
+            "would take more steps of proof than are tried",
         ),
     ]
     assert set(reasons) == set(Certification)

@@ -16,7 +16,8 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.motion.circuit.branches import Traced, branches_of, traced
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.start import first_position
-from linkwork.numerics.curve import Curve, Leg, same_position, trace
+from linkwork.numerics.curve import Curve, Leg, trace
+from linkwork.numerics.leaders import same_position
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.proven_curve import prove_curve
 from linkwork.numerics.track import InputPath

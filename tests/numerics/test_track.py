@@ -44,7 +44,12 @@ def off_branch(bar: FourBar, v: Array, side: int) -> float:
 def test_a_track_arrives_exactly_at_its_goal_on_its_branch(goal: float, side: int) -> None:
     solver, start = start_of(ROCKER, 1.0, side)
     seen: list[float] = []
-    nodes, end = follow(solver, PATH, start, goal, 1.0, progress=seen.append)
+
+    def see(_: Node, after: Node) -> bool:
+        seen.append(after.t)
+        return False
+
+    nodes, end = follow(solver, PATH, start, goal, watch=see)
     assert end is None
     assert nodes[-1].t == goal
     assert seen == [node.t for node in nodes]
@@ -54,7 +59,7 @@ def test_a_track_arrives_exactly_at_its_goal_on_its_branch(goal: float, side: in
 
 def test_a_track_to_where_it_stands_has_no_steps() -> None:
     solver, start = start_of(ROCKER, 1.0, 1)
-    assert follow(solver, PATH, start, 1.0, 1.0) == ([], None)
+    assert follow(solver, PATH, start, 1.0) == ([], None)
 
 
 def test_nodes_carry_the_derivatives_of_the_branch() -> None:
@@ -77,12 +82,12 @@ def test_a_track_ends_at_the_dead_point(side: int) -> None:
     assert dead == pytest.approx(math.acos(11 / 16), rel=1e-15)
     solver, start = start_of(FOLDING, 2.0, side)
     for goal, limit in ((0.0, dead), (2 * math.pi, 2 * math.pi - dead)):
-        nodes, end = follow(solver, PATH, start, goal, 1.0)
+        nodes, end = follow(solver, PATH, start, goal)
         assert end is not None
         assert end.status is Status.OUT_OF_REACH
         assert end.reached == pytest.approx(limit, abs=1e-10)
         assert end.reached == nodes[-1].t
-        assert abs(end.failed - end.reached) < 1e-12
+        assert abs(end.failed - end.reached) < 2e-12
         for node in nodes:  # a small part of the square root of the distance that is left
             close = CLOSE + 0.05 * math.sqrt(abs(node.t - limit))
             assert off_branch(FOLDING, node.v[None, :], side) < close
@@ -93,7 +98,7 @@ def test_a_track_from_a_dead_point_says_that_its_start_is_singular() -> None:
     solver = blocks_of(four_bar_table(FOLDING))
     a = 2.0 * np.exp(1j * dead)
     v = np.array([np.angle(4.0 - a), np.angle(4.0 - a), dead])
-    nodes, end = follow(solver, PATH, node_at(solver, PATH, dead, v), 2.0, 1.0)
+    nodes, end = follow(solver, PATH, node_at(solver, PATH, dead, v), 2.0)
     assert nodes == []
     assert end is not None
     assert (end.reached, end.failed, end.status) == (dead, dead, Status.START_SINGULAR)
@@ -103,7 +108,7 @@ def test_a_track_from_a_dead_point_says_that_its_start_is_singular() -> None:
 def test_a_track_from_a_change_point_does_not_choose_a_branch(away: float) -> None:
     solver = blocks_of(four_bar_table(FourBar(2.0, 1.0, 2.0, 1.0)))
     start = node_at(solver, PATH, away, np.array([0.0, away, away]))
-    nodes, end = follow(solver, PATH, start, 1.0, 1.0)
+    nodes, end = follow(solver, PATH, start, 1.0)
     assert nodes == []
     assert end is not None
     assert end.status is Status.START_SINGULAR
@@ -111,10 +116,10 @@ def test_a_track_from_a_change_point_does_not_choose_a_branch(away: float) -> No
 
 def test_rows_between_nodes_are_the_positions_of_the_branch() -> None:
     solver, start = start_of(ROCKER, 1.0, -1)
-    nodes, end = follow(solver, PATH, start, 8.0, 1.0)
+    nodes, end = follow(solver, PATH, start, 8.0)
     assert end is None
     t = np.linspace(1.0, 8.0, 701)
-    rows = rows_on_track(solver, PATH, Track(nodes=(start, *nodes), start=0), t, 1.0)
+    rows = rows_on_track(solver, PATH, Track(nodes=(start, *nodes), start=0), t)
     assert set(rows.status.tolist()) == {Status.CONVERGED.code}
     assert off_branch(ROCKER, rows.v, -1) < CLOSE
     assert rows.residual.max() < 1e-14
@@ -122,9 +127,7 @@ def test_rows_between_nodes_are_the_positions_of_the_branch() -> None:
     assert rows.iterations.max() <= 2
     np.testing.assert_array_equal(rows.v[:, 2], t)
     for k in (0, 123, 700):  # a batch of one differs by rounding only
-        alone = rows_on_track(
-            solver, PATH, Track(nodes=(start, *nodes), start=0), t[k : k + 1], 1.0
-        )
+        alone = rows_on_track(solver, PATH, Track(nodes=(start, *nodes), start=0), t[k : k + 1])
         np.testing.assert_allclose(alone.v[0], rows.v[k], rtol=0, atol=CLOSE)
         np.testing.assert_allclose(alone.rates.first[0], rows.rates.first[k], rtol=0, atol=CLOSE)
         np.testing.assert_allclose(alone.rates.second[0], rows.rates.second[k], rtol=0, atol=1e-10)
@@ -132,7 +135,7 @@ def test_rows_between_nodes_are_the_positions_of_the_branch() -> None:
 
 def test_a_row_whose_guess_leads_to_the_other_branch_is_followed_from_its_node() -> None:
     solver, start = start_of(ROCKER, 1.0, 1)
-    nodes, _ = follow(solver, PATH, start, 4.0, 1.0)
+    nodes, _ = follow(solver, PATH, start, 4.0)
     left, right = nodes[-2:]
     t = np.array([left.t + 0.4 * (right.t - left.t)])
     here = np.angle(ROCKER.phasors(t, 1)).ravel()
@@ -140,17 +143,17 @@ def test_a_row_whose_guess_leads_to_the_other_branch_is_followed_from_its_node()
     # the quintic gives the right node's value the weight s³(10 - 15 s + 6 s²)
     shift = np.append((there - here) / (0.4**3 * (10 - 6 + 0.96)), 0.0)
     spoiled = replace(right, v=right.v + shift)
-    rows = rows_on_track(solver, PATH, Track(nodes=(start, *nodes[:-1], spoiled), start=0), t, 1.0)
+    rows = rows_on_track(solver, PATH, Track(nodes=(start, *nodes[:-1], spoiled), start=0), t)
     assert rows.status[0] == Status.CONVERGED.code
     assert off_branch(ROCKER, rows.v, 1) < CLOSE
 
 
 def test_a_row_that_cannot_be_followed_from_its_node_is_lost() -> None:
     solver, start = start_of(FOLDING, 2.0, 1)
-    nodes, _ = follow(solver, PATH, start, 0.0, 1.0)
+    nodes, _ = follow(solver, PATH, start, 0.0)
     beyond = replace(nodes[-1], t=0.3)  # claims more reach than there is
     track = Track(nodes=(beyond, *reversed(nodes), start), start=len(nodes) + 1)
-    rows = rows_on_track(solver, PATH, track, np.array([0.7, 1.5]), 1.0)
+    rows = rows_on_track(solver, PATH, track, np.array([0.7, 1.5]))
     assert rows.status.tolist() == [Status.LOST.code, Status.CONVERGED.code]
     assert off_branch(FOLDING, rows.v[1:], 1) < CLOSE
 

@@ -54,7 +54,9 @@ def _drawn(pose: Pose, contour: Contour) -> ComplexArray:
     last = len(points) - 1
     shown = np.unique([*range(0, last, max(1, round(last / _MOST))), last])
     # A closed outline may end with the point that it began with.
-    again = contour.closed and abs(points[last] - points[0]) < 1e-9 * np.ptp(np.abs(points - points[0]))
+    again = contour.closed and abs(points[last] - points[0]) < 1e-9 * np.ptp(
+        np.abs(points - points[0])
+    )
     return points[shown[:-1] if again else shown]
 
 

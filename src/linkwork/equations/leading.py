@@ -14,8 +14,8 @@ import numpy as np
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.kernels.loop_table import LinearRows, LoopTable, TableSplitter
 from linkwork.numerics.block_solver import Block, BlockSolver
-from linkwork.numerics.curve import Led
 from linkwork.numerics.decomposition import block_form
+from linkwork.numerics.leaders import Led
 from linkwork.numerics.track import InputPath
 
 __all__ = ["LeadTable"]
@@ -81,6 +81,19 @@ class LeadTable:
         table = self.table
         slope = table.jacobian(v) * table.variable_scale / table.equation_scale[:, None]
         return np.delete(slope, self.parameter, axis=2)
+
+    def weakening(self, v: Array, rates: Array) -> float:
+        """The rate of the smallest singular value σ of the scaled Jacobian at a position v (N,).
+
+        dσ = uᵀ dJ w with the singular vectors u and w (Golub & Van Loan, Matrix Computations, 8.6),
+        and dJ w is the mixed second derivative of the equations by w and by ``rates`` (N,).
+        """
+        table = self.table
+        left, _, right = np.linalg.svd(self.jacobian(v[None, :])[0])
+        w = np.insert(right[-1], self.parameter, 0.0) * table.variable_scale
+        both = np.stack([rates + w, rates - w])
+        change = 0.25 * np.subtract(*table.second(np.stack([v, v]), both))
+        return float(left[:, -1] @ (change / table.equation_scale))
 
 
 def _locked(table: LoopTable, path: InputPath, parameter: int) -> LoopTable:

@@ -5,9 +5,21 @@ from __future__ import annotations
 import math
 from enum import Enum
 
-__all__ = ["FULL_TURN", "AngleUnit"]
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray
+
+__all__ = ["FULL_TURN", "AngleUnit", "within_half_a_turn"]
 
 FULL_TURN = 2.0 * math.pi
+
+
+def within_half_a_turn(gap: Array, turns: BoolArray) -> Array:
+    """Differences (..., N) with those of angles reduced by whole turns to at most half a turn.
+
+    ``turns`` (N,): which of them are angles [rad].
+    """
+    return np.where(turns, gap - FULL_TURN * np.round(gap / FULL_TURN), gap)
 
 
 class AngleUnit(Enum):

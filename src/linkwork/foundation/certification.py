@@ -34,6 +34,10 @@ class Certification(Enum):
     CONFIGURATION_CERTIFIED = (
         "a true position is proved to lie within the radius, and no other near it"
     )
+    PROOF_TOO_LONG = (
+        "the position is proved; that the motion from the start to it stays on one branch would "
+        "take more steps of proof than are tried"
+    )
 
     @property
     def certified(self) -> bool:

@@ -7,20 +7,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.equations.leading import LeadTable
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.motion.branch_rows import Asked, BranchRows, Report, rows_of_branch
 from linkwork.motion.circuit.branches import CurveBranch, Traced, branches_of, traced
+from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd, end_at_dead_point
 from linkwork.motion.model import Model
-from linkwork.motion.tracking import turns_freely
-from linkwork.numerics.track import InputPath, node_at
+from linkwork.numerics.track import node_at
 
 __all__ = ["Around", "FurtherBranch", "further_branches"]
-
-_FULL_TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -49,35 +47,31 @@ class Around:
 
 
 def further_branches(
-    model: Model,
-    path: InputPath,
-    lead: int,
-    start: Array,
-    asked: Asked,
-    report: Report,
-    certify: bool,
+    drive: Drive, start: Array, asked: Asked, report: Report, certify: bool
 ) -> Around:
     """Trace the circuit of a position (N,) and solve the rows asked for on its other branches.
 
     A closed circuit is followed once around, upwards first; an open one to both of its ends.
     """
-    leads = LeadTable(model.compiled.table, path, lead)
+    leads = drive.leads
     walks = [traced(leads, start, 1.0, certify)]
     if not walks[0].curve.end.closed:
         walks.append(traced(leads, start, -1.0, certify))
-    ways = [(walk, branches_of(leads, walk)) for walk in walks if walk.curve.legs]
-    pieces: list[tuple[Traced, CurveBranch]] = [
-        (walk, branch) for walk, branches in ways for branch in branches[1:]
+    pieces = [
+        (walk, branch)
+        for walk in walks
+        if walk.curve.legs
+        for branch in branches_of(leads, walk)[1:]
     ]
     found = []
     for number, (walk, branch) in enumerate(pieces, start=2):
-        rows = _rows(model, path, lead, leads, (walk, branch), asked, report, certify)
+        rows = _rows(drive, walk, branch, asked, report, certify)
         if rows is not None:
-            found.append(replace(rows, name=_branch_name(model, number)))
+            found.append(replace(rows, name=_branch_name(drive.model, number)))
     return Around(
         branches=tuple(found),
         dead_points=tuple(
-            end_at_dead_point(model, turn, walk.curve.legs[turn.leg].led, lead, certify)
+            end_at_dead_point(drive, turn, walk.curve.legs[turn.leg].led, certify)
             for walk in walks
             for turn in walk.turns
         ),
@@ -98,29 +92,20 @@ def _how_it_ends(walks: Sequence[Traced]) -> CircuitEnd:
 
 
 def _rows(
-    model: Model,
-    path: InputPath,
-    lead: int,
-    leads: LeadTable,
-    piece: tuple[Traced, CurveBranch],
-    asked: Asked,
-    report: Report,
-    certify: bool,
+    drive: Drive, walk: Traced, branch: CurveBranch, asked: Asked, report: Report, certify: bool
 ) -> FurtherBranch | None:
-    walk, branch = piece
-    mine = _asked_on(branch, asked, leads.parameter, turns_freely(model))
+    leads = drive.leads
+    mine = _asked_on(branch, asked, leads.parameter, drive.free)
     anchor = branch.anchor
-    node = node_at(model.compiled.solver, path, float(anchor[leads.parameter]), anchor)
+    node = node_at(drive.solver, drive.path, float(anchor[leads.parameter]), anchor)
     if not len(mine.t):
         return None
-    found = rows_of_branch(model, path, lead, node, mine, report, certify)
+    found = rows_of_branch(drive, node, mine, report, certify)
     joined = branch.is_joined(leads)
     standing = Certification.CERTIFIED if joined else Certification.MOTION_NOT_PROVED
-    if certify and not joined:
-        code = found.rows.certification
-        code[code == Certification.CERTIFIED.code] = Certification.MOTION_NOT_PROVED.code
+    found.rows.demote(standing)
     ends = tuple(
-        end_at_dead_point(model, turn, walk.curve.legs[turn.leg].led, lead, certify, joined)
+        end_at_dead_point(drive, turn, walk.curve.legs[turn.leg].led, certify, joined)
         for turn in (branch.begin, branch.end)
         if turn is not None
     )
@@ -142,10 +127,10 @@ def _asked_on(branch: CurveBranch, asked: Asked, parameter: int, free: bool) -> 
     low, high = branch.range(parameter)
     turns = np.zeros(1)
     if free:
-        first = np.ceil((low - asked.t.max()) / _FULL_TURN)
-        last = np.floor((high - asked.t.min()) / _FULL_TURN)
+        first = np.ceil((low - asked.t.max()) / FULL_TURN)
+        last = np.floor((high - asked.t.min()) / FULL_TURN)
         turns = np.arange(first, last + 1.0)
-    t = (asked.t[None, :] + turns[:, None] * _FULL_TURN).ravel()
+    t = (asked.t[None, :] + turns[:, None] * FULL_TURN).ravel()
     row = np.tile(np.arange(len(asked.t)), len(turns))
     inside = np.flatnonzero((t >= low) & (t <= high))
     order = inside[np.argsort(branch.side * t[inside], kind="stable")]

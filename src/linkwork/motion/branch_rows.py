@@ -7,17 +7,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
+from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd, ends_of
-from linkwork.motion.model import Model
-from linkwork.motion.proving import RowProofs, prove_rows
+from linkwork.motion.proving import prove_rows
 from linkwork.motion.rows import SolvedRows
-from linkwork.motion.tracking import leading_scale, track_to, turns_freely
+from linkwork.motion.tracking import track_to
 from linkwork.numerics.track import (
     BOLD,
-    InputPath,
     Node,
     Rows,
     Track,
@@ -30,7 +30,6 @@ from linkwork.numerics.track import (
 __all__ = ["Asked", "BranchRows", "Report", "rows_of_branch"]
 
 _CHUNK = 4096  # rows solved together: large enough to amortise NumPy calls, small enough for cache
-_FULL_TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -91,39 +90,25 @@ class Report:
 
 
 def rows_of_branch(
-    model: Model,
-    path: InputPath,
-    lead: int,
-    anchor: Node,
-    asked: Asked,
-    report: Report,
-    certify: bool,
+    drive: Drive, anchor: Node, asked: Asked, report: Report, certify: bool
 ) -> BranchRows:
     """Follow the branch of ``anchor`` over the values asked for and solve those that lie on it.
 
     The track is bold first; where that leaves rows unproved it is followed again with care.
     """
-    scale = leading_scale(model, lead)
-    free = turns_freely(model)
-    provable = all(block.system.bends_boundedly for block in model.compiled.solver.blocks)
+    provable = all(block.system.bends_boundedly for block in drive.solver.blocks)
     tries = (BOLD, None) if certify and provable else (None,)
     for care in tries:
-        track = _covering(model, path, anchor, asked.t, scale, report, care)
-        placed = _placed(track, asked.t, free)
-        rows, to_ends = _solved(model, path, track, placed, asked, scale, report, certify)
+        track = _covering(drive, anchor, asked.t, care, report)
+        placed = _placed(track, asked.t, drive.free)
+        rows, to_ends = _solved(drive, track, placed, asked, report, certify)
         if care is None or not _doubtful(rows, placed, to_ends):
             break
-    ends = ends_of(model, path, track, lead, certify)
+    ends = ends_of(drive, track, certify)
     if not to_ends:
-        ends = tuple(_not_joined(end) for end in ends)
+        ends = tuple(end.demoted(Certification.MOTION_NOT_PROVED) for end in ends)
     _mark_missing(rows, track, asked.t, np.isnan(placed), ends)
     return BranchRows(rows=rows, track=track, placed=placed, ends=ends, proved_to_ends=to_ends)
-
-
-def _not_joined(end: BranchEnd) -> BranchEnd:
-    if end.certification is not Certification.CERTIFIED:
-        return end
-    return replace(end, certification=Certification.MOTION_NOT_PROVED)
 
 
 def _doubtful(rows: SolvedRows, placed: Array, to_ends: bool) -> bool:
@@ -134,25 +119,19 @@ def _doubtful(rows: SolvedRows, placed: Array, to_ends: bool) -> bool:
 
 
 def _covering(
-    model: Model,
-    path: InputPath,
-    anchor: Node,
-    t: Array,
-    scale: float,
-    report: Report,
-    care: TrackOptions | None,
+    drive: Drive, anchor: Node, t: Array, care: TrackOptions | None, report: Report
 ) -> Track:
     """A track over the table's range, wound on the other way where a limit cuts it short."""
-    solver = model.compiled.solver
+    solver, path = drive.solver, drive.path
     low, high = float(t.min()), float(t.max())
-    track = track_to(solver, path, anchor, [low, high], scale, report.tracked, care)
-    if not turns_freely(model):
+    track = track_to(solver, path, anchor, [low, high], care, report.tracked)
+    if not drive.free:
         return track
     # the other way around, from where the track stands there already
     if track.above is not None and track.below is None:
-        goal = float((t - _turns_above(t, track.last_t) * _FULL_TURN).min())
+        goal = float((t - _turns_above(t, track.last_t) * FULL_TURN).min())
         if goal < track.first_t:
-            nodes, end = follow(solver, path, track.nodes[0], goal, scale, care)
+            nodes, end = follow(solver, path, track.nodes[0], goal, care)
             return replace(
                 track,
                 nodes=(*reversed(nodes), *track.nodes),
@@ -160,16 +139,16 @@ def _covering(
                 below=end,
             )
     if track.below is not None and track.above is None:
-        goal = float((t + _turns_above(track.first_t, t) * _FULL_TURN).max())
+        goal = float((t + _turns_above(track.first_t, t) * FULL_TURN).max())
         if goal > track.last_t:
-            nodes, end = follow(solver, path, track.nodes[-1], goal, scale, care)
+            nodes, end = follow(solver, path, track.nodes[-1], goal, care)
             return replace(track, nodes=(*track.nodes, *nodes), above=end)
     return track
 
 
 def _turns_above(t: Array | float, edge: Array | float) -> Array:
     """How many whole turns down bring values that lie above an edge to it or below."""
-    turns: Array = np.maximum(np.ceil((np.asarray(t) - edge) / _FULL_TURN), 0.0)
+    turns: Array = np.maximum(np.ceil((np.asarray(t) - edge) / FULL_TURN), 0.0)
     return turns
 
 
@@ -178,22 +157,15 @@ def _placed(track: Track, t: Array, free: bool) -> Array:
     moved = t
     if free:
         turns = _turns_above(track.first_t, t) - _turns_above(t, track.last_t)
-        moved = t + turns * _FULL_TURN
+        moved = t + turns * FULL_TURN
     return np.where((moved >= track.first_t) & (moved <= track.last_t), moved, np.nan)
 
 
 def _solved(
-    model: Model,
-    path: InputPath,
-    track: Track,
-    placed: Array,
-    asked: Asked,
-    scale: float,
-    report: Report,
-    certify: bool,
+    drive: Drive, track: Track, placed: Array, asked: Asked, report: Report, certify: bool
 ) -> tuple[SolvedRows, bool]:
     """All rows that lie on the track, and whether the track is proved up to its ends."""
-    solver = model.compiled.solver
+    solver, path = drive.solver, drive.path
     found = SolvedRows.blank(asked.everyday, solver.variables, Status.CONVERGED)
     if not certify:
         found.certification[:] = Certification.NOT_ASKED.code
@@ -202,7 +174,7 @@ def _solved(
     pieces: list[Rows] = []
     for begin in range(0, len(there), _CHUNK):
         chunk = there[begin : begin + _CHUNK]
-        rows = rows_on_track(solver, path, track, placed[chunk], scale)
+        rows = rows_on_track(solver, path, track, placed[chunk])
         pieces.append(rows)
         found.v[chunk], found.first[chunk] = rows.v, rows.rates.first
         found.second[chunk] = rows.rates.second
@@ -211,15 +183,8 @@ def _solved(
         report.solved((begin + len(chunk)) / len(there))
     if not (certify and pieces):
         return found, certify
-    proofs: RowProofs = prove_rows(
-        solver,
-        path,
-        track,
-        placed[there],
-        joined_rows(pieces),
-        asked.inputs[there],
-        report.proved,
-    )
+    rows = joined_rows(pieces)
+    proofs = prove_rows(solver, path, track, rows, asked.inputs[there], report.proved)
     found.prove(there, proofs)
     return found, proofs.up_to_ends
 

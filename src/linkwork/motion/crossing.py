@@ -9,9 +9,9 @@ import numpy as np
 
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.status import Status
-from linkwork.motion.model import Model
+from linkwork.motion.drive import Drive
 from linkwork.numerics.change_point import ChangePoint
-from linkwork.numerics.track import InputPath, Node, node_at
+from linkwork.numerics.track import Node, node_at
 
 __all__ = ["beyond_change_point"]
 
@@ -21,19 +21,14 @@ _REGULAR = 1e5  # condition from which on branches are as good as crossing
 
 
 def beyond_change_point(
-    model: Model,
-    path: InputPath,
-    crossing: ChangePoint,
-    side: float,
-    scale: float,
-    policy: ChangePointPolicy,
+    drive: Drive, crossing: ChangePoint, side: float, policy: ChangePointPolicy
 ) -> Node | None:
     """A position just beyond a change point on the chosen branch.
 
     Newton-Raphson starts on the tangent; the position found counts only if it lies much nearer to
     that tangent than to the other one. ``None`` if the branch keeps the input, or is not found.
     """
-    solver = model.compiled.solver
+    solver, path = drive.solver, drive.path
     chosen, other = crossing.onward, crossing.other
     if policy is ChangePointPolicy.TURN:
         chosen, other = other, chosen
@@ -44,7 +39,7 @@ def beyond_change_point(
     weights = solver.variable_scale[mine]
     apart = float(np.abs((chosen - other)[mine] / weights).max())
     for stride in _STRIDES:
-        h = side * stride * scale
+        h = side * stride * path.size
         guess = crossing.v.copy()
         guess[mine] += h * chosen[mine]
         guess[solver.unknowns :] = path.at(crossing.t + h)
@@ -54,6 +49,6 @@ def beyond_change_point(
         off = float(np.abs((done.v[0] - guess)[mine] / weights).max())
         gap = abs(h) * apart if np.isfinite(apart) else abs(h)
         node = node_at(solver, path, crossing.t + h, done.v[0])
-        if off <= _CLOSER * gap and node.condition < _REGULAR:
+        if off <= _CLOSER * gap and node.nearness < _REGULAR:
             return node
     return None

@@ -10,9 +10,10 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.names import canonical, spelled
 from linkwork.foundation.status import Status
+from linkwork.motion.drive import Drive
 from linkwork.motion.model import Model
 from linkwork.motion.reading import Named, named_series
-from linkwork.numerics.track import InputPath, Track, rows_on_track
+from linkwork.numerics.track import Track, rows_on_track
 from linkwork.results.motion import OutputLimit, Series
 
 __all__ = ["check_quantities", "output_limits"]
@@ -53,14 +54,7 @@ def _series(named: Named, name: str) -> Series:
     )
 
 
-def output_limits(
-    model: Model,
-    path: InputPath,
-    track: Track,
-    lead: int,
-    scale: float,
-    name: str,
-) -> list[tuple[float, OutputLimit]]:
+def output_limits(drive: Drive, track: Track, name: str) -> list[tuple[float, OutputLimit]]:
     """Where a quantity is largest or smallest along a track.
 
     The quantity's derivative changes sign between two nodes; Newton-Raphson on it, kept inside the
@@ -75,7 +69,7 @@ def output_limits(
     t = np.unique(np.concatenate([t, *(t[:-1] + s * np.diff(t) for s in (0.25, 0.5, 0.75))]))
     if len(t) < 2:
         return []
-    search = _Search(model, path, track, scale, name)
+    search = _Search(drive, track, name)
     rate = search.at(t)[1]
     found = []
     for k in np.flatnonzero(rate[:-1] * rate[1:] < 0.0):
@@ -85,7 +79,7 @@ def output_limits(
         size = max(abs(float(rate[k])), abs(float(rate[k + 1])), abs(second))
         noise = 8.0 * _UNIT * condition * size
         error = max(error, noise / abs(second)) if second else np.inf
-        unit = model.input_scale[lead]
+        unit = drive.unit
         limit = OutputLimit(
             name=name,
             kind="maximum" if second < 0.0 else "minimum",
@@ -103,18 +97,16 @@ class _Search:
     condition of the positions.
     """
 
-    def __init__(
-        self, model: Model, path: InputPath, track: Track, scale: float, name: str
-    ) -> None:
-        self.model, self.path, self.track = model, path, track
-        self.scale, self.name = scale, name
+    def __init__(self, drive: Drive, track: Track, name: str) -> None:
+        self.drive, self.track, self.name = drive, track, name
 
     def at(self, t: Array) -> tuple[Array, Array, Array, Array]:
         """At the values t (B,)."""
-        rows = rows_on_track(self.model.compiled.solver, self.path, self.track, t, self.scale)
-        inputs = np.zeros((len(t), len(self.model.equations.inputs)))
+        model = self.drive.model
+        rows = rows_on_track(self.drive.solver, self.drive.path, self.track, t)
+        inputs = np.zeros((len(t), len(model.equations.inputs)))
         good = rows.status == Status.CONVERGED.code
-        named = named_series(self.model, rows.v, rows.rates.first, rows.rates.second, inputs, good)
+        named = named_series(model, rows.v, rows.rates.first, rows.rates.second, inputs, good)
         series = _series(named, self.name)
         return series.value, series.first, series.second, rows.rates.condition
 

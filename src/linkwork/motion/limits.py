@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
-from linkwork.equations.leading import LeadTable
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
+from linkwork.motion.drive import Drive
 from linkwork.motion.lined_up import links_in_line
 from linkwork.motion.model import Model
 from linkwork.numerics.change_point import (
@@ -19,10 +20,11 @@ from linkwork.numerics.change_point import (
     locate_change_point,
     most_singular,
 )
-from linkwork.numerics.curve import Leads, Led, Leg
+from linkwork.numerics.curve import Leg
+from linkwork.numerics.leaders import Led
 from linkwork.numerics.proof import prove
 from linkwork.numerics.proven_curve import leg_is_proved, same_solution
-from linkwork.numerics.track import End, InputPath, Node, Track
+from linkwork.numerics.track import End, Node, Track
 from linkwork.numerics.turning_point import TurningPoint, turn_beyond
 from linkwork.results.motion import Limit, LimitKind
 
@@ -58,49 +60,42 @@ class BranchEnd:
     radius: float = np.nan
     unique: float = np.nan
 
+    def demoted(self, standing: Certification) -> BranchEnd:
+        """The end with what the way to its branch is worth, if it is proved on it."""
+        if self.certification is not Certification.CERTIFIED:
+            return self
+        return replace(self, certification=standing)
 
-def ends_of(
-    model: Model, path: InputPath, track: Track, lead: int, certify: bool = False
-) -> tuple[BranchEnd, ...]:
+
+def ends_of(drive: Drive, track: Track, certify: bool = False) -> tuple[BranchEnd, ...]:
     """The ends that a track met before its goals, lower one first."""
     found = []
     for end, side in ((track.below, -1.0), (track.above, 1.0)):
         if end is not None:
             nodes = track.nodes if side > 0 else track.nodes[::-1]
-            found.append(_end(model, path, nodes, end, side, lead, certify))
+            found.append(_end(drive, nodes, end, side, certify))
     return tuple(found)
 
 
-def _end(
-    model: Model,
-    path: InputPath,
-    nodes: Sequence[Node],
-    end: End,
-    side: float,
-    lead: int,
-    certify: bool,
-) -> BranchEnd:
-    solver = model.compiled.solver
-    scale = model.input_scale[lead]
+def _end(drive: Drive, nodes: Sequence[Node], end: End, side: float, certify: bool) -> BranchEnd:
     if end.status is not Status.START_SINGULAR:
-        crossing = locate_change_point(solver, path, nodes[-1], side)
+        crossing = locate_change_point(drive.solver, drive.path, nodes[-1], side)
         if crossing is not None:
-            return _crossing_end(model, path, crossing, side, lead, certify)
-        leads = LeadTable(model.compiled.table, path, lead)
-        # a node that is proved with the others; rounding is worst at the very last ones
-        sound = (node for node in reversed(nodes) if node.condition < _SOUND)
-        last = next(sound, nodes[-1])
-        turning = turn_beyond(leads, last.v, last.first, side)
-        if turning is not None:
-            return _dead_end(model, leads, last, turning, side, lead, certify)
+            return _crossing_end(drive, crossing, side, certify)
+        # first from a node that is proved with the others; rounding is worst at the very last ones
+        sound = (node for node in reversed(nodes) if node.nearness < _SOUND)
+        for last in (next(sound, nodes[-1]), nodes[-1]):
+            turning = turn_beyond(drive.leads, last.v, last.first, side)
+            if turning is not None:
+                return _dead_end(drive, last, turning, side, certify)
     edges = sorted((end.reached, end.failed))
     return BranchEnd(
         side=side,
         t=float(end.reached),
         limit=Limit(
             kind=LimitKind.UNKNOWN,
-            input=float(end.reached / scale),
-            bracket=(float(edges[0] / scale), float(edges[1] / scale)),
+            input=float(end.reached / drive.unit),
+            bracket=(float(edges[0] / drive.unit), float(edges[1] / drive.unit)),
             located=False,
             status=end.status,
         ),
@@ -108,28 +103,17 @@ def _end(
 
 
 def _dead_end(
-    model: Model,
-    leads: LeadTable,
-    last: Node,
-    turning: tuple[Leg, TurningPoint],
-    side: float,
-    lead: int,
-    certify: bool,
+    drive: Drive, last: Node, turning: tuple[Leg, TurningPoint], side: float, certify: bool
 ) -> BranchEnd:
     leg, turn = turning
-    own = leads.by(leads.parameter)
+    own = drive.leads.by(drive.leads.parameter)
     joined = certify and own is not None and same_solution(own, leg.led, last.v)
     joined = joined and leg_is_proved(leg)
-    return replace(end_at_dead_point(model, turn, leg.led, lead, certify, joined), side=side)
+    return replace(end_at_dead_point(drive, turn, leg.led, certify, joined), side=side)
 
 
 def end_at_dead_point(
-    model: Model,
-    turn: TurningPoint,
-    led: Led | None,
-    lead: int,
-    certify: bool,
-    joined: bool = False,
+    drive: Drive, turn: TurningPoint, led: Led | None, certify: bool, joined: bool = False
 ) -> BranchEnd:
     """The end of a branch at a dead point, seen by the leader ``led``.
 
@@ -137,7 +121,7 @@ def end_at_dead_point(
     """
     found = BranchEnd(
         side=0.0,
-        limit=dead_point_limit(model, turn, lead),
+        limit=dead_point_limit(drive, turn),
         t=turn.t,
         v=turn.v,
         first=np.full(len(turn.v), np.nan),
@@ -149,8 +133,7 @@ def end_at_dead_point(
     proof = prove(led.solver, turn.node.v[None, :], np.zeros((1, 1)))
     if not proof.holds[0]:
         return replace(found, certification=Certification.POSITION_NOT_PROVED)
-    place = led.place(model.compiled.solver.unknowns + lead)
-    off = float(proof.each[0, place]) / float(model.input_scale[lead])
+    off = float(proof.each[0, led.place(drive.leads.parameter)]) / drive.unit
     low, high = found.limit.bracket
     return replace(
         found,
@@ -161,58 +144,29 @@ def end_at_dead_point(
     )
 
 
-def dead_point_limit(model: Model, turn: TurningPoint, lead: int) -> Limit:
+def dead_point_limit(drive: Drive, turn: TurningPoint) -> Limit:
     """What is told of a dead point, everyday units."""
-    return _located(
-        model,
-        t=turn.t,
-        v=turn.v,
-        bracket=turn.bracket,
-        located=turn.located,
-        block=most_singular(model.compiled.solver, turn.v),
-        kind=LimitKind.DEAD_POINT,
-        lead=lead,
-    )
+    return _located(drive, turn, LimitKind.DEAD_POINT, most_singular(drive.solver, turn.v))
 
 
-def change_point_limit(model: Model, leads: Leads, crossing: Crossing, lead: int) -> Limit:
+def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
     """What is told of a change point between two curves, everyday units."""
-    p, solver = leads.parameter, model.compiled.solver
-    block = most_singular(solver, crossing.v)
-    limit = _located(
-        model,
-        t=float(crossing.v[p]),
-        v=crossing.v,
-        bracket=crossing.bracket,
-        located=crossing.located,
-        block=block,
-        kind=LimitKind.CHANGE_POINT,
-        lead=lead,
-    )
+    leads = drive.leads
+    p, block = leads.parameter, most_singular(drive.solver, crossing.v)
     rates = []
     for direction in crossing.directions:
         moving = abs(float(direction[p] / leads.scale[p])) > _MOVES
         rates.append(direction / direction[p] if moving else np.full(len(direction), np.nan))
     taking_part = np.any(crossing.directions != 0.0, axis=0)
-    onward, other = (_rates(model, np.where(taking_part, rate, np.nan)) for rate in rates)
+    onward, other = (_rates(drive.model, np.where(taking_part, rate, np.nan)) for rate in rates)
+    limit = _located(drive, crossing, LimitKind.CHANGE_POINT, block)
     return replace(limit, onward=onward, other=other)
 
 
-def _crossing_end(
-    model: Model, path: InputPath, crossing: ChangePoint, side: float, lead: int, certify: bool
-) -> BranchEnd:
-    solver = model.compiled.solver
+def _crossing_end(drive: Drive, crossing: ChangePoint, side: float, certify: bool) -> BranchEnd:
+    solver, model = drive.solver, drive.model
     limit = replace(
-        _located(
-            model,
-            t=crossing.t,
-            v=crossing.v,
-            bracket=crossing.bracket,
-            located=crossing.located,
-            block=crossing.block,
-            kind=LimitKind.CHANGE_POINT,
-            lead=lead,
-        ),
+        _located(drive, crossing, LimitKind.CHANGE_POINT, crossing.block),
         onward=_rates(model, crossing.onward),
         other=_rates(model, crossing.other),
     )
@@ -221,7 +175,7 @@ def _crossing_end(
         start[None, :], replace(solver.options, equation_tolerance=_TOUCHING, max_steps=8)
     )
     first = crossing.onward.copy()
-    first[solver.unknowns :] = path.rate
+    first[solver.unknowns :] = drive.path.rate
     return BranchEnd(
         side=side,
         limit=limit,
@@ -233,30 +187,34 @@ def _crossing_end(
     )
 
 
-def _located(
-    model: Model,
-    *,
-    t: float,
-    v: Array,
-    bracket: tuple[float, float],
-    located: bool,
-    block: int | None,
-    kind: LimitKind,
-    lead: int,
-) -> Limit:
-    scale = model.input_scale[lead]
-    low, high = (edge / scale for edge in bracket)
-    short = round(t / scale, 9)
+class _Place(Protocol):
+    """A singular position (N,) at a value of the path's parameter, with a bracket around it."""
+
+    @property
+    def t(self) -> float: ...
+    @property
+    def v(self) -> Array: ...
+    @property
+    def bracket(self) -> tuple[float, float]: ...
+    @property
+    def located(self) -> bool: ...
+
+
+def _located(drive: Drive, place: _Place, kind: LimitKind, block: int | None) -> Limit:
+    """What is told of it: ``block`` is the number of the one that locks."""
+    model = drive.model
+    low, high = (edge / drive.unit for edge in place.bracket)
+    short = round(place.t / drive.unit, 9)
     status = Status.OUT_OF_REACH if kind is LimitKind.DEAD_POINT else Status.CHANGE_POINT
-    equations = () if block is None else model.compiled.solver.blocks[block].equations
+    equations = () if block is None else drive.solver.blocks[block].equations
     return Limit(
         kind=kind,
-        input=float(short if low <= short <= high else t / scale) + 0.0,
+        input=float(short if low <= short <= high else place.t / drive.unit) + 0.0,
         bracket=(float(low), float(high)),
-        located=bool(located),
+        located=bool(place.located),
         status=status,
         loops=tuple(model.equations.labels[e] for e in equations),
-        in_line=() if block is None else links_in_line(model, block, v),
+        in_line=() if block is None else links_in_line(model, block, place.v),
     )
 
 

@@ -6,27 +6,17 @@ import numpy as np
 
 from linkwork.foundation.arrays import BoolArray
 from linkwork.foundation.certification import Certification
-from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
 from linkwork.motion.model import Model
 from linkwork.motion.reading import named_series
 from linkwork.motion.redundancy import FITS, largest_misfits, misfit
 from linkwork.motion.rows import SolvedRows
-from linkwork.results.motion import Limit, Motion, OutputLimit
+from linkwork.results.motion import Motion
 
 __all__ = ["motion_of_rows"]
 
 
-def motion_of_rows(
-    model: Model,
-    rows: SolvedRows,
-    message: str,
-    *,
-    added: BoolArray,
-    limits: tuple[Limit, ...] = (),
-    output_limits: tuple[OutputLimit, ...] = (),
-    circuit: CircuitEnd | None = None,
-) -> Motion:
+def motion_of_rows(model: Model, rows: SolvedRows, message: str, added: BoolArray) -> Motion:
     """Name the columns of solved rows; ``added`` marks rows that were not asked for."""
     if model.equations.redundant:
         rows = _fitting(model, rows)
@@ -57,9 +47,6 @@ def motion_of_rows(
         limit=tuple(rows.limit),
         added=added,
         speed=model.speed,
-        limits=limits,
-        output_limits=output_limits,
-        circuit=circuit,
         redundant=largest_misfits(model.equations, rows.v),
         q=rows.v[:, : model.compiled.solver.unknowns],
     )

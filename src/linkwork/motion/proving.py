@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, StatusArray
+from linkwork.foundation.arrays import Array, IndexArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import BlockSolver
@@ -48,64 +48,77 @@ def prove_rows(
     solver: BlockSolver,
     path: InputPath,
     track: Track,
-    t: Array,
     rows: Rows,
     asked: Array,
     progress: Callable[[float], None] | None = None,
 ) -> RowProofs:
-    """Prove the rows solved at the values t (B,) of a track for the inputs ``asked`` (B, p).
+    """Prove rows solved along a track for the inputs ``asked`` (B, p).
 
     The rows and the track's nodes around them are sorted along the path; every position and every
     step between neighbours is proved, and a row is certified if proved steps join it to the
     track's start.
     """
-    count = len(t)
+    count = len(rows.t)
     if not all(block.system.bends_boundedly for block in solver.blocks):
         return unproved(count, Certification.NO_BOUND)
     found = np.flatnonzero(rows.status == Status.CONVERGED.code)
     if not len(found):
         return unproved(count, Certification.NO_POSITION)
-    begin = track.nodes[track.start].t
-    low, high = min(begin, t[found].min()), max(begin, t[found].max())
-    nodes = [
-        k
-        for k, node in enumerate(track.nodes)
-        if low <= node.t <= high or node.condition < _FAR_FROM_SINGULAR
-    ]
-    all_t = np.concatenate([[track.nodes[k].t for k in nodes], t[found]])
-    order = np.argsort(all_t, kind="stable")
-
-    def gathered(of_nodes: list[Array], of_rows: Array) -> Array:
-        joined: Array = np.concatenate([np.stack(of_nodes), of_rows[found]])[order]
-        return joined
-
-    chosen = [track.nodes[k] for k in nodes]
-    apart = _apart(solver, rows.v[found], asked[found])
-    spread = [rounding_of_inputs(node.v[None, :], solver.unknowns)[0] for node in chosen]
-    beads = Beads(
-        t=all_t[order],
-        v=gathered([node.v for node in chosen], rows.v),
-        first=gathered([node.first for node in chosen], rows.rates.first),
-        second=gathered([node.second for node in chosen], rows.rates.second),
-        spread=np.concatenate([np.stack(spread), apart])[order],
-    )
-    proof = prove_path(solver, path, beads, progress)
-    place = np.empty(len(order), dtype=np.intp)
-    place[order] = np.arange(len(order))
-    joined = proof.connected_to(int(place[nodes.index(track.start)]))
+    nodes = _nodes_around(track, rows.t[found])
+    beads, place = _beads(solver, [track.nodes[k] for k in nodes], rows, asked, found)
+    anchor = int(place[nodes.index(track.start)])
+    proof = prove_path(solver, path, beads, anchor=anchor, progress=progress)
+    joined = proof.connected_to(anchor)
     mine = place[len(nodes) :]
     proofs = unproved(count, Certification.NO_POSITION)
     position = proof.position.holds[mine]
-    proofs.code[found] = np.where(
-        joined[mine],
-        Certification.CERTIFIED.code,
-        np.where(
-            position, Certification.MOTION_NOT_PROVED.code, Certification.POSITION_NOT_PROVED.code
-        ),
+    proofs.code[found] = np.select(
+        [joined[mine], ~position, proof.given_up_before(anchor)[mine]],
+        [
+            Certification.CERTIFIED.code,
+            Certification.POSITION_NOT_PROVED.code,
+            Certification.PROOF_TOO_LONG.code,
+        ],
+        default=Certification.MOTION_NOT_PROVED.code,
     )
     proofs.radius[found] = np.where(position, proof.position.radius[mine], np.nan)
     proofs.unique[found] = np.where(position, proof.position.alone_within[mine], np.nan)
     return replace(proofs, up_to_ends=bool(joined[place[: len(nodes)]].all()))
+
+
+def _nodes_around(track: Track, t: Array) -> list[int]:
+    """The numbers of the nodes between the start and all rows, and of those that can be proved."""
+    begin = track.nodes[track.start].t
+    low, high = min(begin, float(t.min())), max(begin, float(t.max()))
+    return [
+        k
+        for k, node in enumerate(track.nodes)
+        if low <= node.t <= high or node.nearness < _FAR_FROM_SINGULAR
+    ]
+
+
+def _beads(
+    solver: BlockSolver, nodes: Sequence[Node], rows: Rows, asked: Array, found: IndexArray
+) -> tuple[Beads, IndexArray]:
+    """Nodes and rows sorted along the path; where each of them stands, the nodes first."""
+    t = np.concatenate([[node.t for node in nodes], rows.t[found]])
+    order = np.argsort(t, kind="stable")
+
+    def gathered(of_nodes: list[Array], of_rows: Array) -> Array:
+        joined: Array = np.concatenate([np.stack(of_nodes), of_rows])[order]
+        return joined
+
+    spread = [rounding_of_inputs(node.v[None, :], solver.unknowns)[0] for node in nodes]
+    beads = Beads(
+        t=t[order],
+        v=gathered([node.v for node in nodes], rows.v[found]),
+        first=gathered([node.first for node in nodes], rows.rates.first[found]),
+        second=gathered([node.second for node in nodes], rows.rates.second[found]),
+        spread=gathered(spread, _apart(solver, rows.v[found], asked[found])),
+    )
+    place = np.empty(len(order), dtype=np.intp)
+    place[order] = np.arange(len(order))
+    return beads, place
 
 
 def way_is_proved(solver: BlockSolver, path: InputPath, nodes: Sequence[Node]) -> bool:
@@ -120,7 +133,7 @@ def way_is_proved(solver: BlockSolver, path: InputPath, nodes: Sequence[Node]) -
         second=np.stack([node.second for node in nodes]),
         spread=rounding_of_inputs(v, solver.unknowns),
     )
-    return bool(prove_path(solver, path, beads).connected_to(0).all())
+    return bool(prove_path(solver, path, beads, anchor=0).connected_to(0).all())
 
 
 def _apart(solver: BlockSolver, v: Array, asked: Array) -> Array:

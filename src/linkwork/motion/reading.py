@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -55,32 +56,17 @@ def named_series(
         for symbol, k in number.items()
     }
     kinds = {variable.symbol: Kind(variable.kind) for variable in equations.variables}
-
-    def series(name: str, jet: Jet, kind: Kind) -> Series:
-        return Series(
-            quantity=Quantity(name=name, kind=kind),
-            value=jet.v / model.units.scale(kind),
-            first=jet.d1,
-            second=jet.d2,
-        )
-
-    links: dict[str, Jet] = {}
-    blank = np.where(lost, np.nan, 0.0)
-    for link, angle in equations.links.items():
-        constant = Jet(blank + angle.constant, blank, blank)
-        links[link] = (
-            constant if angle.variable is None else jets[canonical(angle.variable)] + constant
-        )
+    links = _links(model, jets, np.where(lost, np.nan, 0.0))
     points = _points(model, columns)
+    series = partial(_series, model)
     released = {part.variable for part in equations.redundant}
-    own = {
-        variable.name: series(variable.name, jets[variable.symbol], kinds[variable.symbol])
-        for variable in equations.unknowns
-        if variable.name not in released
-    }
     return Named(
         inputs={variable.name: inputs[:, k] for k, variable in enumerate(equations.inputs)},
-        unknowns=own,
+        unknowns={
+            variable.name: series(variable.name, jets[variable.symbol], kinds[variable.symbol])
+            for variable in equations.unknowns
+            if variable.name not in released
+        },
         links={link: series(link, jet, Kind.ANGLE) for link, jet in links.items()},
         sliders={
             name: series(name, jets[canonical(symbol)], Kind.LENGTH)
@@ -95,6 +81,25 @@ def named_series(
         },
         outputs=_outputs(model, jets, kinds, links, points, len(v)),
     )
+
+
+def _series(model: Model, name: str, jet: Jet, kind: Kind) -> Series:
+    return Series(
+        quantity=Quantity(name=name, kind=kind),
+        value=jet.v / model.units.scale(kind),
+        first=jet.d1,
+        second=jet.d2,
+    )
+
+
+def _links(model: Model, jets: dict[str, Jet], blank: Array) -> dict[str, Jet]:
+    """The angles of links; ``blank`` (B,) is 0, or NaN where there is no position."""
+    found = {}
+    for link, angle in model.equations.links.items():
+        constant = Jet(blank + angle.constant, blank, blank)
+        turning = None if angle.variable is None else jets[canonical(angle.variable)]
+        found[link] = constant if turning is None else turning + constant
+    return found
 
 
 def _points(model: Model, columns: list[Array]) -> dict[str, tuple[Jet, Jet]]:

@@ -67,6 +67,10 @@ class SolvedRows:
         self.certification[where] = proofs.code
         self.radius[where], self.unique[where] = proofs.radius, proofs.unique
 
+    def demote(self, standing: Certification) -> None:
+        """Rows that are proved on a branch say what the way to the branch is worth."""
+        self.certification[self.certification == Certification.CERTIFIED.code] = standing.code
+
     def put(self, where: IndexArray, others: SolvedRows) -> None:
         """Replace some rows by others, one by one."""
         for field in fields(self):

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.short_number import short_number
 from linkwork.foundation.status import Status
 from linkwork.motion.branch_rows import Asked
+from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
-from linkwork.motion.model import Model
 from linkwork.motion.rows import SolvedRows
-from linkwork.numerics.track import InputPath
 
 __all__ = ["SweepTable"]
 
 _SAME_INPUT = 1e-11  # relative: a row asked for at a limit is that limit's row
-_FULL_TURN = 2.0 * np.pi
 
 
 class SweepTable:
@@ -23,8 +23,6 @@ class SweepTable:
 
     Parameters
     ----------
-    lead : int
-        The input that t is.
     window : (float, float)
         Smallest and largest value of t that has a place in the table.
     span : (float, float)
@@ -35,17 +33,14 @@ class SweepTable:
 
     def __init__(
         self,
-        model: Model,
-        path: InputPath,
-        lead: int,
+        drive: Drive,
         asked: Asked,
         rows: SolvedRows,
         window: tuple[float, float],
         span: tuple[float, float],
         free: bool,
     ) -> None:
-        self.model, self.path, self.lead = model, path, lead
-        self.asked, self.rows = asked, rows
+        self.drive, self.asked, self.rows = drive, asked, rows
         self.window, self.span, self.free = window, span, free
         self._ends: list[tuple[BranchEnd, str]] = []
         self._extra: list[SolvedRows] = []
@@ -57,9 +52,9 @@ class SweepTable:
         slack = self._slack(max(abs(low), abs(high)))
         turns = np.zeros(1)
         if self.free:
-            first = np.ceil((low - slack - t) / _FULL_TURN)
-            turns = np.arange(first, np.floor((high + slack - t) / _FULL_TURN) + 1.0)
-        here = t + turns * _FULL_TURN
+            first = np.ceil((low - slack - t) / FULL_TURN)
+            turns = np.arange(first, np.floor((high + slack - t) / FULL_TURN) + 1.0)
+        here = t + turns * FULL_TURN
         return [float(x) for x in here if low - slack <= x <= high + slack]
 
     def turns_at(self, here: float) -> int:
@@ -68,13 +63,13 @@ class SweepTable:
         On a further branch the rows bear the inputs of the table, whole turns away if need be:
         one put between them does the same, inside the table's range if it can.
         """
-        lead, scale = self.lead, float(self.model.input_scale[self.lead])
+        lead, scale = self.drive.lead, self.drive.unit
         named = self.asked.everyday[:, lead] * scale
         beside = np.argsort(np.abs(self.asked.t - here), kind="stable")[:2]
-        turns = [round(float(named[k] - self.asked.t[k]) / _FULL_TURN) for k in beside]
+        turns = [round(float(named[k] - self.asked.t[k]) / FULL_TURN) for k in beside]
         slack = self._slack(abs(here))
         low, high = self.span
-        inside = [k for k in turns if low - slack <= here + k * _FULL_TURN <= high + slack]
+        inside = [k for k in turns if low - slack <= here + k * FULL_TURN <= high + slack]
         return (inside or turns or [0])[0]
 
     def put_end(self, end: BranchEnd, branch: str) -> None:
@@ -91,7 +86,7 @@ class SweepTable:
     def _row_of(
         self, end: BranchEnd, v: Array, first: Array, branch: str, here: float
     ) -> SolvedRows:
-        solver = self.model.compiled.solver
+        solver = self.drive.solver
         row = SolvedRows.blank(self._inputs(end, here), solver.variables, Status.CONVERGED)
         row.v[0], row.first[0] = v, first
         row.residual[0] = float(solver.residual(v[None, :])[0])
@@ -141,18 +136,12 @@ class SweepTable:
 
     def _inputs(self, end: BranchEnd, here: float) -> Array:
         """Everyday inputs at an end, shifted by the whole turns to ``here``, (1, p)."""
-        scale = self.model.input_scale
-        everyday = np.array([_short(x) for x in self.path.at(end.t) / scale])
-        everyday[self.lead] = end.limit.input
-        turns = round((here - end.t) / _FULL_TURN) + self.turns_at(here)
-        return (everyday + turns * self.path.rate * (_FULL_TURN / scale))[None, :]
+        scale, path = self.drive.model.input_scale, self.drive.path
+        everyday = np.array([short_number(x) for x in path.at(end.t) / scale])
+        everyday[self.drive.lead] = end.limit.input
+        turns = round((here - end.t) / FULL_TURN) + self.turns_at(here)
+        return (everyday + turns * path.rate * (FULL_TURN / scale))[None, :]
 
     @staticmethod
     def _slack(size: float) -> float:
         return _SAME_INPUT * max(1.0, size)
-
-
-def _short(value: float) -> float:
-    """The value to nine decimals where that is the same number to rounding."""
-    short = round(float(value), 9)
-    return short if abs(short - value) <= 1e-14 * max(1.0, abs(value)) else float(value)

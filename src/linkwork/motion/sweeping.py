@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
@@ -15,6 +16,7 @@ from linkwork.foundation.status import Status
 from linkwork.motion.around import further_branches
 from linkwork.motion.branch_rows import Asked, BranchRows, Report, rows_of_branch
 from linkwork.motion.crossing import beyond_change_point
+from linkwork.motion.drive import Drive
 from linkwork.motion.extremes import check_quantities, output_limits
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.lock_step import lock_step
@@ -24,7 +26,8 @@ from linkwork.motion.proving import way_is_proved
 from linkwork.motion.rows import SolvedRows
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.sweep_table import SweepTable
-from linkwork.motion.tracking import leading_scale, track_to, turns_freely
+from linkwork.motion.tracking import track_to
+from linkwork.numerics.leaders import same_position
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.track import InputPath, Node, Track, follow, node_at
 from linkwork.results.motion import Limit, Motion, OutputLimit
@@ -35,7 +38,7 @@ _ENTRIES = (
     24  # rows, from the nearest on, at which a table of several inputs is tried to be entered
 )
 _MOST_CROSSINGS = 64
-_SAME = 1e-6  # weighted distance below which two dead points are one
+_SAME = 1e-6  # of the leading input: extremes nearer to each other are one
 
 
 def sweep(
@@ -83,13 +86,13 @@ def sweep(
     if not start.status.ok:
         return _without_start(model, start)
     lead, rate = lock_step(rows)
-    path = InputPath(origin=rows[0] - rate * rows[0, lead], rate=rate)
+    drive = Drive.through(model, rows[0], rate, lead)
     asked = Asked(t=rows[:, lead], inputs=rows, everyday=model.everyday_rows)
-    entry = _onto_path(model, path, start, asked.t, lead, certify)
+    entry = _onto_path(drive, start, asked.t, certify)
     if entry is None:
         message = "no row of the table could be reached from the guess's own input values"
         return _without_start(model, replace(start, message=message))
-    work = _Sweep(model, path, lead, certify, Report(progress, entry[0].t, *_span(asked.t)))
+    work = _Sweep(drive, certify, Report(progress, entry[0].t, *_span(asked.t)))
     work.run(*entry, asked, policy)
     if through:
         work.go_around(asked)
@@ -119,12 +122,9 @@ class _Branch:
 class _Sweep:
     """The parts of a sweep as they are found: branches with their rows, limits, extremes."""
 
-    def __init__(
-        self, model: Model, path: InputPath, lead: int, certify: bool, report: Report
-    ) -> None:
-        self.model, self.path, self.lead = model, path, lead
+    def __init__(self, drive: Drive, certify: bool, report: Report) -> None:
+        self.drive, self.model = drive, drive.model
         self.certify, self.report = certify, report
-        self.scale = leading_scale(model, lead)
         self.tables: list[SweepTable] = []
         self.branches: list[_Branch] = []
         self.ends: list[BranchEnd] = []
@@ -136,24 +136,15 @@ class _Sweep:
         """The table of the start's branch, and of those beyond change points if asked."""
         standing = Certification.CERTIFIED if entered else Certification.MOTION_NOT_PROVED
         found = self._branch(anchor, asked)
-        _demote(found.rows, standing)
-        free = turns_freely(self.model)
-        table = SweepTable(
-            self.model,
-            self.path,
-            self.lead,
-            asked,
-            found.rows,
-            _span(asked.t),
-            _span(asked.t),
-            free,
-        )
+        found.rows.demote(standing)
+        span = _span(asked.t)
+        table = SweepTable(self.drive, asked, found.rows, span, span, self.drive.free)
         self.tables.append(table)
         first = self._told(table, found, self.model.branch, standing, found.here)
         below: list[Limit] = []
         above: list[Limit] = []
         for end in found.ends:
-            told = _demoted(end, standing)
+            told = end.demoted(standing)
             self.ends.append(told)
             table.put_end(told, self.model.branch)
             passed = self._cross(first, told, policy)
@@ -161,9 +152,7 @@ class _Sweep:
         self.limits = [*below[::-1], *above]
 
     def _branch(self, anchor: Node, asked: Asked) -> BranchRows:
-        return rows_of_branch(
-            self.model, self.path, self.lead, anchor, asked, self.report, self.certify
-        )
+        return rows_of_branch(self.drive, anchor, asked, self.report, self.certify)
 
     def _told(
         self,
@@ -191,14 +180,12 @@ class _Sweep:
             beyond = np.flatnonzero(missing & (end.side * (table.asked.t - end.t) > 0.0))
             if policy is ChangePointPolicy.STOP or end.crossing is None or not len(beyond):
                 break
-            node = beyond_change_point(
-                self.model, self.path, end.crossing, end.side, self.scale, policy
-            )
+            node = beyond_change_point(self.drive, end.crossing, end.side, policy)
             if node is None:
                 break
             told.append(replace(end.limit, passed=policy.value))
             found = self._branch(node, table.asked.take(beyond))
-            _demote(found.rows, Certification.BRANCH_CHOSEN)
+            found.rows.demote(Certification.BRANCH_CHOSEN)
             good = found.here & (found.rows.status == Status.CONVERGED.code)
             mine = np.zeros(len(missing), dtype=bool)
             mine[beyond[good]] = True
@@ -210,7 +197,7 @@ class _Sweep:
             ahead = [other for other in found.ends if other.side == end.side]
             if not ahead:
                 return told
-            end = _demoted(ahead[0], Certification.BRANCH_CHOSEN)
+            end = ahead[0].demoted(Certification.BRANCH_CHOSEN)
             table.put_end(end, self.model.circuit)
         return [*told, end.limit]
 
@@ -220,22 +207,11 @@ class _Sweep:
         anchor = track.nodes[track.start]
         if self.branches[0].found.proved_to_ends or not self.certify:
             anchor = min(track.nodes, key=self._steepness)
-        around = further_branches(
-            self.model, self.path, self.lead, anchor.v, asked, self.report, self.certify
-        )
+        around = further_branches(self.drive, anchor.v, asked, self.report, self.certify)
         self.circuit = around.end
         for branch in around.branches:
             rows = branch.found.rows
-            table = SweepTable(
-                self.model,
-                self.path,
-                self.lead,
-                branch.asked,
-                rows,
-                branch.window,
-                _span(asked.t),
-                False,
-            )
+            table = SweepTable(self.drive, branch.asked, rows, branch.window, _span(asked.t), False)
             self.tables.append(table)
             self._told(table, branch.found, branch.name, branch.standing, branch.found.here)
             for end in branch.ends:
@@ -244,19 +220,14 @@ class _Sweep:
         self.limits += [
             end.limit
             for end in around.dead_points
-            if end.v is not None and not any(self._same(end.v, v) for v in known)
+            if end.v is not None
+            and not any(same_position(self.drive.leads, end.v, v) for v in known)
         ]
 
     def _steepness(self, node: Node) -> float:
         """Large near dead points, where a single equation has no bad condition, and crossings."""
         weights = self.model.compiled.table.variable_scale
         return node.condition * float(np.abs(node.first / weights).max())
-
-    def _same(self, a: Array, b: Array) -> bool:
-        """Whether two positions (N,) are one, whole turns aside."""
-        table = self.model.compiled.table
-        gap = np.where(table.turns, np.remainder(b - a + np.pi, 2.0 * np.pi) - np.pi, b - a)
-        return bool(np.abs(gap / table.variable_scale).max() < _SAME)
 
     def locate_extremes(self, name: str) -> None:
         """Rows at which a quantity is largest or smallest, on every branch."""
@@ -265,9 +236,7 @@ class _Sweep:
                 continue
             table = branch.table
             places: list[float] = []
-            for t, limit in output_limits(
-                self.model, self.path, self._whole_track(branch), self.lead, self.scale, name
-            ):
+            for t, limit in output_limits(self.drive, self._whole_track(branch), name):
                 mine = [
                     here
                     for here in table.places_of(t)
@@ -288,78 +257,60 @@ class _Sweep:
         if table is self.tables[0]:
             return found.track
         anchor = found.track.nodes[found.track.start]
-        solver = self.model.compiled.solver
-        return track_to(solver, self.path, anchor, table.window, self.scale)
+        return track_to(self.drive.solver, self.drive.path, anchor, table.window)
 
     def _branch_row(self, branch: _Branch, t: float, here: float) -> SolvedRows:
         """The row of a branch at a value of t, named by its place in the table."""
         table, track = branch.table, branch.found.track
-        inputs = self.path.at(np.array([t]))
-        everyday = inputs / self.model.input_scale
-        turns = round((here - t) / (2.0 * np.pi)) + table.turns_at(here)
-        everyday = everyday + turns * self.path.rate * (2.0 * np.pi / self.model.input_scale)
+        path, scale = self.drive.path, self.model.input_scale
+        inputs = path.at(np.array([t]))
+        turns = round((here - t) / FULL_TURN) + table.turns_at(here)
+        everyday = inputs / scale + turns * path.rate * (FULL_TURN / scale)
         asked = Asked(t=np.array([t]), inputs=inputs, everyday=everyday)
         rows = self._branch(track.nodes[track.start], asked).rows
-        _demote(rows, branch.standing)
+        rows.demote(branch.standing)
         return rows
 
     def motion(self, message: str) -> Motion:
         """Everything in one result."""
         first, *further = (table.finished() for table in self.tables)
         added = [first[1], *(np.ones(len(rows), dtype=bool) for rows, _ in further)]
-        return motion_of_rows(
-            self.model,
-            SolvedRows.joined([first[0], *(rows for rows, _ in further)]),
-            message,
-            added=np.concatenate(added),
+        rows = SolvedRows.joined([first[0], *(rows for rows, _ in further)])
+        return replace(
+            motion_of_rows(self.model, rows, message, np.concatenate(added)),
             limits=tuple(self.limits),
             output_limits=tuple(self.output_limits),
             circuit=self.circuit,
         )
 
 
-def _demote(rows: SolvedRows, standing: Certification) -> None:
-    """Rows that are proved on a branch say what the way to the branch is worth."""
-    rows.certification[rows.certification == Certification.CERTIFIED.code] = standing.code
-
-
-def _demoted(end: BranchEnd, standing: Certification) -> BranchEnd:
-    if end.certification is not Certification.CERTIFIED:
-        return end
-    return replace(end, certification=standing)
-
-
-def _onto_path(
-    model: Model, path: InputPath, start: Start, t: Array, lead: int, certify: bool
-) -> tuple[Node, bool] | None:
+def _onto_path(drive: Drive, start: Start, t: Array, certify: bool) -> tuple[Node, bool] | None:
     """The start as a node of the table's path, and whether the way to it is proved.
 
     Several inputs are first led onto the path.
     """
-    solver = model.compiled.solver
-    own = model.start_inputs
-    here = float(own[lead])
-    if np.allclose(path.at(here), own, rtol=0, atol=1e-12 * leading_scale(model, lead)):
+    solver, path = drive.solver, drive.path
+    own = drive.model.start_inputs
+    here = float(own[drive.lead])
+    if np.allclose(path.at(here), own, rtol=0, atol=1e-12 * path.size):
         return node_at(solver, path, here, start.v), True
     weights = solver.variable_scale[solver.unknowns :]
     distance = np.abs((path.at(t) - own) / weights).max(axis=1)
     nearest = np.argsort(distance, kind="stable")
     spread = np.linspace(0, len(t) - 1, min(len(t), _ENTRIES)).astype(np.intp)
     for row in (nearest[0], *nearest[spread[1:]]):
-        entry = _led_to(model, path, start, float(t[row]), certify)
+        entry = _led_to(drive, start, float(t[row]), certify)
         if entry is not None:
             return entry
     return None
 
 
-def _led_to(
-    model: Model, path: InputPath, start: Start, t: float, certify: bool
-) -> tuple[Node, bool] | None:
+def _led_to(drive: Drive, start: Start, t: float, certify: bool) -> tuple[Node, bool] | None:
     """The start led to one row of the table along the straight line between their inputs."""
-    solver = model.compiled.solver
-    way = InputPath(origin=model.start_inputs, rate=path.at(t) - model.start_inputs)
+    solver, path, own = drive.solver, drive.path, drive.model.start_inputs
+    way = InputPath(origin=own, rate=path.at(t) - own)
     first = node_at(solver, way, 0.0, start.v)
-    nodes, end = follow(solver, way, first, 1.0, 1.0)
+    nodes, end = follow(solver, way, first, 1.0)
     if end is not None:
         return None
     entered = certify and way_is_proved(solver, way, [first, *nodes])
@@ -369,5 +320,5 @@ def _led_to(
 def _without_start(model: Model, start: Start) -> Motion:
     rows = SolvedRows.blank(model.everyday_rows, model.compiled.solver.variables, Status.NO_START)
     nothing_added = np.zeros(len(rows), dtype=bool)
-    motion = motion_of_rows(model, rows, start.message, added=nothing_added)
+    motion = motion_of_rows(model, rows, start.message, nothing_added)
     return replace(motion, failure=start.failure)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from linkwork.kernels.law_row import LawRow
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.motion.model import Model
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.track import InputPath, Node, Progress, Track, TrackOptions, follow
+from linkwork.numerics.track import InputPath, Node, Track, TrackOptions, follow
 
 __all__ = ["leading_scale", "track_to", "turns_freely", "unchanged_by"]
 
@@ -84,15 +84,23 @@ def track_to(
     path: InputPath,
     start: Node,
     goals: Iterable[float],
-    scale: float,
-    progress: Progress | None = None,
     options: TrackOptions | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Track:
-    """The branch from ``start`` as far towards the smallest and largest goal as it goes."""
+    """The branch from ``start`` as far towards the smallest and largest goal as it goes.
+
+    ``progress`` is told every value of t that was reached.
+    """
+
+    def tell(_: Node, after: Node) -> bool:
+        if progress is not None:
+            progress(after.t)
+        return False
+
     goals = list(goals)
     low, high = min([*goals, start.t]), max([*goals, start.t])
-    above, above_end = follow(solver, path, start, high, scale, options, progress)
-    below, below_end = follow(solver, path, start, low, scale, options, progress)
+    above, above_end = follow(solver, path, start, high, options, tell)
+    below, below_end = follow(solver, path, start, low, options, tell)
     return Track(
         nodes=(*reversed(below), start, *above),
         start=len(below),

@@ -15,6 +15,7 @@ from linkwork.numerics.system import System
 __all__ = ["Block", "BlockSolution", "BlockSolver", "Linearised", "Rates", "linearised"]
 
 _CONVERGED = Status.CONVERGED.code
+_LARGE = 1e3  # condition up to which nobody asks whether balanced columns would do better
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,13 +57,15 @@ class Linearised:
 class Rates:
     """Derivatives along the input path: (B, N) each; evidence about the Jacobian.
 
-    ``condition`` (B,): largest over the blocks of ‖J‖·‖J⁻¹‖ (largest norm, weighted).
-    ``orientation`` (B, blocks): sign of det J. NaN and 0 where J is singular.
+    ``condition`` (B,): largest over the blocks of ‖J‖·‖J⁻¹‖ (largest norm, weighted). ``nearness``
+    (B,): to a singular position, the condition itself unless lengths differ much (see
+    :func:`_nearness`). ``orientation`` (B, blocks): sign of det J. NaN and 0 where J is singular.
     """
 
     first: Array
     second: Array
     condition: Array
+    nearness: Array
     orientation: StatusArray
 
 
@@ -157,7 +160,7 @@ class BlockSolver:
         first = np.zeros((count, self.variables))
         second = np.zeros((count, self.variables))
         first[:, self.unknowns :] = input_rate
-        condition = np.ones(count)
+        condition, nearness = np.ones(count), np.ones(count)
         orientation = np.zeros((count, len(self.blocks)), dtype=np.int8)
         for k, block in enumerate(self.blocks):
             n = len(block.unknowns)
@@ -172,9 +175,19 @@ class BlockSolver:
             bend = system.second(here, direction) + _apply(jacobian[:, :, n:], second[:, known])
             first[:, block.unknowns] = x1
             second[:, block.unknowns] = -_apply(inverse, bend)
-            condition = np.maximum(condition, _condition(system, jacobian[:, :, :n], inverse))
+            own = _condition(system, jacobian[:, :, :n], inverse)
+            condition = np.maximum(condition, own)
+            if own.max(initial=0.0) > _LARGE:
+                own = _nearness(own, system.equation_scale, jacobian[:, :, :n], inverse)
+            nearness = np.maximum(nearness, own)
             orientation[:, k] = parts[k].sign
-        return Rates(first=first, second=second, condition=condition, orientation=orientation)
+        return Rates(
+            first=first,
+            second=second,
+            condition=condition,
+            nearness=nearness,
+            orientation=orientation,
+        )
 
     def residual(self, v: Array) -> Array:
         """Largest scaled residual over all equations, (B,)."""
@@ -213,9 +226,27 @@ def _inverse(jacobian: Array) -> tuple[Array, StatusArray]:
 
 
 def _condition(system: System, jacobian: Array, inverse: Array) -> Array:
-    n = jacobian.shape[2]
-    w, s = system.variable_scale[:n], system.equation_scale
+    """‖J‖·‖J⁻¹‖ in the system's own weights, (B,)."""
+    w, s = system.variable_scale[: jacobian.shape[2]], system.equation_scale
     forward = np.abs(jacobian * w / s[:, None]).sum(axis=2).max(axis=1, initial=0.0)
     backward = np.abs(inverse * s / w[:, None]).sum(axis=2).max(axis=1, initial=0.0)
     product: Array = forward * backward
     return np.where(np.isfinite(product), product, np.inf)
+
+
+def _nearness(condition: Array, s: Array, jacobian: Array, inverse: Array) -> Array:
+    """How near to a singular position, as far as rounding and bending equations go, (B,).
+
+    ‖J⁻¹‖ counts twice in a proof (Newton-Kantorovich): for the size of errors, and for how much the
+    equations bend. The latter does not depend on the ratio of the lengths, so that the condition
+    with all columns of J equally long stands for it: within a factor of √n the least that weights
+    can bring about (van der Sluis 1969, doi:10.1007/BF02165096). The mean of both is returned.
+    """
+    scaled = np.abs(jacobian / s[:, None])
+    longest = scaled.max(axis=1, initial=0.0)
+    with np.errstate(all="ignore"):
+        forward = (scaled / longest[:, None, :]).sum(axis=2).max(axis=1, initial=0.0)
+        backward = np.abs(inverse * s * longest[:, :, None]).sum(axis=2).max(axis=1, initial=0.0)
+        balanced = forward * backward
+        least = np.where(np.isfinite(balanced), np.minimum(condition, balanced), condition)
+        return np.asarray(np.sqrt(condition) * np.sqrt(least))

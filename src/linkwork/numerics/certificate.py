@@ -13,17 +13,22 @@ every value in their intervals.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray
-from linkwork.numerics.system import Curvature, System
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.numerics.system import System
 
-__all__ = ["Bounds", "Radii", "bounds", "radii"]
+__all__ = ["Bounds", "Expansion", "Majorant", "Radii", "bounds", "expansion", "radii"]
 
 _UNIT = np.finfo(float).eps / 2
 _SLACK = 1.0 + 1e-12  # rounding of the bounds' own arithmetic, sums of positive numbers
+_FITTINGS = 4  # rounds in which weights are fitted
+_BENDING, _SHIFTING = 2.5, 3.0  # c and d of fitted weights: 2 ω Y < (1 - Z)² with some room
+_LEAST = 1e-12  # of the largest weight: an unknown that does not move has this one
+_MOST = 1e3  # of the usual weight: where the proof fails weights grow without end
+_TINY = 1e-200
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,17 +49,54 @@ class Radii:
     """What was proved, (B,): ``holds``; a solution within ``exists``, no other within ``unique``.
 
     ``each`` (B, n): a bound of every unknown's error in its own unit, never larger than ``exists``
-    times its weight.
+    times its weight. ``alone`` (B, n): ``unique`` in their own units.
     """
 
     holds: BoolArray
     exists: Array
     unique: Array
     each: Array
+    alone: Array
 
 
-def bounds(system: System, v: Array, jacobian: Array, matrix: Array, known: Array) -> Bounds:
-    """Constants of the proof at B positions.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Expansion:
+    """A system at B positions, seen through an approximate inverse A of its Jacobian.
+
+    All that a proof takes from there, whatever is known of the p known variables.
+
+    ``residual`` (B, n): |A F| with its rounding. ``defect`` (B, n, n): |I - A J|. ``slope``
+    (B, n, p): |A F_k| by the known variables; ``lines`` (B, n, p): the part of linear rows.
+    ``phase`` (B, n, G), ``slide`` (B, n, P) and the rest: see :class:`Curvature`; rows whose phases
+    are not those of loops are among ``lines``.
+    """
+
+    residual: Array
+    defect: Array
+    slope: Array
+    lines: Array
+    loop_phases: int
+    phase: Array
+    slide: Array
+    weights: Array
+    pair_length: IndexArray
+    pair_group: IndexArray
+
+    def take(self, index: IndexArray | slice) -> Expansion:
+        """At some of the positions, in the order of ``index``."""
+        return replace(
+            self,
+            residual=self.residual[index],
+            defect=self.defect[index],
+            slope=self.slope[index],
+            lines=self.lines[index],
+            phase=self.phase[index],
+            slide=self.slide[index],
+        )
+
+
+def expansion(system: System, v: Array, jacobian: Array, matrix: Array) -> Expansion:
+    """A system at B positions.
 
     Parameters
     ----------
@@ -65,91 +107,133 @@ def bounds(system: System, v: Array, jacobian: Array, matrix: Array, known: Arra
         dF/dv at v.
     matrix : (B, n, n)
         A, any approximate inverse of the Jacobian by the unknowns.
+    """
+    n = system.unknowns
+    bend = system.curvature(v, matrix)
+    size, rest = np.abs(matrix), slice(bend.loop_rows, None)
+    loss = size @ bend.jacobian_rounding
+    f, slope = system.residual(v), jacobian[:, :, n:]
+    lines = np.abs(matrix[:, :, rest] @ slope[:, rest])
+    return Expansion(
+        residual=np.abs(_apply(matrix, f))
+        + _apply(size, bend.rounding + (n + 2) * _UNIT * np.abs(f)),
+        defect=np.abs(np.eye(n) - matrix @ jacobian[:, :, :n]) + loss[:, :, :n],
+        slope=np.abs(matrix @ slope) + loss[:, :, n:],
+        lines=lines + size[:, :, rest] @ bend.jacobian_rounding[:, rest, n:],
+        loop_phases=bend.loop_phases,
+        phase=bend.phase,
+        slide=bend.slide,
+        weights=bend.weights,
+        pair_length=bend.pair_length,
+        pair_group=bend.pair_group,
+    )
+
+
+class Majorant:
+    """How far a solution may be, unknown by unknown: x with y + Z x + ½ M(x, x) ≤ x.
+
+    The constants of the proof before weights are chosen, for B positions.
+
+    Parameters
+    ----------
+    at : Expansion
     known : (B, p)
-        How far each known variable may be from its value in v, in its own unit.
+        How far each known variable may be from its value, in its own unit.
 
     Notes
     -----
     A change δ of a phase e^{iψ} is split as iδ plus at most δ²/2, or bounded by |δ| as a whole,
     whichever is smaller row by row.
     """
-    n = system.unknowns
-    bend = system.curvature(v, matrix)
-    w = system.variable_scale[:n]
-    size = np.abs(matrix)
-    turned = known @ bend.weights[n:]  # (B, G): how far the known angles turn each phase
-    own = w @ bend.weights[:n]  # (G,): how far unknowns of norm 1 turn it
-    pairs = _Pairs(bend, w, known)
-    loss = size @ bend.jacobian_rounding
 
-    residual = system.residual(v)
-    y = np.abs(_apply(matrix, residual))
-    y += _apply(size, bend.rounding + (n + 2) * _UNIT * np.abs(residual))
-    y += np.minimum(
-        _first_order(bend, pairs, matrix, jacobian, loss, known, turned),
-        _as_a_whole(bend, pairs, matrix, jacobian, known, turned),
-    )
+    def __init__(self, at: Expansion, known: Array) -> None:
+        n = at.residual.shape[1]
+        self.phase, self.defect = at.phase, at.defect
+        self.turning = at.weights[:n]
+        self.turned = known @ at.weights[n:]  # (B, G): how far the known angles turn each phase
+        # terms with a variable length, split into those with an unknown and with a known length
+        mine = np.flatnonzero(at.pair_length < n)
+        given = np.flatnonzero(at.pair_length >= n)
+        self.free, self.free_group = at.slide[:, :, mine], at.pair_group[mine]
+        self.lengths = at.pair_length[mine]
+        self.held, self.held_group = at.slide[:, :, given], at.pair_group[given]
+        self.spread = known[:, at.pair_length[given] - n]
+        by_slope = _apply(at.slope, known) + 0.5 * _apply(at.phase, self.turned**2)
+        # a law's phase is a second derivative, no bound of the change itself
+        loops, bent = slice(None, at.loop_phases), slice(at.loop_phases, None)
+        as_a_whole = _apply(at.phase[:, :, loops], self.turned[:, loops])
+        as_a_whole += 0.5 * _apply(at.phase[:, :, bent], self.turned[:, bent] ** 2)
+        as_a_whole += _apply(at.lines, known)
+        if given.size:
+            by_slope += _apply(self.held, self.spread * self.turned[:, self.held_group])
+            as_a_whole += _apply(self.held, self.spread)
+        self.y = at.residual + np.minimum(by_slope, as_a_whole)
 
-    z = np.abs(np.eye(n) - matrix @ jacobian[:, :, :n]) + loss[:, :, :n]
-    z_rows = (z * w).sum(axis=2) + _apply(bend.phase, own * turned)
-    z_rows += _apply(pairs.unknown, pairs.weight * turned[:, pairs.unknown_group])
-    z_rows += _apply(pairs.known, pairs.spread * own[pairs.known_group])
+    def linear(self, x: Array) -> Array:
+        """Z x, (B, n), for x (B or 1, n)."""
+        own = x @ self.turning  # how far unknowns that move by x turn each phase
+        rows = _apply(self.defect, x) + _apply(self.phase, own * self.turned)
+        if self.lengths.size:
+            rows += _apply(self.free, x[:, self.lengths] * self.turned[:, self.free_group])
+        if self.held_group.size:
+            rows += _apply(self.held, self.spread * own[:, self.held_group])
+        return rows
 
-    omega = bend.phase @ own**2 + pairs.unknown @ (2.0 * pairs.weight * own[pairs.unknown_group])
-    omega += _apply(pairs.known, pairs.spread * own[pairs.known_group] ** 2)
-    slope = pairs.unknown @ (pairs.weight * own[pairs.unknown_group] ** 2)
-    return Bounds(
-        y=_SLACK * y / w,
-        z=_SLACK * z_rows / w,
-        omega=_SLACK * omega / w,
-        omega_slope=_SLACK * slope / w,
-    )
+    def quadratic(self, x: Array) -> Array:
+        """M(x, x), (B, n), for x (B or 1, n)."""
+        own = x @ self.turning
+        rows = _apply(self.phase, own**2)
+        if self.lengths.size:
+            rows += _apply(self.free, 2.0 * x[:, self.lengths] * own[:, self.free_group])
+        if self.held_group.size:
+            rows += _apply(self.held, self.spread * own[:, self.held_group] ** 2)
+        return rows
+
+    def cubic(self, x: Array) -> Array:
+        """What M(x, x) grows by where unknown lengths have changed by x (B or 1, n), (B, n)."""
+        if not self.lengths.size:
+            return np.zeros_like(self.y)
+        own = x @ self.turning
+        return _apply(self.free, x[:, self.lengths] * own[:, self.free_group] ** 2)
+
+    def bounds(self, weights: Array) -> Bounds:
+        """The constants in weights (n,) or (B, n)."""
+        w = np.atleast_2d(weights)
+        return Bounds(
+            y=_SLACK * self.y / w,
+            z=_SLACK * self.linear(w) / w,
+            omega=_SLACK * self.quadratic(w) / w,
+            omega_slope=_SLACK * self.cubic(w) / w,
+        )
+
+    def fitted(self, scale: Array) -> Array:
+        """Weights (B, n) in which the proof nearly always succeeds where there are any such.
+
+        An unknown's weight is how far it may move: y, or what the others bring about. With
+        w ≥ y, w ≥ c M(w, w) and w ≥ d Z w the rows of the proof are balanced, whatever the ratio
+        of the lengths; a long link that hardly turns does not spoil the proof of a short one.
+
+        Parameters
+        ----------
+        scale : (n,)
+            The usual weights.
+        """
+        largest = (self.y / scale).max(axis=1, keepdims=True)
+        start: Array = np.maximum(self.y, np.maximum(_LEAST * largest, _TINY) * scale)
+        w = start
+        for _ in range(_FITTINGS):
+            grown = _BENDING * self.quadratic(w) + _SHIFTING * self.linear(w)
+            w = np.maximum(start, np.minimum(grown, _MOST * scale))
+        return w
 
 
-class _Pairs:
-    """Terms with a variable length, split into those with an unknown and with a known length."""
+def bounds(system: System, v: Array, jacobian: Array, matrix: Array, known: Array) -> Bounds:
+    """Constants of the proof in the system's own weights.
 
-    def __init__(self, bend: Curvature, weights: Array, known: Array) -> None:
-        n = len(weights)
-        mine = np.flatnonzero(bend.pair_length < n)
-        given = np.flatnonzero(bend.pair_length >= n)
-        self.unknown, self.known = bend.slide[:, :, mine], bend.slide[:, :, given]
-        self.unknown_group, self.known_group = bend.pair_group[mine], bend.pair_group[given]
-        self.weight = weights[bend.pair_length[mine]]
-        self.spread = known[:, bend.pair_length[given] - n]
-
-
-def _first_order(
-    bend: Curvature,
-    pairs: _Pairs,
-    matrix: Array,
-    jacobian: Array,
-    loss: Array,
-    known: Array,
-    turned: Array,
-) -> Array:
-    """|A (F(x0, k) - F(x0, k0))| by the derivative, plus what the phases bend."""
-    n = matrix.shape[1]
-    change = _apply(np.abs(matrix @ jacobian[:, :, n:]) + loss[:, :, n:], known)
-    change += 0.5 * _apply(bend.phase, turned**2)
-    return change + _apply(pairs.known, pairs.spread * turned[:, pairs.known_group])
-
-
-def _as_a_whole(
-    bend: Curvature,
-    pairs: _Pairs,
-    matrix: Array,
-    jacobian: Array,
-    known: Array,
-    turned: Array,
-) -> Array:
-    """The same by the moduli alone; better where a phase turns far."""
-    n, loops, count = matrix.shape[1], bend.loop_rows, bend.loop_phases
-    lines = np.abs(matrix[:, :, loops:] @ jacobian[:, loops:, n:])
-    lines += np.abs(matrix[:, :, loops:]) @ bend.jacobian_rounding[:, loops:, n:]
-    change = _apply(bend.phase[:, :, :count], turned[:, :count])
-    change += 0.5 * _apply(bend.phase[:, :, count:], turned[:, count:] ** 2)
-    return change + _apply(pairs.known, pairs.spread) + _apply(lines, known)
+    See :func:`expansion` and :class:`Majorant` for the parameters.
+    """
+    majorant = Majorant(expansion(system, v, jacobian, matrix), known)
+    return majorant.bounds(system.variable_scale[: system.unknowns])
 
 
 def _apply(matrix: Array, vector: Array) -> Array:
@@ -182,4 +266,5 @@ def radii(b: Bounds, weights: Array) -> Radii:
         bent = b.omega + np.where(b.omega_slope > 0.0, rho[:, None] * b.omega_slope, 0.0)
         each = b.y + b.z * exists[:, None] + 0.5 * bent * exists[:, None] ** 2
     each = np.minimum(each * _SLACK, exists[:, None]) * weights
-    return Radii(holds=holds, exists=exists, unique=unique, each=each)
+    alone = unique[:, None] * weights / _SLACK
+    return Radii(holds=holds, exists=exists, unique=unique, each=each, alone=alone)

@@ -57,8 +57,9 @@ class ChangePoint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Crossing:
-    """A change point: position (N,), directions of both curves (2, N), parameter with bracket."""
+    """A change point: parameter with bracket, position (N,), directions of both curves (2, N)."""
 
+    t: float
     v: Array
     directions: Array
     bracket: tuple[float, float]
@@ -174,8 +175,10 @@ def most_singular(solver: BlockSolver, v: Array) -> int | None:
         n = len(block.unknowns)
         system = block.system
         j = system.jacobian(v[None, block.variables])[0, :, :n]
-        scaled = j * system.variable_scale[:n] / system.equation_scale[:, None]
-        values = np.linalg.svd(scaled, compute_uv=False)
+        scaled = j / system.equation_scale[:, None]
+        longest = np.abs(scaled).max(axis=0, initial=0.0)
+        # columns of lengths that differ much are no sign of a singular position
+        values = np.linalg.svd(scaled / np.where(longest > 0.0, longest, 1.0), compute_uv=False)
         ratios.append(float(values[-1] / values[0]) if values[0] > 0 else 0.0)
     if not ratios or min(ratios) > 1e-3:
         return None

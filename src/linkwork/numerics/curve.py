@@ -10,82 +10,24 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass, field
-from typing import Protocol
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
-from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.change_point import ChangePoint, locate_change_point
-from linkwork.numerics.track import BOLD, InputPath, Node, TrackOptions, follow, node_at
+from linkwork.numerics.divided_steps import node_between, one_way, share_at
+from linkwork.numerics.leaders import Leads, Led, fastest_leader, same_position
+from linkwork.numerics.track import BOLD, Node, TrackOptions, follow
 
-__all__ = [
-    "Curve",
-    "CurveOptions",
-    "Leads",
-    "Led",
-    "Leg",
-    "apart",
-    "divided",
-    "fastest_leader",
-    "hermite",
-    "same_position",
-    "trace",
-]
+__all__ = ["Curve", "CurveOptions", "Leg", "trace"]
 
 _CONVERGED = Status.CONVERGED.code
 _SAME = 1e-6  # weighted distance below which two positions at one input can be the same
 _ON_PLANE = 1e-11  # a value of the parameter this near, relative, is reached
 _LEG = 8.0  # natural sizes of the leader, after which a leg ends if nothing else ends it
-_UNIT = np.finfo(float).eps
-_DIVISIONS = 12  # halvings of a step in which a variable turns back several times
-_CUBIC = 1e-3  # relative error of a cubic that is good enough
-_SHARES = np.linspace(0.0625, 0.9375, 15)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Led:
-    """The equations with the variable ``lead`` known.
-
-    ``order`` (N,): the variables of the whole in the solver's order, the leading one last.
-    """
-
-    lead: int
-    solver: BlockSolver
-    order: IndexArray
-
-    @property
-    def path(self) -> InputPath:
-        """The leading variable is its own path."""
-        return InputPath(origin=np.zeros(1), rate=np.ones(1))
-
-    def node(self, v: Array) -> Node:
-        """The node of a position (N,) given in the whole's order."""
-        return node_at(self.solver, self.path, float(v[self.lead]), v[self.order])
-
-    def place(self, variable: int) -> int:
-        """Where a variable of the whole stands in the solver's order."""
-        return int(np.flatnonzero(self.order == variable)[0])
-
-    def whole(self, part: Array) -> Array:
-        """Variables (..., N) of the solver's order in the whole's order."""
-        found = np.empty_like(part)
-        found[..., self.order] = part
-        return found
-
-
-class Leads(Protocol):
-    """Equations that can be solved with any variable in the lead."""
-
-    parameter: int
-    scale: Array
-    turns: BoolArray
-
-    def by(self, lead: int) -> Led | None:
-        """The equations led by one variable; ``None`` if it does not determine the others."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -272,7 +214,8 @@ class _Tracer:
         goal = node.t + sign * _LEG * size
         if own:
             goal = self._next_plane(node.t, sign)
-        nodes, end = follow(led.solver, led.path, node, goal, size, opt.track, until=done)
+        path = replace(led.path, size=size)
+        nodes, end = follow(led.solver, path, node, goal, opt.track, watch=done)
         chain = [node, *nodes]
         if passed:
             crossing = self._crossing(led, passed[0])
@@ -304,7 +247,7 @@ class _Tracer:
     def _passes(self, led: Led, before: Node, after: Node) -> list[_Pass]:
         """The first pass of the starting value (whole turns aside) between two nodes, if any."""
         place = led.place(self.leads.parameter)
-        for low, high in itertools.pairwise(_one_way(led, place, before, after)):
+        for low, high in itertools.pairwise(one_way(led, place, before, after)):
             value = self._plane_between(float(low.v[place]), float(high.v[place]))
             if value is not None:
                 return [_Pass(value=value, low=low, high=high)]
@@ -325,7 +268,7 @@ class _Tracer:
         place = led.place(self.leads.parameter)
         value, low, high = passed.value, passed.low, passed.high
         for _ in range(60):
-            here = _node_between(led, low, high, _where(place, low, high, value))
+            here = node_between(led, low, high, share_at(place, low, high, value))
             if here is None:
                 return None
             if abs(here.v[place] - value) <= _ON_PLANE * max(1.0, abs(value)):
@@ -367,116 +310,3 @@ def _crossing_ahead(leg: Leg) -> ChangePoint | None:
         if found is not None:
             return found
     return None
-
-
-def fastest_leader(
-    leads: Leads, v: Array, speed: Array, avoid: int | None = None, first: int | None = None
-) -> tuple[Led, Node] | None:
-    """The fastest variable that determines all others at a position, and the node it gives."""
-    by_speed = [int(k) for k in np.argsort(-speed, kind="stable")]
-    for lead in by_speed if first is None else [first, *by_speed]:
-        led = leads.by(lead) if lead != avoid and speed[lead] > 0.0 else None
-        if led is not None:
-            node = led.node(v)
-            if np.isfinite(node.second).all():
-                return led, node
-    return None
-
-
-def _node_between(led: Led, low: Node, high: Node, s: float) -> Node | None:
-    """The node at the fraction s of a step; ``None`` if Newton-Raphson does not find it."""
-    h = high.t - low.t
-    guess = hermite(s, h, low.v, low.first, high.v, high.first)
-    guess[-1] = low.t + s * h
-    found = led.solver.solve(guess[None, :])
-    if found.status[0] != _CONVERGED:
-        return None
-    return node_at(led.solver, led.path, float(guess[-1]), found.v[0])
-
-
-def _where(place: int, low: Node, high: Node, value: float) -> float:
-    """The fraction of a step at which the cubic through a variable has a value."""
-    h = high.t - low.t
-    ends = (low.v[place], low.first[place], high.v[place], high.first[place])
-    rising = ends[2] > ends[0]
-    s0, s1 = 0.0, 1.0
-    for _ in range(60):
-        s = 0.5 * (s0 + s1)
-        if (hermite(s, h, *ends) < value) == rising:
-            s0 = s
-        else:
-            s1 = s
-    return 0.5 * (s0 + s1)
-
-
-def _one_way(led: Led, place: int, before: Node, after: Node) -> list[Node]:
-    """A step, divided where a variable turns back within it."""
-    chain = [before]
-    for low, high in itertools.pairwise(divided(led, place, before, after)):
-        if low.first[place] * high.first[place] < 0.0:
-            chain.append(_turned(led, place, low, high))
-        chain.append(high)
-    return chain
-
-
-def _turned(led: Led, place: int, low: Node, high: Node) -> Node:
-    """Where a variable turns back between two nodes at which it goes opposite ways."""
-    for _ in range(60):
-        reach = min(abs(low.first[place]), abs(high.first[place])) * abs(high.t - low.t)
-        if reach <= _UNIT:
-            break
-        s = float(low.first[place] / (low.first[place] - high.first[place]))
-        here = _node_between(led, low, high, min(max(s, 0.1), 0.9))
-        if here is None:
-            break
-        if here.first[place] * low.first[place] > 0.0:
-            low = here
-        else:
-            high = here
-    return min(low, high, key=lambda node: abs(float(node.first[place])))
-
-
-def divided(led: Led, place: int, a: Node, b: Node, depth: int = _DIVISIONS) -> list[Node]:
-    """A step, divided so finely that a variable turns back at most once in each piece.
-
-    Halved until the cubic through the variable's rates at both ends meets the rate halfway; then
-    divided where that cubic is zero more than once. What turns back and forth within less than the
-    cubic's error is not seen.
-    """
-    h = b.t - a.t
-    ends = (a.first[place], a.second[place], b.first[place], b.second[place])
-    middle = _node_between(led, a, b, 0.5) if h and depth else None
-    if middle is None:
-        return [a, b]
-    size = max(abs(ends[0]), abs(ends[2]), abs(middle.first[place]))
-    if size * abs(h) <= _ON_PLANE * max(1.0, abs(float(a.v[place]))):
-        return [a, b]  # it rests, to rounding
-    guesses = hermite(_SHARES, h, *ends)
-    off = abs(float(middle.first[place]) - float(hermite(0.5, h, *ends)))
-    signs = np.sign([ends[0], *guesses, ends[2]])
-    least = float(np.abs([ends[0], *guesses, ends[2]]).min())
-    once = np.count_nonzero(signs[1:] != signs[:-1]) <= 1
-    if once and (4.0 * off < least or off <= _CUBIC * size):
-        return [a, b]
-    left = divided(led, place, a, middle, depth - 1)
-    return [*left, *divided(led, place, middle, b, depth - 1)[1:]]
-
-
-def hermite(s: float | Array, h: float, v0: Array, d0: Array, v1: Array, d1: Array) -> Array:
-    """The cubic through both ends of a step, at the fraction s of it."""
-    rise = v1 - v0
-    bend = 3.0 * rise - h * (2.0 * d0 + d1) + s * (h * (d0 + d1) - 2.0 * rise)
-    value: Array = v0 + s * (h * d0 + s * bend)
-    return value
-
-
-def apart(leads: Leads, a: Array, b: Array) -> Array:
-    """b - a with angles reduced to half a turn, (..., N)."""
-    gap: Array = b - a
-    turned = gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi))
-    return np.where(leads.turns, turned, gap)
-
-
-def same_position(leads: Leads, a: Array, b: Array) -> bool:
-    """Whether two positions agree, whole turns aside."""
-    return bool(np.abs(apart(leads, a, b) / leads.scale).max() < _SAME)

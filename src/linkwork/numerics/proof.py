@@ -14,9 +14,18 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.numerics.block_solver import Block, BlockSolver, Linearised
-from linkwork.numerics.certificate import Radii, bounds, radii
+from linkwork.numerics.certificate import Expansion, Majorant, Radii, expansion, radii
 
-__all__ = ["Proof", "links_hold", "prove", "prove_block", "rounding_of_inputs"]
+__all__ = [
+    "Proof",
+    "Reach",
+    "expansions",
+    "links_hold",
+    "prove",
+    "prove_block",
+    "reach",
+    "rounding_of_inputs",
+]
 
 _UNIT = np.finfo(float).eps / 2
 
@@ -54,11 +63,30 @@ def rounding_of_inputs(v: Array, unknowns: int) -> Array:
     return spread
 
 
+def expansions(
+    solver: BlockSolver, v: Array, linear: Sequence[Linearised] | None = None
+) -> list[Expansion | None]:
+    """What proofs take from positions v (B, N), block by block.
+
+    ``None`` for a block without a curvature bound (function rows).
+    """
+    parts = solver.linearise(v) if linear is None else linear
+    found: list[Expansion | None] = []
+    with np.errstate(all="ignore"):
+        for block, part in zip(solver.blocks, parts, strict=True):
+            here = v[:, block.variables]
+            bounded = block.system.bends_boundedly
+            found.append(
+                expansion(block.system, here, part.jacobian, part.inverse) if bounded else None
+            )
+    return found
+
+
 def prove(
     solver: BlockSolver,
     v: Array,
     spread: Array,
-    linear: Sequence[Linearised] | None = None,
+    places: Sequence[Expansion | None] | None = None,
 ) -> Proof:
     """Prove positions for all inputs within ``spread`` of those in v.
 
@@ -67,23 +95,25 @@ def prove(
     v : (B, N)
     spread : (B, p)
         In each input's own unit.
+    places : list of Expansion, optional
+        ``expansions(solver, v)``, if they are there already.
 
     Notes
     -----
     A block without a curvature bound (function rows) proves nothing: ``holds`` is false.
     """
-    parts = solver.linearise(v) if linear is None else linear
     count = len(v)
     each = np.zeros((count, solver.variables))
     each[:, solver.unknowns :] = spread
     holds = np.ones(count, dtype=bool)
     exists = np.full((count, len(solver.blocks)), np.inf)
     unique = np.zeros((count, len(solver.blocks)))
-    for k, (block, part) in enumerate(zip(solver.blocks, parts, strict=True)):
-        if not block.system.bends_boundedly:
+    places = expansions(solver, v) if places is None else places
+    for k, (block, place) in enumerate(zip(solver.blocks, places, strict=True)):
+        if place is None:
             holds[:] = False
             continue
-        found = prove_block(block, part, v, each)
+        found = _position(block, place, each)
         holds &= found.holds
         exists[:, k], unique[:, k] = found.exists, found.unique
         each[:, block.unknowns] = found.each
@@ -98,31 +128,85 @@ def prove_block(block: Block, part: Linearised, v: Array, each: Array) -> Radii:
     part : Linearised
         The block at v. Its system has to have a curvature bound.
     """
-    n = len(block.unknowns)
-    known = each[:, block.variables[n:]]
     with np.errstate(all="ignore"):
-        return radii(
-            bounds(block.system, v[:, block.variables], part.jacobian, part.inverse, known),
-            block.system.variable_scale[:n],
-        )
+        place = expansion(block.system, v[:, block.variables], part.jacobian, part.inverse)
+    return _position(block, place, each)
 
 
-def links_hold(
-    solver: BlockSolver, v: Array, following: Array, reach: Proof, arrival: Array
-) -> BoolArray:
+def _position(block: Block, place: Expansion, each: Array) -> Radii:
+    """In the block's own weights; where they do not suffice, in fitted ones."""
+    found = _radii(block, place, each)
+    open_ = np.flatnonzero(~found.holds)
+    if not len(open_):
+        return found
+    fitted = _radii(block, place.take(open_), each[open_], fitted=True)
+    weights = block.system.variable_scale[: len(block.unknowns)]
+    found.holds[open_], found.each[open_] = fitted.holds, fitted.each
+    found.alone[open_] = fitted.alone
+    found.exists[open_] = (fitted.each / weights).max(axis=1)
+    found.unique[open_] = (fitted.alone / weights).min(axis=1)
+    return found
+
+
+def _radii(block: Block, place: Expansion, each: Array, fitted: bool = False) -> Radii:
+    """In the block's own weights or in fitted ones."""
+    n = len(block.unknowns)
+    weights = block.system.variable_scale[:n]
+    with np.errstate(all="ignore"):
+        majorant = Majorant(place, each[:, block.variables[n:]])
+        if fitted:
+            weights = majorant.fitted(weights)
+        return radii(majorant.bounds(weights), weights)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Reach:
+    """Boxes around B positions with one solution for all inputs of a step.
+
+    ``holds`` (B,): proved for all blocks. ``each`` (B, n): how far the solution may be from the
+    position, unknown by unknown. ``alone`` (B, n): how far all others are, in one unknown at least.
+    """
+
+    holds: BoolArray
+    each: Array
+    alone: Array
+
+
+def reach(
+    solver: BlockSolver, v: Array, spread: Array, places: Sequence[Expansion | None] | None = None
+) -> Reach:
+    """How far around positions v (B, N) there is one solution for all inputs within ``spread``.
+
+    As :func:`prove`, in weights fitted to each step.
+    """
+    count = len(v)
+    each = np.zeros((count, solver.variables))
+    each[:, solver.unknowns :] = spread
+    holds = np.ones(count, dtype=bool)
+    alone = np.zeros((count, solver.unknowns))
+    places = expansions(solver, v) if places is None else places
+    for block, place in zip(solver.blocks, places, strict=True):
+        if place is None:
+            holds[:] = False
+            continue
+        found = _radii(block, place, each, fitted=True)
+        holds &= found.holds
+        each[:, block.unknowns], alone[:, block.unknowns] = found.each, found.alone
+    return Reach(holds=holds, each=each[:, : solver.unknowns], alone=alone)
+
+
+def links_hold(v: Array, following: Array, reached: Reach, near: Array) -> BoolArray:
     """Whether each step from v to ``following`` is proved to stay on its branch, (B,).
 
     Parameters
     ----------
     v, following : (B, N)
-    reach : Proof
+    reached : Reach
         Of ``v`` for all inputs up to those of ``following``.
-    arrival : (B, K)
-        ``exists`` of the proofs of ``following``.
+    near : (B, N)
+        How far the true positions at both ends may be from ``v`` and ``following``.
     """
-    held = reach.holds.copy()
-    for k, block in enumerate(solver.blocks):
-        weights = solver.variable_scale[block.unknowns]
-        distance = np.abs((following - v)[:, block.unknowns] / weights).max(axis=1, initial=0.0)
-        held &= distance + arrival[:, k] < reach.unique[:, k]
+    n = reached.alone.shape[1]
+    inside = np.abs(following - v)[:, :n] + near[:, :n] < reached.alone
+    held: BoolArray = reached.holds & inside.all(axis=1)
     return held

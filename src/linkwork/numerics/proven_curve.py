@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
-from linkwork.numerics.curve import Curve, Leads, Led, Leg, apart
-from linkwork.numerics.proof import prove
+from linkwork.numerics.curve import Curve, Leg
+from linkwork.numerics.leaders import Leads, Led, apart
+from linkwork.numerics.proof import prove, reach
 from linkwork.numerics.proven_path import Beads, ProvenPath, prove_path
 
 __all__ = ["ProvenCurve", "leg_is_proved", "prove_curve", "same_solution"]
@@ -41,10 +42,10 @@ def prove_curve(leads: Leads, curve: Curve) -> ProvenCurve:
     steps = 0
     if all(_provable(leg.led) for leg in curve.legs):
         for k, leg in enumerate(curve.legs):
-            proof = _proof_of(leg)
+            proof = _proof_of(leg, max(_MOST_STEPS - steps, 0))
             legs[k] = proof.connected_to(0).all()
             steps += int(proof.pieces.sum())
-            if steps > _MOST_STEPS:
+            if steps > _MOST_STEPS or proof.given_up.any():
                 break
         for k, (leg, following) in enumerate(zip(curve.legs, curve.legs[1:], strict=False)):
             last = leg.v[-1]
@@ -76,10 +77,10 @@ def _provable(led: Led) -> bool:
 
 def leg_is_proved(leg: Leg) -> bool:
     """Whether every position and every step of a leg is proved."""
-    return bool(_proof_of(leg).connected_to(0).all())
+    return bool(_proof_of(leg, _MOST_STEPS).connected_to(0).all())
 
 
-def _proof_of(leg: Leg) -> ProvenPath:
+def _proof_of(leg: Leg, most: int) -> ProvenPath:
     nodes = leg.nodes
     sign = np.sign(nodes[-1].t - nodes[0].t) or 1.0
     beads = Beads(
@@ -91,39 +92,33 @@ def _proof_of(leg: Leg) -> ProvenPath:
     )
     path = leg.led.path
     backwards = type(path)(origin=path.origin, rate=sign * path.rate)
-    return prove_path(leg.led.solver, backwards, beads)
+    return prove_path(leg.led.solver, backwards, beads, anchor=0, most=most)
 
 
 def same_solution(one: Led, other: Led, v: Array) -> bool:
     """Whether the position that one leader proves near v (N,) is the one that another proves.
 
-    The true position of the first may differ from v in the other's leader, by at most its radius
-    of existence; the second is proved for all those values, and alone in its ball.
+    The true position of the first may differ from v in the other's leader, by at most what is
+    proved of it; the second is proved for all those values, and alone in its box.
     """
     if one.lead == other.lead:
         return True
-    nothing = np.zeros((1, 1))
-    first = prove(one.solver, v[one.order][None, :], nothing)
+    first = prove(one.solver, v[one.order][None, :], np.zeros((1, 1)))
     if not first.holds[0]:
         return False
-    radius = float(first.radius[0])
-    weight = float(other.solver.variable_scale[-1])
-    second = prove(other.solver, v[other.order][None, :], nothing + radius * weight)
-    return bool(second.holds[0] and radius < second.alone_within[0])
+    off = one.whole(first.each[0])[other.order]
+    second = reach(other.solver, v[other.order][None, :], off[None, -1:])
+    return bool(second.holds[0] and (off[:-1] < second.alone[0]).all())
 
 
 def _meets(leads: Leads, own: Led, start: Array, end: Array) -> bool:
     """Whether two proved positions at one value of the parameter are one, whole turns aside."""
     gap = apart(leads, start, end)
-    p = leads.parameter
     # whole turns are no floats: what is left of them, and their rounding, may be off
-    left = abs(float(gap[p])) + 8.0 * _UNIT * max(abs(float(end[p])), abs(float(start[p])))
-    near = np.array([[left]])
-    first = prove(own.solver, start[own.order][None, :], near)
-    last = prove(own.solver, end[own.order][None, :], near)
+    left = np.abs(gap) + 8.0 * _UNIT * np.maximum(np.abs(end), np.abs(start))
+    left = left[own.order]
+    first = reach(own.solver, start[own.order][None, :], left[None, -1:])
+    last = prove(own.solver, end[own.order][None, :], left[None, -1:])
     if not (first.holds[0] and last.holds[0]):
         return False
-    distance = float(np.abs(gap / leads.scale).max()) + 8.0 * _UNIT * float(
-        np.abs(end / leads.scale).max()
-    )
-    return bool(distance + last.radius[0] < first.alone_within[0])
+    return bool((left[:-1] + last.each[0, :-1] < first.alone[0]).all())

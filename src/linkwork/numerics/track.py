@@ -28,10 +28,14 @@ _NODE_TOLERANCE = 1e-7  # a correction this small leaves an error of its square
 
 @dataclass(frozen=True, kw_only=True)
 class InputPath:
-    """Inputs as u(t) = origin + t · rate, both (p,)."""
+    """Inputs as u(t) = origin + t · rate, both (p,).
+
+    ``size``: natural size of t, one radian for an angle, a length of the mechanism for a length.
+    """
 
     origin: Array
     rate: Array
+    size: float = 1.0
 
     def at(self, t: float | Array) -> Array:
         """u(t), (p,) or (B, p)."""
@@ -46,9 +50,9 @@ class TrackOptions:
     ``largest_correction`` [weighted]: how far Newton may move a prediction. ``aim`` is the
     correction the step size aims at. ``contraction``: largest ratio of successive corrections.
     ``rate_error``: how far the rate times the step may be from its prediction [weighted].
-    ``largest_condition``: of the Jacobian. Beyond, rounding hides on which of two crossing
-    branches a position lies: ‖J⁻¹‖² times the rounding of the equations must stay small
-    (Newton-Kantorovich), and 3e6² · 1e-14 is a tenth.
+    ``largest_condition``: nearness to a singular position. Beyond, rounding hides on which
+    of two crossing branches a position lies: ‖J⁻¹‖² times the rounding of the equations must stay
+    small (Newton-Kantorovich), and 3e6² · 1e-14 is a tenth.
     ``smallest_step``: relative to the path's natural length, below which the track ends.
     """
 
@@ -71,7 +75,10 @@ BOLD = TrackOptions(
 
 @dataclass(frozen=True, kw_only=True)
 class Node:
-    """A solved position on a track with its derivatives by t; ``v`` etc. are (N,)."""
+    """A solved position on a track with its derivatives by t; ``v`` etc. are (N,).
+
+    ``condition``, ``nearness``: see :class:`Rates`.
+    """
 
     t: float
     v: Array
@@ -79,6 +86,7 @@ class Node:
     second: Array
     orientation: StatusArray
     condition: float
+    nearness: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,7 +126,8 @@ class Track:
         return self.nodes[-1].t
 
 
-Progress = Callable[[float], None]
+#: Told every step's two nodes; the track is finished where it returns true.
+Watch = Callable[[Node, Node], bool]
 
 
 def node_at(solver: BlockSolver, path: InputPath, t: float, v: Array) -> Node:
@@ -135,6 +144,7 @@ def _node(t: float, v: Array, rates: Rates) -> Node:
         second=rates.second[0],
         orientation=rates.orientation[0],
         condition=float(rates.condition[0]),
+        nearness=float(rates.nearness[0]),
     )
 
 
@@ -143,19 +153,10 @@ def follow(
     path: InputPath,
     start: Node,
     goal: float,
-    scale: float,
     options: TrackOptions | None = None,
-    progress: Progress | None = None,
-    until: Callable[[Node, Node], bool] | None = None,
+    watch: Watch | None = None,
 ) -> tuple[list[Node], End | None]:
-    """Follow the branch of ``start`` to ``t = goal``.
-
-    Parameters
-    ----------
-    scale : float
-        Natural size of t: one radian for an angle, a length of the mechanism for a length.
-    until : callable, optional
-        Told every step's two nodes; the track is finished where it returns true.
+    """Follow the branch of ``start`` to ``t = goal``, or until ``watch`` has seen enough.
 
     Returns
     -------
@@ -163,46 +164,67 @@ def follow(
         The nodes after ``start`` in the order reached; ``None`` if it was not cut short.
     """
     opt = options or TrackOptions()
-    quick = replace(
-        solver.options, max_steps=6, largest_turn=math.inf, solution_tolerance=_NODE_TOLERANCE
-    )
-    sign = math.copysign(1.0, goal - start.t)
-    nodes: list[Node] = []
-    here = start
+    walk = _Walk(solver, path, start, goal, opt)
     if goal == start.t:
-        return nodes, None
-    if not (here.condition <= opt.largest_condition and np.isfinite(here.second).all()):
-        return nodes, End(reached=here.t, failed=here.t, status=Status.START_SINGULAR)
-    h = opt.first_step * scale
-    failed_at = goal
+        return walk.nodes, None
+    if not (start.nearness <= opt.largest_condition and np.isfinite(start.second).all()):
+        failed = End(reached=start.t, failed=start.t, status=Status.START_SINGULAR)
+        return walk.nodes, failed
     for _ in range(opt.most_steps):
-        rest = abs(goal - here.t)
-        room = _room(here, sign, solver.variable_scale, scale)
-        smallest = opt.smallest_step * max(scale, abs(here.t))
+        before = walk.here
+        end = walk.step()
+        if end is not None:
+            return walk.nodes, end
+        after = walk.here
+        if after is not before:
+            enough = watch is not None and watch(before, after)
+            if enough or after.t == goal:
+                return walk.nodes, None
+    return walk.nodes, End(reached=walk.here.t, failed=goal, status=Status.LOST)
+
+
+class _Walk:
+    """The state of one track: where it stands, and the size of its next step."""
+
+    def __init__(
+        self, solver: BlockSolver, path: InputPath, start: Node, goal: float, options: TrackOptions
+    ) -> None:
+        self.solver, self.path, self.start, self.goal = solver, path, start, goal
+        self.options = options
+        self.quick = replace(
+            solver.options, max_steps=6, largest_turn=math.inf, solution_tolerance=_NODE_TOLERANCE
+        )
+        self.sign = math.copysign(1.0, goal - start.t)
+        self.nodes: list[Node] = []
+        self.here = start
+        self.h = options.first_step * path.size
+        self.failed_at = goal
+
+    def step(self) -> End | None:
+        """Try one step: taken, or the next one will be smaller; the end where none can be taken."""
+        here, scale = self.here, self.path.size
+        rest = abs(self.goal - here.t)
+        room = _room(here, self.sign, self.solver.variable_scale, scale)
+        smallest = self.options.smallest_step * max(scale, abs(here.t))
         if room < smallest:
-            status = _kind_of_end(solver, start, here, scale)
-            return nodes, End(reached=here.t, failed=here.t + sign * 2.0 * room, status=status)
-        h = min(h, opt.largest_step * scale, rest, room)
+            return self._stopped(here.t + self.sign * 2.0 * room)
+        h = min(self.h, self.options.largest_step * scale, rest, room)
         if h < rest and h < smallest:
-            status = _kind_of_end(solver, start, here, scale)
-            return nodes, End(reached=here.t, failed=failed_at, status=status)
-        t = goal if h == rest else here.t + sign * h
-        following, correction = _step(solver, path, here, t, quick, opt)
+            return self._stopped(self.failed_at)
+        t = self.goal if h == rest else here.t + self.sign * h
+        following, correction = _step(self.solver, self.path, here, t, self.quick, self.options)
         if following is None:
-            failed_at = t
-            h *= 0.5 if correction is None else max(0.1, min(0.5, correction))
-            if h < opt.smallest_step * max(scale, abs(here.t)):
-                status = _kind_of_end(solver, start, here, scale)
-                return nodes, End(reached=here.t, failed=failed_at, status=status)
-            continue
-        nodes.append(following)
-        before, here = here, following
-        if progress is not None:
-            progress(here.t)
-        if here.t == goal or (until is not None and until(before, here)):
-            return nodes, None
-        h *= min(2.0, max(0.5, correction or 2.0))
-    return nodes, End(reached=here.t, failed=goal, status=Status.LOST)
+            self.failed_at = t
+            self.h = h * (0.5 if correction is None else max(0.1, min(0.5, correction)))
+            return self._stopped(t) if self.h < smallest else None
+        self.nodes.append(following)
+        self.here = following
+        self.h = h * min(2.0, max(0.5, correction or 2.0))
+        return None
+
+    def _stopped(self, failed: float) -> End:
+        status = _kind_of_end(self.solver, self.start, self.here, self.path.size)
+        return End(reached=self.here.t, failed=failed, status=status)
 
 
 def _room(here: Node, sign: float, weights: Array, scale: float) -> float:
@@ -241,7 +263,7 @@ def _step(
     rates = solver.rates(found.v, path.rate)
     if not (rates.orientation[0] == here.orientation).all():
         return None, None
-    if not rates.condition[0] <= opt.largest_condition:
+    if not rates.nearness[0] <= opt.largest_condition:
         return None, None
     drift = (rates.first[0] - here.first - h * here.second) / solver.variable_scale
     turn = float(np.abs(drift * h).max())
@@ -262,8 +284,9 @@ def _kind_of_end(solver: BlockSolver, start: Node, here: Node, scale: float) -> 
 
 @dataclass(frozen=True, kw_only=True)
 class Rows:
-    """Positions at many values of t: as a block solution with rates, rows not found marked."""
+    """Positions at many values t (B,): as a block solution with rates, rows not found marked."""
 
+    t: Array
     v: Array
     status: StatusArray
     iterations: CountArray
@@ -278,6 +301,7 @@ def joined_rows(pieces: Sequence[Rows]) -> Rows:
         return np.concatenate([of(piece) for piece in pieces])
 
     return Rows(
+        t=stacked(lambda p: p.t),
         v=stacked(lambda p: p.v),
         status=np.concatenate([p.status for p in pieces]),
         iterations=np.concatenate([p.iterations for p in pieces]),
@@ -286,14 +310,13 @@ def joined_rows(pieces: Sequence[Rows]) -> Rows:
             first=stacked(lambda p: p.rates.first),
             second=stacked(lambda p: p.rates.second),
             condition=stacked(lambda p: p.rates.condition),
+            nearness=stacked(lambda p: p.rates.nearness),
             orientation=np.concatenate([p.rates.orientation for p in pieces]),
         ),
     )
 
 
-def rows_on_track(
-    solver: BlockSolver, path: InputPath, track: Track, t: Array, scale: float
-) -> Rows:
+def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) -> Rows:
     """Positions at the values ``t`` (B,), all inside the track, as many lanes at once.
 
     Starts from quintic interpolation between the track's nodes. A row that ends elsewhere than
@@ -313,7 +336,7 @@ def rows_on_track(
     residual, iterations = found.residual.copy(), found.iterations.copy()
     for row in np.flatnonzero(doubtful):
         node = _nearest(track, int(left[row]), float(t[row]))
-        nodes, end = follow(solver, path, node, float(t[row]), scale)
+        nodes, end = follow(solver, path, node, float(t[row]))
         arrived = nodes[-1] if nodes else node
         if end is not None:
             status[row] = Status.LOST.code
@@ -323,7 +346,7 @@ def rows_on_track(
         residual[row] = solver.residual(arrived.v[None, :])[0]
     if doubtful.any():
         rates = solver.rates(v, path.rate)
-    return Rows(v=v, status=status, iterations=iterations, residual=residual, rates=rates)
+    return Rows(t=t, v=v, status=status, iterations=iterations, residual=residual, rates=rates)
 
 
 def _nearest(track: Track, left: int, t: float) -> Node:

@@ -15,15 +15,9 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
-from linkwork.numerics.curve import (
-    Curve,
-    CurveOptions,
-    Leads,
-    Led,
-    Leg,
-    divided,
-    fastest_leader,
-)
+from linkwork.numerics.curve import Curve, CurveOptions, Leg
+from linkwork.numerics.divided_steps import divided
+from linkwork.numerics.leaders import Leads, Led, fastest_leader
 from linkwork.numerics.track import Node, follow, node_at
 
 __all__ = ["TurningPoint", "turn_beyond", "turning_points"]
@@ -110,9 +104,8 @@ def turn_beyond(
         led.path,
         node,
         node.t + sign * weight,
-        weight,
         replace(opt.track, most_steps=_MOST_STEPS),
-        until=lambda _, after: bool(after.first[place] * node.first[place] <= 0.0),
+        watch=lambda _, after: bool(after.first[place] * node.first[place] <= 0.0),
     )
     if not nodes or nodes[-1].first[place] * node.first[place] > 0.0:
         return None

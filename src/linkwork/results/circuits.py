@@ -69,8 +69,10 @@ class Circuit:
     branches : tuple of Branch
     dead_points, change_points : tuple of Limit
     smallest_singular_value : float
-        Of the weighted Jacobian along the circuit, 0 at dead points and change points; ``weakest``
-        is the input value at which it is smallest [everyday units].
+        Of diag(1/s) J diag(w) along the circuit, 0 at dead points and change points: J by all
+        unknowns, the input known; the equations divided by a length s of their loop, the unknowns
+        measured by w, 1 rad or a length. ``weakest`` is the input value at which it is smallest
+        [everyday units]. Both to rounding.
     motion : Motion
         Positions along the circuit in the order of travel, branch by branch.
     """

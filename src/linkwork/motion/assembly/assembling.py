@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.equations.directions import DirectionForm, NoDirectionForm, direction_form
+from linkwork.foundation.angles import within_half_a_turn
 from linkwork.foundation.arrays import (
     Array,
     BoolArray,
@@ -276,9 +277,8 @@ def _different(model: Model, v: Array, rows: IndexArray) -> BoolArray:
     size, turns = model.compiled.solver.variable_scale, model.compiled.table.turns
     fresh = np.ones(len(v), dtype=bool)
     for k, begin in enumerate(np.searchsorted(rows, rows)):
-        gap = np.abs(v[begin:k] - v[k])
-        gap = np.where(turns, np.minimum(gap, np.abs(gap - 2.0 * np.pi)), gap)
-        fresh[k] = not ((gap <= _SAME * size).all(axis=1) & fresh[begin:k]).any()
+        gap = within_half_a_turn(v[begin:k] - v[k], turns)
+        fresh[k] = not ((np.abs(gap) <= _SAME * size).all(axis=1) & fresh[begin:k]).any()
     return fresh
 
 

@@ -16,7 +16,7 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
 from linkwork.motion.circuit.branches import CurveBranch, Traced, branches_of, traced
 from linkwork.numerics.change_point import ChangePoint, Crossing
-from linkwork.numerics.curve import Leads, Led, apart, fastest_leader, same_position
+from linkwork.numerics.leaders import Leads, Led, apart, fastest_leader, same_position
 
 __all__ = ["Arc", "Explorer", "positions_near"]
 
@@ -153,6 +153,7 @@ class Explorer:
             width = 0.5 * (found.bracket[1] - found.bracket[0])
             self.crossings.append(
                 Crossing(
+                    t=float(v[p]),
                     v=v,
                     directions=directions,
                     bracket=(float(v[p]) - width, float(v[p]) + width),
@@ -196,7 +197,7 @@ def _beyond(leads: Leads, v: Array, direction: Array, other: Array) -> Array | N
         found = led.whole(done.v[0])
         moving = speed > 0.0
         off = float(np.abs((found - guess) / leads.scale)[moving].max())
-        if off <= _CLOSER * stride * gap and led.node(found).condition < _REGULAR:
+        if off <= _CLOSER * stride * gap and led.node(found).nearness < _REGULAR:
             return found
     return None
 

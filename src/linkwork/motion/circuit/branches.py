@@ -10,7 +10,8 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
-from linkwork.numerics.curve import Curve, CurveOptions, Leads, Led, Leg, trace
+from linkwork.numerics.curve import Curve, CurveOptions, Leg, trace
+from linkwork.numerics.leaders import Leads, Led
 from linkwork.numerics.proven_curve import ProvenCurve, prove_curve, same_solution
 from linkwork.numerics.track import Track, TrackOptions, rows_on_track
 from linkwork.numerics.turning_point import TurningPoint, turning_points
@@ -154,7 +155,7 @@ def _samples(leads: Leads, leg: Leg, fine: int) -> tuple[Array, Array, Array]:
     track = Track(nodes=tuple(ordered), start=0)
     led = leg.led
     if fine > 1 and len(t) > 1:
-        rows = rows_on_track(led.solver, led.path, track, t, float(leads.scale[led.lead]))
+        rows = rows_on_track(led.solver, led.path, track, t)
         good = rows.status == Status.CONVERGED.code
         t, v, first = t[good], led.whole(rows.v[good]), led.whole(rows.rates.first[good])
     else:

@@ -8,16 +8,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.equations.leading import LeadTable
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.short_number import short_number
 from linkwork.foundation.status import Status
 from linkwork.motion import failure as why
 from linkwork.motion.circuit.arcs import Arc, Explorer, positions_near
 from linkwork.motion.circuit.branches import CurveBranch
 from linkwork.motion.circuit.seeding import Seeding
+from linkwork.motion.circuit.weakest import weakest_place
+from linkwork.motion.drive import Drive
 from linkwork.motion.limits import change_point_limit, dead_point_limit
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
@@ -25,15 +28,13 @@ from linkwork.motion.motion_of_rows import motion_of_rows
 from linkwork.motion.redundancy import FITS, misfit
 from linkwork.motion.rows import SolvedRows
 from linkwork.numerics.change_point import Crossing
-from linkwork.numerics.curve import same_position
-from linkwork.numerics.track import InputPath
+from linkwork.numerics.leaders import same_position
 from linkwork.results.circuits import Branch, Circuit, Circuits
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Motion
 
 __all__ = ["branch_start", "circuits", "is_branch_name"]
 
-_FULL_TURN = 2.0 * np.pi
 _FINE = 8  # positions kept per step of a curve
 _REGULAR = 1e5  # condition up to which positions have rates
 
@@ -71,14 +72,12 @@ class _Group:
 
 class _Circuits:
     def __init__(self, model: Model, certify: bool) -> None:
-        rows = model.rows
+        lead, rate = lock_step(model.rows)
         self.model, self.certify = model, certify
-        self.lead, rate = lock_step(rows)
-        own = model.start_inputs
-        self.path = InputPath(origin=own - rate * own[self.lead], rate=rate)
-        self.leads = LeadTable(model.compiled.table, self.path, self.lead)
+        self.drive = Drive.through(model, model.start_inputs, rate, lead)
+        self.leads = self.drive.leads
         self.explorer = Explorer(self.leads, certify, _FINE)
-        self.seeding = Seeding(model, self.path, self.lead, self.leads, self.explorer)
+        self.seeding = Seeding(self.drive, self.explorer)
 
     def result(self) -> Circuits:
         """Circuits in the order found: that of the guess first."""
@@ -86,7 +85,7 @@ class _Circuits:
             self._circuit(f"circuit {number}", group)
             for number, group in enumerate(self._groups(), start=1)
         ]
-        name = self.model.equations.inputs[self.lead].name
+        name = self.model.equations.inputs[self.drive.lead].name
         grade, message = self.seeding.completeness()
         return Circuits(
             mechanism=self.model.description.name,
@@ -141,46 +140,46 @@ class _Circuits:
         return all((misfit(equations, branch.v) <= FITS).all() for branch in arc.branches)
 
     def _circuit(self, name: str, group: _Group) -> Circuit:
-        model, p = self.model, self.leads.parameter
-        scale = float(model.input_scale[self.lead])
+        p, scale = self.leads.parameter, self.drive.unit
         pieces = [(arc, branch) for arc in group.arcs for branch in arc.branches]
-        branches = tuple(
+        branches = [branch for _, branch in pieces]
+        named = tuple(
             self._branch(f"{name} branch {number}", arc, branch)
             for number, (arc, branch) in enumerate(pieces, start=1)
         )
-        ranges = np.array([branch.range(p) for _, branch in pieces]) / scale
+        ranges = np.array([branch.range(p) for branch in branches]) / scale
         turns = [turn for arc in group.arcs for walk in arc.walks for turn in walk.turns]
         end = _end_of(group)
-        motion = self._motion([branch for _, branch in pieces], branches)
-        singular, weakest = self._weakest([branch for _, branch in pieces])
-        if turns or group.crossings:
-            singular = 0.0
-            weakest = float((turns[0].t if turns else group.crossings[0].v[p]) / scale)
+        motion = self._motion(branches, named)
+        limits = [limit.v for limit in turns] + [limit.v for limit in group.crossings]
+        singular, weakest = (0.0, limits[0]) if limits else weakest_place(self.leads, branches)
         around = self._around(group) if end.closed else None
         return Circuit(
             name=name,
             end=end,
             certified=all(arc.certified for arc in group.arcs),
-            input_range=(_tidy(float(ranges[:, 0].min())), _tidy(float(ranges[:, 1].max()))),
+            input_range=(
+                short_number(float(ranges[:, 0].min())),
+                short_number(float(ranges[:, 1].max())),
+            ),
             turns=self._turns(around),
             turning={} if around is None else self._turning(around),
-            branches=branches,
-            dead_points=tuple(dead_point_limit(model, turn, self.lead) for turn in turns),
+            branches=named,
+            dead_points=tuple(dead_point_limit(self.drive, turn) for turn in turns),
             change_points=tuple(
-                change_point_limit(model, self.leads, crossing, self.lead)
-                for crossing in group.crossings
+                change_point_limit(self.drive, crossing) for crossing in group.crossings
             ),
             smallest_singular_value=singular,
-            weakest=weakest,
+            weakest=float(weakest[p] / scale),
             motion=motion,
         )
 
     def _branch(self, name: str, arc: Arc, branch: CurveBranch) -> Branch:
         low, high = branch.range(self.leads.parameter)
-        scale = float(self.model.input_scale[self.lead])
+        scale = self.drive.unit
         return Branch(
             name=name,
-            input_range=(_tidy(low / scale), _tidy(high / scale)),
+            input_range=(short_number(low / scale), short_number(high / scale)),
             configuration=self._configuration_on(branch),
             certified=arc.certified,
             end=arc.end,
@@ -188,7 +187,7 @@ class _Circuits:
 
     def _configuration_on(self, branch: CurveBranch) -> str:
         """The first of the configurations at the guess's input that lies on a branch."""
-        value = float(self.model.start_inputs[self.lead])
+        value = float(self.model.start_inputs[self.drive.lead])
         for here in self._solved(branch, value):
             for v, name in self.seeding.names:
                 if same_position(self.leads, here, v):
@@ -215,7 +214,7 @@ class _Circuits:
         p = self.leads.parameter
         if around is None or not self.leads.turns[p]:
             return None
-        return abs(round(float(around[p]) / _FULL_TURN))
+        return abs(round(float(around[p]) / FULL_TURN))
 
     def _turning(self, around: Array) -> dict[str, int]:
         """Whole turns of the links, for one turn of the input in its positive direction."""
@@ -229,26 +228,18 @@ class _Circuits:
             if angle.variable is not None
         }
         return {
-            name: round(sign * float(around[k]) / _FULL_TURN)
+            name: round(sign * float(around[k]) / FULL_TURN)
             for name, k in (links or angles).items()
         }
-
-    def _weakest(self, pieces: Sequence[CurveBranch]) -> tuple[float, float]:
-        """The smallest singular value of the weighted Jacobian, and the input there."""
-        v = np.concatenate([branch.v for branch in pieces])
-        values = np.linalg.svd(self.leads.jacobian(v), compute_uv=False)[:, -1]
-        k = int(np.argmin(values))
-        scale = float(self.model.input_scale[self.lead])
-        return float(values[k]), float(v[k, self.leads.parameter] / scale)
 
     def _motion(self, pieces: Sequence[CurveBranch], names: Sequence[Branch]) -> Motion:
         model, solver = self.model, self.model.compiled.solver
         v = np.concatenate([branch.v for branch in pieces])
         inputs = v[:, solver.unknowns :] / model.input_scale
         rows = SolvedRows.blank(inputs, solver.variables, Status.CONVERGED)
-        rates = solver.rates(v, self.path.rate)
+        rates = solver.rates(v, self.drive.path.rate)
         rows.v[:] = v
-        regular = rates.condition < _REGULAR
+        regular = rates.nearness < _REGULAR
         rows.first[regular], rows.second[regular] = rates.first[regular], rates.second[regular]
         rows.residual[:], rows.condition[:] = solver.residual(v), rates.condition
         begin = 0
@@ -258,7 +249,7 @@ class _Circuits:
             rows.branch[here], rows.limit[here] = named.name, branch.limits
             code = Certification.CERTIFIED if named.certified else Certification.MOTION_NOT_PROVED
             rows.certification[here] = (code if self.certify else Certification.NOT_ASKED).code
-        return motion_of_rows(model, rows, "", added=np.zeros(len(v), dtype=bool), circuit=None)
+        return motion_of_rows(model, rows, "", np.zeros(len(v), dtype=bool))
 
 
 def _end_of(group: _Group) -> CircuitEnd:
@@ -270,12 +261,6 @@ def _end_of(group: _Group) -> CircuitEnd:
     ):
         return CircuitEnd.CHANGE_POINT
     return max(ends, key=list(CircuitEnd).index)
-
-
-def _tidy(value: float) -> float:
-    """The value to nine decimals where that is the same number to rounding."""
-    short = round(value, 9)
-    return short + 0.0 if abs(short - value) <= 1e-13 * max(1.0, abs(value)) else value
 
 
 def is_branch_name(name: str) -> bool:
@@ -307,7 +292,7 @@ def branch_start(model: Model, name: str) -> Model:
             f'there is no "{name}" of {model.description.name} {choices("branches", names, name)}'
         )
     branch = known[name]
-    here = work._solved(branch, float(model.start_inputs[work.lead]))
+    here = work._solved(branch, float(model.start_inputs[work.drive.lead]))
     if not here and branch.ratio == 0.0:
         raise InputError(f'the input stands still on "{name}", so no motion can start there')
     start = here[0] if here else branch.anchor

@@ -11,6 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 
 __all__ = ["Interval", "intervals_between"]
@@ -18,7 +19,6 @@ __all__ = ["Interval", "intervals_between"]
 #: Input values of one interval, in the order in which they are tried.
 Interval = tuple[float, ...]
 
-_TURN = 2.0 * np.pi
 _PLACES = (0.5, 0.45, 0.62, 0.31)  # of an interval; the middle is the furthest from both ends
 _OUTSIDE = (0.5, 0.37, 0.83)  # natural sizes of the input, beyond the outermost values
 _INSIDE = 0.2  # of an interval: how far from its ends a value of one's own stands for it
@@ -39,9 +39,9 @@ def intervals_between(
     if not len(cuts):
         return []
     if turns:
-        ends = [*cuts, cuts[0] + _TURN]
+        ends = [*cuts, cuts[0] + FULL_TURN]
         if guess is not None:
-            guess = float(cuts[0] + np.remainder(guess - cuts[0], _TURN))
+            guess = float(cuts[0] + np.remainder(guess - cuts[0], FULL_TURN))
         return [_inside(a, b) for a, b in _open(ends, guess)]
     found = [_inside(a, b) for a, b in _open(cuts, guess)]
     below = tuple(float(cuts[0] - place * scale) for place in _OUTSIDE)

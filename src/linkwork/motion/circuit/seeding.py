@@ -4,24 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
-
-from linkwork.equations.leading import LeadTable
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.completeness import Completeness
 from linkwork.motion.assembly.assembling import Assemblies, positions_at
 from linkwork.motion.circuit.arcs import Explorer
 from linkwork.motion.circuit.dead_inputs import DeadPointInputs, dead_point_inputs
 from linkwork.motion.circuit.intervals import Interval, intervals_between
-from linkwork.motion.model import Model
+from linkwork.motion.drive import Drive
 from linkwork.motion.start import Start, first_position
-from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.track import InputPath, TrackOptions
+from linkwork.numerics.track import TrackOptions
 
 __all__ = ["Seeding"]
 
-_FULL_TURN = 2.0 * np.pi
 _LOOKED_AT = 24  # input values at which all configurations are listed if dead points may be missing
 _REGULAR = 1e5  # condition up to which a configuration can begin a curve
 
@@ -34,11 +30,8 @@ class Seeding:
     ``start``: the position at the guess, once looked for.
     """
 
-    def __init__(
-        self, model: Model, path: InputPath, lead: int, leads: LeadTable, explorer: Explorer
-    ) -> None:
-        self.model, self.path, self.lead = model, path, lead
-        self.leads, self.explorer = leads, explorer
+    def __init__(self, drive: Drive, explorer: Explorer) -> None:
+        self.drive, self.model, self.explorer = drive, drive.model, explorer
         self.names: list[tuple[Array, str]] = []
         self.dead: DeadPointInputs | None = None
         self.seeded = self.unclear = 0
@@ -51,13 +44,13 @@ class Seeding:
         self.start = start
         if start.status.ok and self._regular(start.v, TrackOptions().largest_condition):
             self.explorer.visit(start.v)
-        value = float(model.start_inputs[self.lead])
-        found = positions_at(model, self.path.at(value))
+        value = float(model.start_inputs[self.drive.lead])
+        found = positions_at(model, self.drive.path.at(value))
         if found.completeness is Completeness.NOT_LISTED:
             return
         self.names = list(zip(found.v, found.names, strict=True))
         sure = self._visited(found)
-        self.dead = dead_point_inputs(model, self.path, self.lead)
+        self.dead = dead_point_inputs(model, self.drive.path, self.drive.lead)
         intervals = self._intervals(value, sure)
         for k, interval in enumerate(intervals):
             self._look_into(interval)
@@ -67,8 +60,8 @@ class Seeding:
     def _intervals(self, value: float, sure: bool) -> list[Interval]:
         """Where to look; a ``value`` whose list is ``sure`` stands for its own interval."""
         assert self.dead is not None
-        place = self.leads.parameter
-        turns, scale = bool(self.leads.turns[place]), float(self.leads.scale[place])
+        place = self.drive.leads.parameter
+        turns, scale = bool(self.drive.leads.turns[place]), float(self.drive.leads.scale[place])
         cuts = self.dead.cuts
         found = intervals_between(cuts, value if sure else None, scale, turns=turns)
         if not len(cuts) and not sure:
@@ -80,7 +73,7 @@ class Seeding:
     def _look_into(self, interval: Interval) -> None:
         """List the configurations at one value of an interval, at another where that fails."""
         if not any(
-            self._visited(positions_at(self.model, self.path.at(value))) for value in interval
+            self._visited(positions_at(self.model, self.drive.path.at(value))) for value in interval
         ):
             self.unclear += 1
 
@@ -95,15 +88,15 @@ class Seeding:
 
     def _regular(self, v: Array, most: float | None = None) -> bool:
         """Whether the input can lead at a position: not at dead points and change points."""
-        own = self.leads.by(self.leads.parameter)
+        own = self.drive.leads.by(self.drive.leads.parameter)
         largest = _REGULAR if most is None else most
-        return own is not None and own.node(v).condition < largest
+        return own is not None and own.node(v).nearness < largest
 
     def _further_inputs(self, start: float) -> list[float]:
         """Equally spaced over a turn, or over the input's table."""
-        if turns_freely(self.model):
-            return [start + k * _FULL_TURN / _LOOKED_AT for k in range(1, _LOOKED_AT)]
-        t = self.model.rows[:, self.lead]
+        if self.drive.free:
+            return [start + k * FULL_TURN / _LOOKED_AT for k in range(1, _LOOKED_AT)]
+        t = self.model.rows[:, self.drive.lead]
         low, high = float(min(t.min(), start)), float(max(t.max(), start))
         # off the round numbers at which a table begins and ends
         return [low + (high - low) * (k + 0.5) / _LOOKED_AT for k in range(_LOOKED_AT)]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linkwork.foundation.angles import within_half_a_turn
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.status import Status
@@ -150,7 +151,5 @@ def _recurrence_root(n: int) -> float:
 def distance(block: Block, a: Array, b: Array) -> float:
     """How far apart two positions (n,) of a block are, weighted, whole turns aside."""
     n = len(block.unknowns)
-    gap = b - a
-    turned = gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi))
-    gap = np.where(block.system.turns[:n], turned, gap)
+    gap = within_half_a_turn(b - a, block.system.turns[:n])
     return float(np.abs(gap / block.system.variable_scale[:n]).max(initial=0.0))

@@ -7,9 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from linkwork.foundation.angles import within_half_a_turn
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.newton_trouble import NewtonTrouble
 from linkwork.foundation.status import Status
+from linkwork.motion.drive import Drive
 from linkwork.motion.failure.dyads import dyad_of
 from linkwork.motion.failure.elsewhere import ElsewhereAt, block_positions, positions_elsewhere
 from linkwork.motion.failure.newton_reasons import Miss, miss_of, root_beside_guess, trouble_of
@@ -143,7 +145,8 @@ def another_root(model: Model, found: Array) -> Failure | None:
 
 def limits_met(model: Model, path: InputPath, track: Track, lead: int) -> tuple[Limit, ...]:
     """Where a track ended before its goals, lower end first."""
-    return tuple(end.limit for end in ends_of(model, path, track, lead))
+    drive = Drive(model=model, path=path, lead=lead)
+    return tuple(end.limit for end in ends_of(drive, track))
 
 
 def beyond_reach(
@@ -222,7 +225,7 @@ def _loops_in(model: Model, block: Block) -> int:
 def _named(model: Model, block: Block, x: Array) -> dict[str, float]:
     """The unknowns (n,) of a block by name, everyday units, angles within half a turn."""
     unknowns = [model.equations.unknowns[int(k)] for k in block.unknowns]
-    turned = np.where(block.system.turns[: len(x)], np.remainder(x + np.pi, 2.0 * np.pi) - np.pi, x)
+    turned = within_half_a_turn(x, block.system.turns[: len(x)])
     return {
         u.name: float(value / model.units.scale(Kind(u.kind)))
         for u, value in zip(unknowns, turned, strict=True)

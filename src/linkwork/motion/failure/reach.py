@@ -188,7 +188,7 @@ def _off_dead_point(leads: LeadTable, v: Array, care: TrackOptions) -> Traced | 
     node, weight = led.node(v), float(table.variable_scale[lead])
     for sign in (1.0, -1.0):
         goal = node.t + sign * _ASIDE * weight
-        nodes, _ = follow(led.solver, led.path, node, goal, weight, care)
+        nodes, _ = follow(led.solver, led.path, node, goal, care)
         if nodes:
             leg = Leg(led=led, nodes=(node, *nodes))
             curve = Curve(legs=(leg,), end=CircuitEnd.SINGULAR, passes=())

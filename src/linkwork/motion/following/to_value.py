@@ -39,7 +39,6 @@ class _Place:
 
     path: InputPath
     track: Track
-    t: float
     asked: Array
 
 
@@ -61,15 +60,16 @@ def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | Ou
     span = inputs - origin
     weights = solver.variable_scale[solver.unknowns :]
     lead = int(np.argmax(np.abs(span / weights)))
-    scale = leading_scale(model, lead)
     rate = span / span[lead]
-    path = InputPath(origin=origin - rate * origin[lead], rate=rate)
+    path = InputPath(
+        origin=origin - rate * origin[lead], rate=rate, size=leading_scale(model, lead)
+    )
     first = node_at(solver, path, float(origin[lead]), v)
     goal = float(inputs[lead])
     limits: tuple[Limit, ...] = ()
     for turns in _turns_away(model, goal - first.t):
         t = goal - turns * 2.0 * np.pi
-        track = track_to(solver, path, first, [t], scale)
+        track = track_to(solver, path, first, [t])
         if not track.ends:
             break
         met = why.limits_met(model, path, track, lead)
@@ -79,11 +79,10 @@ def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | Ou
         status = reasons.pop() if len(reasons) == 1 else limits[0].status
         failure = why.beyond_reach(model, v, (path, lead, goal), status, limits)
         return OutOfReach(status=status, failure=failure)
-    rows = rows_on_track(solver, path, track, np.array([t]), scale)
+    rows = rows_on_track(solver, path, track, np.array([t]))
     place = _Place(
         path=path,
         track=track,
-        t=t,
         asked=asked - (turns * model.units.angle.turn if turns else 0.0),
     )
     return Found(
@@ -106,8 +105,7 @@ def _turns_away(model: Model, way: float) -> list[int]:
 def _certificate(model: Model, place: _Place, rows: Rows, laps: Laps | None) -> Certificate:
     """Of the position and of the way to it."""
     asked = (place.asked * model.input_scale)[None, :]
-    at = np.array([place.t])
-    proofs = prove_rows(model.compiled.solver, place.path, place.track, at, rows, asked)
+    proofs = prove_rows(model.compiled.solver, place.path, place.track, rows, asked)
     proved = bool(np.isfinite(proofs.radius[0]))
     certification = Certification.of_code(int(proofs.code[0]))
     if certification is Certification.CERTIFIED and laps is not None and not laps.proved:

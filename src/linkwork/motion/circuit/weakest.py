@@ -1,0 +1,81 @@
+"""The weakest place of a circuit: where its Jacobian is nearest to being singular."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from linkwork.equations.leading import LeadTable
+from linkwork.foundation.arrays import Array
+from linkwork.motion.circuit.branches import CurveBranch
+from linkwork.numerics.divided_steps import sign_change
+from linkwork.numerics.leaders import fastest_leader, same_position
+from linkwork.numerics.track import Node
+
+__all__ = ["weakest_place"]
+
+
+def weakest_place(leads: LeadTable, branches: Sequence[CurveBranch]) -> tuple[float, Array]:
+    """The smallest singular value σ along branches without limits, and the position (N,) there.
+
+    σ = uᵀ J w of the scaled Jacobian by all variables but the parameter. Along a curve it changes
+    by dσ/dt = uᵀ (dJ/dt) w; between the samples on both sides of each smallest one the zero of that
+    rate is found to rounding.
+
+    Notes
+    -----
+    A smallest sample is left alone if it lies higher above the smallest value found than its
+    neighbours lie above it.
+    """
+    found: list[tuple[float, Array]] = []
+    valleys: list[tuple[float, float, Array]] = []
+    for branch in branches:
+        v = _closed_up(leads, branch.v)
+        values = smallest_singular_values(leads, v)
+        k = int(np.argmin(values))
+        found.append((float(values[k]), v[k]))
+        inner = np.arange(1, len(v) - 1)
+        low = inner[(values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:])]
+        for k in low:
+            rise = float(values[[k - 1, k + 1]].max() - values[k])
+            valleys.append((float(values[k]), rise, v[k - 1 : k + 2]))
+    best = min(found, key=lambda pair: pair[0])
+    for value, rise, three in sorted(valleys, key=lambda valley: valley[0]):
+        if value - rise < best[0]:
+            bottom = _bottom(leads, three)
+            if bottom is not None and bottom[0] < best[0]:
+                best = bottom
+    return best
+
+
+def smallest_singular_values(leads: LeadTable, v: Array) -> Array:
+    """Of the scaled Jacobian by all variables but the parameter, at positions (B, N): (B,)."""
+    return np.asarray(np.linalg.svd(leads.jacobian(v), compute_uv=False)[:, -1], dtype=float)
+
+
+def _closed_up(leads: LeadTable, v: Array) -> Array:
+    """Positions (K, N) along a curve; of a closed one with the second position again at the end."""
+    if len(v) > 2 and same_position(leads, v[0], v[-1]):
+        return np.concatenate([v, v[1:2] + (v[-1] - v[0])])
+    return v
+
+
+def _bottom(leads: LeadTable, v: Array) -> tuple[float, Array] | None:
+    """The smallest value between three neighbouring positions (3, N), and where it is."""
+    direction = np.abs(v[2] - v[0]) / leads.scale
+    leader = fastest_leader(leads, v[1], direction)
+    if leader is None:
+        return None
+    led, middle = leader
+    low, high = led.node(v[0]), led.node(v[2])
+    if not (low.t - middle.t) * (high.t - middle.t) < 0.0:
+        return None
+
+    def rate(node: Node) -> float:
+        return leads.weakening(led.whole(node.v), led.whole(node.first))
+
+    if not rate(low) * rate(high) < 0.0:
+        return None
+    here = led.whole(sign_change(led, low, high, rate, sharp=True).v)
+    return float(smallest_singular_values(leads, here[None, :])[0]), here

@@ -1,0 +1,52 @@
+"""A mechanism as it is driven: its inputs move in lock-step, measured by the leading one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from linkwork.equations.leading import LeadTable
+from linkwork.foundation.arrays import Array
+from linkwork.motion.model import Model
+from linkwork.motion.tracking import leading_scale, turns_freely
+from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.track import InputPath
+
+__all__ = ["Drive"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Drive:
+    """``lead``: the number of the input whose value is the path's parameter t."""
+
+    model: Model
+    path: InputPath
+    lead: int
+
+    @classmethod
+    def through(cls, model: Model, inputs: Array, rate: Array, lead: int) -> Drive:
+        """The straight line through input values (p,); ``rate`` (p,) is 1 for the leading input."""
+        path = InputPath(
+            origin=inputs - rate * inputs[lead], rate=rate, size=leading_scale(model, lead)
+        )
+        return cls(model=model, path=path, lead=lead)
+
+    @property
+    def solver(self) -> BlockSolver:
+        """Of the mechanism's equations."""
+        return self.model.compiled.solver
+
+    @cached_property
+    def leads(self) -> LeadTable:
+        """The equations along the path, solvable with any variable in the lead."""
+        return LeadTable(self.model.compiled.table, self.path, self.lead)
+
+    @cached_property
+    def free(self) -> bool:
+        """Whether adding a whole turn to the input changes nothing."""
+        return turns_freely(self.model)
+
+    @property
+    def unit(self) -> float:
+        """Internal units per everyday unit of t."""
+        return float(self.model.input_scale[self.lead])
