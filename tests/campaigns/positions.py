@@ -175,7 +175,10 @@ def _near_singular(rng: np.random.Generator, table: LoopTable, v: Array) -> Arra
 
 @cache
 def _library() -> tuple[tuple[str, LoopTable, Array], ...]:
-    """Every block of every library mechanism with its variables over the whole cycle."""
+    """Every block of every library mechanism with its variables over the whole cycle.
+
+    Laws of cams and curves have a referee of their own.
+    """
     found = []
     for name in lw.examples():
         mechanism = lw.example(name)
@@ -187,7 +190,11 @@ def _library() -> tuple[tuple[str, LoopTable, Array], ...]:
             continue
         v = np.concatenate([motion.q[motion.asked], mechanism.model.rows], axis=1)
         v = v[motion.found[motion.asked]]
-        found += [(name, block.system, v[:, block.variables]) for block in solver.blocks]
+        found += [
+            (name, block.system, v[:, block.variables])
+            for block in solver.blocks
+            if isinstance(block.system, LoopTable) and not block.system.functions
+        ]
     return tuple(found)
 
 
