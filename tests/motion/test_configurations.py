@@ -61,7 +61,8 @@ def test_a_truss_of_three_loops_is_proved_by_its_laman_number() -> None:
     found = truss("FCpv?", np.random.default_rng(1)).configurations()
     assert found.completeness is Completeness.PROVED
     assert found.message.endswith(
-        "; b1, b2, b3, b4, b5, b6: 16 solutions, at most 16 by the Laman number of the links"
+        "exist at most; b1, b2, b3, b4, b5, b6: "
+        "16 complex solutions, at most 16 by the Laman number of the links"
     )
     (paths,) = found.to_dict()["paths"]
     assert (paths["bound"], paths["theorem"]) == (16, "the Laman number of the links")
@@ -75,7 +76,7 @@ def test_three_loops_with_a_slide_are_proved() -> None:
     found = _three_loops_with_a_slide().configurations()
     assert found.completeness is Completeness.PROVED
     assert found.message.endswith(
-        "; a, b, c, d, f, s: 16 solutions, at most 16 by the Laman number of the links"
+        "; a, b, c, d, f, s: 16 complex solutions, at most 16 by the Laman number of the links"
     )
 
 
@@ -100,7 +101,7 @@ def test_special_trusses_are_not_proved() -> None:
     found = truss_at("F?o~_", places).configurations()
     assert (found.paths[0].finite, found.paths[0].at_infinity) == (16, 2)
     assert found.completeness is Completeness.WITH_PROBABILITY_ONE
-    assert found.message.endswith("16 solutions, at most 18 by the Laman number of the links")
+    assert found.message.endswith("complex solutions, at most 18 by the Laman number of the links")
     places[feet] = 0.4 + 0.9j + places[ends]  # four legs equal and parallel
     found = truss_at("F?o~_", places).configurations()
     assert found.completeness is Completeness.CONTINUUM
@@ -463,7 +464,7 @@ def test_a_random_start_that_was_not_confirmed_makes_no_claim(
     monkeypatch.setattr(generic_roots, "_KNOWN", {})
     found = mechanism.configurations()
     assert found.completeness is Completeness.WITH_PROBABILITY_ONE
-    assert found.message.endswith("16 solutions, at most 20 by Bézout's theorem")
+    assert found.message.endswith("16 complex solutions, at most 20 by Bézout's theorem")
     monkeypatch.setattr(generic_roots, "_KNOWN", {})
     monkeypatch.setattr(generic_roots, "_TRIES", 1)
     assert mechanism.configurations().completeness is Completeness.NOT_PROVED

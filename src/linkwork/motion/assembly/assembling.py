@@ -361,9 +361,9 @@ def _mirror_gap(x: ComplexArray, m: int) -> Array:
 
 
 def _theorem_note(count: PathCount) -> str:
-    """What the list of a block rests on: "a, b: 16 solutions, at most 16 by ..."."""
+    """What the list of a block rests on: "a, b: 16 complex solutions, at most 16 by ..."."""
     who = ", ".join(count.unknowns)
-    found = f"{count.finite} solution{'' if count.finite == 1 else 's'}"
+    found = f"{count.finite} complex solution{'' if count.finite == 1 else 's'}"
     return f"{who}: {found}, at most {count.bound} by {count.theorem}"
 
 
