@@ -17,7 +17,13 @@ from linkwork.drawing.matplotlib_chart import chart_figure
 from linkwork.foundation.errors import InputError, UnknownNameError
 from tests.drawing.pages import assert_page_is_clear, printed_texts, size_in_inches, svg_texts
 
-SWEPT = [name for name in lw.examples() if not name.startswith("newton-")]  # the others: no input
+#: One of each kind of input, of circuits that close, turn back, run to infinity, or meet.
+SWEPT = (
+    "antiparallelogram", "belt-drive", "cam-roller-follower", "coupled-six-link", "crank-slider",
+    "double-four-bar", "four-bar", "garage-door", "inverted-slider-crank", "jansen-leg",
+    "planetary-gear", "rack-and-pinion", "rapier-drive", "rapier-drive-limited", "rolling-wheel",
+    "scotch-yoke", "slider-input", "stephenson-far-crank",
+)  # fmt: skip
 QUARTER = math.pi / 2
 LINKS = {
     "ground": ("O2", "O4"),
