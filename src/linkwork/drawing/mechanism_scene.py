@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from linkwork.drawing.captions import inputs_caption, reached_caption
 from linkwork.drawing.belt_symbols import belt_symbols
+from linkwork.drawing.captions import inputs_caption, reached_caption
 from linkwork.drawing.contour_symbols import cam_symbols, curve_symbols
 from linkwork.drawing.cylinder_symbol import cylinder_symbols
 from linkwork.drawing.drawn_box import drawn_box

@@ -85,4 +85,3 @@ def _meshing(pose: Pose, one: Disc, phase: float, other: Disc) -> float:
         return line - (line - phase) * one.teeth / other.teeth
     passed = (line - phase) * one.teeth / math.tau
     return line + math.pi - (0.5 - passed) * math.tau / other.teeth
-

@@ -73,7 +73,9 @@ def outer_radius(disc: Disc, measures: Measures) -> float:
     if _seen(disc, measures):
         assert disc.teeth is not None
         module = 2.0 * disc.radius / disc.teeth
-        return disc.radius + (DEDENDUM * module + _rim(measures) if disc.ring else ADDENDUM * module)
+        return disc.radius + (
+            DEDENDUM * module + _rim(measures) if disc.ring else ADDENDUM * module
+        )
     beyond = addendum_of(disc.radius, measures)
     return disc.radius + beyond + (_rim(measures) if disc.ring else 0.0)
 

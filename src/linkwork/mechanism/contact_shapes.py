@@ -250,7 +250,13 @@ class _Wheels:
         self.add(wheel)
         if part.circle is not None:
             self.add(
-                replace(wheel, link=part.on, center=part.circle, radius=large, ring=part.inside and large > small)
+                replace(
+                    wheel,
+                    link=part.on,
+                    center=part.circle,
+                    radius=large,
+                    ring=part.inside and large > small,
+                )
             )
 
 
