@@ -54,10 +54,9 @@ def _drawn(pose: Pose, contour: Contour) -> ComplexArray:
     last = len(points) - 1
     shown = np.unique([*range(0, last, max(1, round(last / _MOST))), last])
     # A closed outline may end with the point that it began with.
-    again = contour.closed and abs(points[last] - points[0]) < 1e-9 * np.ptp(
-        np.abs(points - points[0])
-    )
-    return points[shown[:-1] if again else shown]
+    again = contour.closed and abs(points[last] - points[0]) <= 1e-9 * float(np.ptp(points.real))
+    found: ComplexArray = points[shown[:-1] if again else shown]
+    return found
 
 
 def curve_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
@@ -83,10 +82,7 @@ def curve_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
 
 def _outwards(line: ComplexArray, closed: bool) -> tuple[ComplexArray, ComplexArray]:
     """Unit vectors along a curve, and across it to the side that it turns away from."""
-    if closed:
-        steps = np.roll(line, -1) - np.roll(line, 1)
-    else:
-        steps = np.gradient(line)
+    steps = np.roll(line, -1) - np.roll(line, 1) if closed else np.gradient(line)
     along = steps / np.abs(steps)
     turned = float(np.angle(along[1:] / along[:-1]).sum())
     if abs(turned) < 0.1:

@@ -16,6 +16,7 @@ __all__ = ["TALLEST", "Sheet", "configuration_sheet"]
 _WIDTH, _SMALLEST_CELL = 7.5, 2.2  # inches
 _USUAL = 5.2  # inches: in smaller pictures names and symbols are larger than usual
 _LARGEST = 2.0
+_WHOLE = 6.0  # inches: in larger pictures, of a single configuration, names are smaller
 
 #: The height of a picture over its width, at most.
 TALLEST = 1.6
@@ -61,7 +62,8 @@ def configuration_sheet(found: Configurations) -> Sheet:
     within, *others = (scene_of(position).within for position in found)
     for other in others:
         within = within.with_box(other)
-    larger = min(max(_USUAL / _printed(within, _cell(len(found))), 1.0), _LARGEST)
+    printed = _printed(within, _cell(len(found)))
+    larger = min(max(_USUAL / printed, min(_WHOLE / printed, 1.0)), _LARGEST)
     scenes = [
         replace(
             scene_of(

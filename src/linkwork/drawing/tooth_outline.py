@@ -43,7 +43,9 @@ def tooth_outline(disc: Disc) -> ComplexArray:
     half = math.pi / (2 * disc.teeth) + _involute(np.array(_PRESSURE))
     half = np.maximum(half - _involute(np.arccos(base / radii)), 0.0)
     # Below the base circle there is no involute: a flank goes on straight to the centre.
-    flank = np.concatenate(([root], radii)) * np.exp(1j * np.concatenate((half[:1], half)))
+    if root < base:
+        radii, half = np.append(root, radii), np.append(half[0], half)
+    flank = radii * np.exp(1j * half)
     tooth = np.concatenate((flank.conj(), flank[::-1]))
     steps = np.exp(2j * math.pi * np.arange(disc.teeth) / disc.teeth)
     outline: ComplexArray = (steps[:, None] * tooth).ravel()

@@ -111,15 +111,18 @@ def _wheel(wheel: _Wheel, measures: Measures) -> Iterator[Primitive]:
 
 def _edge(wheel: _Wheel, measures: Measures) -> ComplexArray:
     """Where a wheel touches another one: its teeth or a circle, closed."""
-    disc = wheel.disc
     if wheel.phase is not None:
-        turned = tooth_outline(disc) * cmath.exp(1j * wheel.phase)
+        turned = tooth_outline(wheel.disc) * cmath.exp(1j * wheel.phase)
         return np.append(wheel.centre + turned, wheel.centre + turned[:1])
-    radius = disc.radius
-    if disc.kind == "gear":
-        beyond = addendum_of(radius, measures)
-        radius += -beyond if disc.ring else beyond
-    return _circle(wheel.centre, radius)
+    return _circle(wheel.centre, _plain_radius(wheel.disc, measures))
+
+
+def _plain_radius(disc: Disc, measures: Measures) -> float:
+    """The circle of a wheel that is drawn without teeth: of a gear, that of their tips."""
+    if disc.kind != "gear":
+        return disc.radius
+    beyond = addendum_of(disc.radius, measures)
+    return disc.radius + (-beyond if disc.ring else beyond)
 
 
 def _circle(centre: complex, radius: float) -> ComplexArray:
@@ -132,7 +135,7 @@ def _solid(wheel: _Wheel, edge: ComplexArray, measures: Measures) -> Iterator[Pr
     fixed = disc.link == GROUND
     role = Role.FRAME if fixed else Role.WHEEL
     if wheel.phase is None:
-        radius = abs(edge[0] - wheel.centre)
+        radius = _plain_radius(disc, measures)
         yield Circle(
             role=role, of=disc.link, tone=wheel.tone, centre=xy(wheel.centre), radius=radius
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from linkwork.mechanism.contact_shapes import ContactShapes
 from linkwork.mechanism.linkage import GROUND, Linkage
@@ -70,7 +70,7 @@ class Skeleton:
     struts: tuple[Strut, ...] = ()
     driven: tuple[DrivenPart, ...] = ()
     traced: tuple[str, ...] = ()
-    contacts: ContactShapes = ContactShapes()
+    contacts: ContactShapes = field(default_factory=ContactShapes)
 
     @classmethod
     def of_linkage(
