@@ -135,7 +135,7 @@ def test_a_value_that_is_changed_shows_at_its_line(data: st.DataObject) -> None:
     """Cutting the line of a plain ``key = value`` removes exactly that key."""
     text = SAMPLES[data.draw(st.sampled_from(sorted(SAMPLES)))]
     lines = Lines.of(text)
-    plain = [p for p in lines.at if isinstance(p[-1], str) and "=" in row(text, lines.at[p])]
+    plain = [p for p in lines.at if isinstance(p[-1], str) and whole(row(text, lines.at[p]))]
     path = data.draw(st.sampled_from(plain))
     rows = text.split("\n")
     rows[lines.at[path] - 1] = ""
@@ -146,3 +146,11 @@ def test_a_value_that_is_changed_shows_at_its_line(data: st.DataObject) -> None:
 
 def row(text: str, line: int) -> str:
     return text.split("\n")[line - 1]
+
+
+def whole(line: str) -> bool:
+    """Whether a line is a plain ``key = value``, and no part of a value of several lines."""
+    try:
+        return bool(tomllib.loads(line)) and "=" in line
+    except tomllib.TOMLDecodeError:
+        return False

@@ -1,9 +1,9 @@
 """Equations of parts in contact: wheels, cams and curves.
 
 Wheels are linear rows. A cam given by its follower's motion ties one variable to a function of the
-cam's angle. A point that runs along a curve x(u), y(u) has the variable lengths X, Y in the frame of
-the curve's body, and X = x(u), Y = y(u); a roller and a flat face need the curve's direction as well:
-T i e^{iβ} = x'(u) + i y'(u).
+cam's angle. A point that runs along a curve x(u), y(u) has the variable lengths X, Y in the frame
+of the curve's body, and X = x(u), Y = y(u); a roller and a flat face need the curve's direction as
+well: T i e^{iβ} = x'(u) + i y'(u).
 """
 
 from __future__ import annotations
