@@ -372,3 +372,15 @@ def test_wheels_in_place_are_not_repeated_faintly():
     assert {p.of for p in faint} == {"planet"}
     assert len(faint) == 6
     assert all(isinstance(p, Disc) for p in faint)
+
+
+def test_without_a_motion_the_picture_holds_the_line_to_roll_on():
+    scene = scene_of(position_of("rolling-wheel", -90))
+    [line] = scene.select(Polyline, Role.GROUND, "x")
+    left, right = sorted(point[0] for point in line.points)
+    assert left == pytest.approx(-32)  # 0.8 of the radius beyond the wheel
+    assert right == pytest.approx(300)
+    assert scene.within.right == right
+    # What goes beyond are symbols, a few radii of a pin wide, and that margin.
+    assert scene.box.left > scene.within.left - 5 * scene.measures.pin
+    assert scene.box.right < scene.within.right + 5 * scene.measures.pin
