@@ -154,17 +154,20 @@ def test_teeth_in_mesh_do_not_run_into_each_other(name, value):
         assert inside(point, ring) or distance_to_line(point, ring) < near
 
 
-def test_teeth_turn_with_their_links():
-    mechanism = lw.example("planetary-gear")
+@pytest.mark.parametrize(
+    ("name", "first"), [("planetary-gear", "ground"), ("planetary-differential", "ring")]
+)
+def test_teeth_turn_with_their_links(name, first):
+    mechanism = lw.example(name)
     within = []
     for value in (0, 10, 250, 1000):
-        position = mechanism.solve(value, certify=False)
-        pose = Pose.of(position, None)
+        at = value if name == "planetary-gear" else {"sun": value, "ring": 90 - value / 9}
+        pose = Pose.of(mechanism.solve(at, certify=False), None)
         within.append({
             disc.link: ((phase - pose.angle(disc.link)) * disc.teeth / math.tau) % 1.0
             for disc, phase in tooth_phases(pose).items()
         })  # fmt: skip
-    assert set(within[0]) == {"ground", "planet", "sun"}
+    assert set(within[0]) == {first, "planet", "sun"}
     for other in within[1:]:
         for link, phase in other.items():
             off = abs(phase - within[0][link])
@@ -233,6 +236,7 @@ def test_the_block_of_a_follower_stands_clear_of_its_cam():
     scene = scene_at("cam-roller-follower", 0)
     [block] = scene.select(Polygon, Role.SLIDER)
     assert line_of(block).mean() == pytest.approx(place(position_of("cam-roller-follower", 0), "E"))
+    assert len(scene.select(Polyline, Role.LINK, "follower")) == 1
 
 
 @pytest.mark.parametrize("value", [-90, -200, -444])
@@ -270,6 +274,8 @@ def test_the_pitch_line_of_a_rack_touches_the_pitch_circle_of_its_pinion(name, v
         along = (end - start) / abs(end - start)
         foot = (z(pinion.centre) - start) * along.conjugate()
         assert abs(foot.imag) == pytest.approx(pinion.radius)
+        sliding = position_of(name, value).skeleton.guides[0].point
+        assert start.imag == pytest.approx(place(position_of(name, value), sliding).imag)
         assert 0 < foot.real < abs(end - start)
 
 
@@ -292,7 +298,12 @@ def test_a_pin_runs_in_the_middle_of_its_slot(name, curve, point):
         edge = line_of(scene.select(Polyline, Role.GROUND, curve)[0])[:-1]
         pin = place(position_of(name, value), point)
         assert inside(pin, edge)
-        assert distance_to_line(pin, edge) == pytest.approx(scene.measures.slot, rel=0.01)
+        width = scene.measures.slot
+        assert distance_to_line(pin, edge) == pytest.approx(width, rel=0.01)
+        [contour] = position_of(name, value).skeleton.contacts.contours
+        length = float(np.abs(np.diff(contour.points)).sum())
+        area = abs(float((edge.conj() * np.roll(edge, -1)).imag.sum()) / 2)
+        assert area == pytest.approx(2 * width * length + math.pi * width**2, rel=0.01)
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -349,3 +360,27 @@ def test_faint_wheels_stand_at_their_further_positions():
         assert abs(z(disc.centre)) == pytest.approx(45)
         assert disc.radius == 15
     assert not [p for p in scene.primitives if p.fade and p.role in (Role.FRAME, Role.HATCH)]
+
+
+def test_wheels_in_place_are_not_repeated_faintly():
+    scene = scene_of(
+        position_of("planetary-gear", 0),
+        motion_of("planetary-gear"),
+        options=SceneOptions(further=6),
+    )
+    faint = [p for p in scene.primitives if p.fade and p.role is Role.WHEEL]
+    assert {p.of for p in faint} == {"planet"}
+    assert len(faint) == 6
+    assert all(isinstance(p, Disc) for p in faint)
+
+
+def test_without_a_motion_the_picture_holds_the_line_to_roll_on():
+    scene = scene_of(position_of("rolling-wheel", -90))
+    [line] = scene.select(Polyline, Role.GROUND, "x")
+    left, right = sorted(point[0] for point in line.points)
+    assert left == pytest.approx(-32)  # 0.8 of the radius beyond the wheel
+    assert right == pytest.approx(300)
+    assert scene.within.right == right
+    # What goes beyond are symbols, a few radii of a pin wide, and that margin.
+    assert scene.box.left > scene.within.left - 5 * scene.measures.pin
+    assert scene.box.right < scene.within.right + 5 * scene.measures.pin

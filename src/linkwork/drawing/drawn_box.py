@@ -27,6 +27,7 @@ def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Bo
     drawn = [name for name in pose.points if name not in pose.construction]
     places = (one.points[name] for one in poses for name in drawn)
     along = {guide.point for guide in pose.skeleton.guides if pose.on_ground(guide)}
+    along |= {track.center for track in pose.skeleton.contacts.rolling}
     paths = [pose.paths[name] for name in (*traces, *along) if name in pose.paths]
     travelled = chain.from_iterable(path[np.isfinite(path)] for path in paths)
     rounds = chain.from_iterable(map(_round_parts, poses))
@@ -41,7 +42,10 @@ def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Bo
 
 
 def _round_parts(pose: Pose) -> Iterator[complex]:
-    """Outermost points of wheels, cams and curves."""
+    """Outermost points of wheels, cams and curves; lines to roll on that no motion tells."""
+    if not pose.paths:
+        for track in pose.skeleton.contacts.rolling:
+            yield from (pose.points[name] for name in track.line)
     for disc in pose.skeleton.contacts.discs:
         yield from (pose.points[disc.center] + disc.radius * 1j**k for k in range(4))
     for contour in pose.skeleton.contacts.contours:

@@ -164,36 +164,9 @@ class ContactShapes:
                 Mesh(name=name, discs=(wheels.found[first], wheels.found[second]))
                 for name, (first, second) in gears
             ),
-            belts=tuple(
-                BeltRun(
-                    name=belt.name,
-                    centers=belt.centers,
-                    radii=_pitch_radii(linkage, belt),
-                    crossed=belt.crossed,
-                )
-                for belt in linkage.belts
-            ),
-            racks=tuple(
-                RackBar(
-                    name=rack.name,
-                    slider=rack.slider,
-                    link=_slider(linkage, rack.slider).link,
-                    center=rack.center,
-                    radius=numbers(rack.radius),
-                )
-                for rack in linkage.racks
-            ),
-            rolling=tuple(
-                RollingLine(
-                    name=part.name,
-                    on=part.on,
-                    line=part.line,
-                    center=part.center,
-                    radius=numbers(part.radius),
-                )
-                for part in linkage.rolling
-                if part.line is not None
-            ),
+            belts=tuple(_belts(linkage)),
+            racks=tuple(_racks(linkage)),
+            rolling=tuple(_lines(linkage)),
             followers=followers,
             contours=tuple(_contours(linkage, outlines)),
         )
@@ -279,6 +252,35 @@ def _slider(linkage: Linkage, name: str) -> Slider:
     guide = guide_named(linkage, name)
     assert isinstance(guide, Slider)
     return guide
+
+
+def _belts(linkage: Linkage) -> Iterator[BeltRun]:
+    for belt in linkage.belts:
+        radii = _pitch_radii(linkage, belt)
+        yield BeltRun(name=belt.name, centers=belt.centers, radii=radii, crossed=belt.crossed)
+
+
+def _racks(linkage: Linkage) -> Iterator[RackBar]:
+    for rack in linkage.racks:
+        yield RackBar(
+            name=rack.name,
+            slider=rack.slider,
+            link=_slider(linkage, rack.slider).link,
+            center=rack.center,
+            radius=linkage.numbers(rack.radius),
+        )
+
+
+def _lines(linkage: Linkage) -> Iterator[RollingLine]:
+    for part in linkage.rolling:
+        if part.line is not None:
+            yield RollingLine(
+                name=part.name,
+                on=part.on,
+                line=part.line,
+                center=part.center,
+                radius=linkage.numbers(part.radius),
+            )
 
 
 def _follower(linkage: Linkage, cam: Cam) -> Follower:
