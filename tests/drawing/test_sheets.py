@@ -85,9 +85,10 @@ def test_nothing_to_draw_is_said():
     assert str(raised.value) == (
         f'"{found.mechanism}" has no configuration to draw: it cannot be put together'
     )
+    equations = lw.example("coupled-six-link").changed(points={}, links={}, trace=())
+    without = equations.configurations()
     with pytest.raises(InputError) as raised:
-        equations = lw.example("coupled-six-link").changed(points={}, links={}, trace=())
-        configuration_sheet(equations.configurations())
+        configuration_sheet(without)
     assert str(raised.value) == (
         '"Six-link mechanism with two coupled loops" has no points to draw: '
         "add [points] with the coordinates of its pins"
