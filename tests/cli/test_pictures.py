@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import linkwork as lw
 from linkwork.everyday import example_text
 from tests.cli.conftest import Run
 
@@ -165,7 +166,8 @@ def test_a_sweep_out_of_reach_draws_its_start(run: Run, folder: Path) -> None:
 def test_what_cannot_be_drawn_is_refused_before_the_sweep(
     run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    file = _library(folder, "coupled-six-link")
+    file = str(folder / "equations.toml")
+    lw.example("coupled-six-link").changed(points={}, links={}, trace=()).save(file)
     _refuse(monkeypatch, "sweep", "configurations")
     for words in (
         ("sweep", file, "--draw", "a.svg", "--csv", "a.csv"),

@@ -164,7 +164,7 @@ def test_double_butterfly_lists_every_configuration_that_random_starts_find() ->
         return np.array(fixed + [abs(z[k] - z[n]) / length - 1 for k, n, length in bars])
 
     ways = lw.example("double-butterfly").configurations(at=60)
-    assert ways.completeness is lw.Completeness.WITH_PROBABILITY_ONE
+    assert ways.completeness is lw.Completeness.PROVED
     names = ("P1", "P2", "Q1", "Q2", "M")
     listed = np.array([[complex(*way.points[name]) for name in names] for way in ways])
     for places in listed:

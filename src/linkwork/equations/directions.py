@@ -166,7 +166,9 @@ def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
     """
     if table.functions:
         cams = table.bends_boundedly
-        raise NoDirectionForm("contain a cam or a curve" if cams else "are plain equations")
+        raise NoDirectionForm(
+            "contain a cam or a curve" if cams else "are plain equations, not loops"
+        )
     n, loops = table.unknowns, table.loops
     turning = np.flatnonzero(table.turns[:n])
     sliding = np.flatnonzero(~table.turns[:n])
