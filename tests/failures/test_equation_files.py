@@ -129,7 +129,7 @@ CASES = {
         changed(FOUR_BAR, "[input]", '[[input]]\nlink = "rocker"\n\n[[input]]'),
         "1 problem in file.toml\n"
         "  line 13  links  1 condition too many: remove an input or a link among crank, rocker, "
-        "coupler",
+        "coupler (as assembled it has 1 degree of freedom for 2 inputs)",
     ),
     "a link that is connected to nothing": (
         changed(

@@ -27,9 +27,11 @@ def looped(loops: dict[str, str], **guess: float) -> lw.Mechanism:
 
 #: Peaucellier's B folded onto D leaves both far bars free to turn together.
 FREE = {"peaucellier"}
+#: A cam or a curve is no polynomial.
+CURVED = {"curved-slot", "eccentric-cam", "garage-door"}
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [name for name in NAMES if name not in CURVED])
 def test_the_position_of_the_sketch_is_one_of_the_configurations(name: str) -> None:
     mechanism = mechanism_of(name)
     position, found = mechanism.solve(throw=True), mechanism.configurations()
@@ -40,7 +42,8 @@ def test_the_position_of_the_sketch_is_one_of_the_configurations(name: str) -> N
         assert min(min(abs(p - value) for p in c.sliders.values()) for c in found) < 1e-9 * scale
     assert min(gaps) < 1e-6
     for p in found:
-        assert p.certificate.certified
+        subset = p.certificate.certification is lw.Certification.SUBSET_CERTIFIED
+        assert p.certificate.certified or (subset and p.redundant)
         assert p.residual < 1e-13
         assert p.input == position.input
 

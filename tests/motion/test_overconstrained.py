@@ -93,7 +93,7 @@ def test_a_bar_of_another_length_makes_dixons_mechanism_rigid() -> None:
         dixon(**{"A2 B2": 94.0})
     text = str(raised.value)
     assert text.startswith('1 problem in mechanism "Dixon I"\n  links  1 condition too many: ')
-    assert " (it could move only with special lengths: " in text
+    assert " (as drawn it does not fit: " in text
     assert " would have to be " in text
 
 

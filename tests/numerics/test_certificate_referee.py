@@ -498,6 +498,7 @@ def test_every_reason_for_a_missing_certificate_is_reached(monkeypatch: pytest.M
         formula.sweep().certification[0],
         lw.example("four-bar").sweep(certify=False).certification[0],
         parallelogram.certification[-1],
+        lw.example("parallel-cranks").solve().certificate.certification,
         lw.example("four-bar").configurations()[0].certificate.certification,
         too_long_to_prove(monkeypatch),
     ]
@@ -526,6 +527,11 @@ def test_every_reason_for_a_missing_certificate_is_reached(monkeypatch: pytest.M
             "BRANCH_CHOSEN",
             "the position is proved; at a change point before it nothing but the chosen way of "
             "going on decides the branch",
+        ),
+        (
+            "SUBSET_CERTIFIED",
+            "proved for the mechanism without its redundant links; that these fit holds to "
+            "rounding, not proved",
         ),
         (
             "CONFIGURATION_CERTIFIED",

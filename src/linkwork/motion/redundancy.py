@@ -85,15 +85,15 @@ def check_redundancy(compiled: Compiled, where: str) -> None:
         return  # said when a position is asked for
     columns, _ = _redundant(equations)
     found = done.v[0, columns]
-    if misfit(equations, done.v)[0] > FITS:
+    freedoms, inputs = mobility_by_rank(compiled, done.v[0]), len(equations.inputs)
+    fits = misfit(equations, done.v)[0] <= FITS
+    if not fits and (freedoms >= inputs or inputs < 2):
         wanted = ", ".join(
             f"{part.link} would have to be {length:.10g} long, not {part.length:.10g}"
             for part, length in zip(equations.redundant, found, strict=True)
             if abs(length - part.length) > FITS * equations.length_scale
         )
-        raise _refused(surplus, f"it could move only with special lengths: {wanted}", where)
-    freedoms = mobility_by_rank(compiled, done.v[0])
-    inputs = len(equations.inputs)
+        raise _refused(surplus, f"as drawn it does not fit: {wanted}", where)
     if freedoms < inputs:
         how = f"{freedoms} degree{'s' if freedoms != 1 else ''} of freedom"
         driven = f"{inputs} input{'s' if inputs != 1 else ''}"
