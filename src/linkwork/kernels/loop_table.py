@@ -37,6 +37,7 @@ class FunctionRow(Protocol):
 
 
 _UNIT = np.finfo(float).eps / 2
+_TURN_ROUNDING = 8.0 * _UNIT  # a third is no float, but three of them are one turn
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,6 +137,25 @@ class LoopTable:
             parts.append(np.zeros((len(v), len(self.linear.constant))))
             parts += [row.second(v, d)[:, None] for row in self.functions]
         return np.concatenate(parts, axis=1)
+
+    def repeats_after(self, turns: Array) -> bool:
+        """Whether variables (N,) moved by so many whole turns each satisfy the same equations.
+
+        Not so for a phase that they change by a fraction of a turn, nor for a linear row that they
+        change at all; function rows are not known to repeat.
+        """
+        rows = self.loops
+        each = rows.phase_weight * turns[rows.phase_variable]
+        phase, size = (
+            np.bincount(rows.phase_term, part, minlength=len(rows.row))
+            for part in (each, np.abs(each))
+        )
+        moved, bulk = self._linear_matrix @ turns, np.abs(self._linear_matrix) @ np.abs(turns)
+        return bool(
+            (np.abs(phase - np.round(phase)) <= _TURN_ROUNDING * size).all()
+            and (np.abs(moved) <= _TURN_ROUNDING * bulk).all()
+            and not any(turns[list(row.variables)].any() for row in self.functions)
+        )
 
     @property
     def bends_boundedly(self) -> bool:

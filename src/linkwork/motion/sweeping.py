@@ -27,7 +27,7 @@ from linkwork.motion.rows import SolvedRows
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.sweep_table import SweepTable
 from linkwork.motion.tracking import track_to
-from linkwork.numerics.leaders import same_position
+from linkwork.numerics.leaders import coincide, whole_turns
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.track import InputPath, Node, Track, follow, node_at
 from linkwork.results.motion import Limit, Motion, OutputLimit
@@ -38,6 +38,7 @@ _ENTRIES = (
     24  # rows, from the nearest on, at which a table of several inputs is tried to be entered
 )
 _MOST_CROSSINGS = 64
+_ROUNDING = 1e-14  # of whole turns, which are no floats
 _SAME = 1e-6  # of the leading input: extremes nearer to each other are one
 
 
@@ -216,13 +217,25 @@ class _Sweep:
             self._told(table, branch.found, branch.name, branch.standing, branch.found.here)
             for end in branch.ends:
                 table.put_end(end, branch.name)
-        known = [end.v for end in self.ends if end.v is not None]
         self.limits += [
             end.limit
             for end in around.dead_points
-            if end.v is not None
-            and not any(same_position(self.drive.leads, end.v, v) for v in known)
+            if not any(self._is_limit(end, known) for known in self.ends)
         ]
+
+    def _is_limit(self, end: BranchEnd, known: BranchEnd) -> bool:
+        """Whether two ends are one place: near each other, and their brackets have common values.
+
+        Two dead points may lie close together; what tells them apart is how well they are located.
+        """
+        leads = self.drive.leads
+        if end.v is None or known.v is None or not coincide(leads, end.v, known.v):
+            return False
+        turns = whole_turns(leads, known.v, end.v)[leads.parameter]
+        shift = float(turns) * FULL_TURN / self.drive.unit
+        low, high = (edge + shift for edge in known.limit.bracket)
+        slack = _ROUNDING * max(1.0, abs(low), abs(high))
+        return low - slack <= end.limit.bracket[1] and end.limit.bracket[0] <= high + slack
 
     def _steepness(self, node: Node) -> float:
         """Large near dead points, where a single equation has no bad condition, and crossings."""
