@@ -291,7 +291,7 @@ def test_a_curve_that_passes_itself_closely_is_followed_on(
         assert found.curve.end is CircuitEnd.CLOSED
         assert len(found.turns) == 2
         first, last = found.curve.legs[0].v[0], found.curve.legs[-1].v[-1]
-        assert np.abs(np.exp(1j * first) - np.exp(1j * last)).max() < 0.1 * apart
+        assert np.abs(np.exp(1j * first) - np.exp(1j * last)).max() < 0.3 * apart
 
 
 @pytest.mark.parametrize("more", [1e-6, 2e-8, 1e-9, 1e-12])

@@ -123,6 +123,9 @@ def same_position(leads: Leads, a: Array, b: Array) -> bool:
     own = leads.by(p)
     if own is None or gap.max() > _NEAR or gap[p] > _ON_VALUE or not leads.repeats_after(turns):
         return False
+    size = 1.0 + np.abs(near / leads.scale).max()
+    if gap.max() <= _ROUNDINGS * _UNIT * size:
+        return True
     near[:, p] = a[p]
     sharp = replace(own.solver.options, equation_tolerance=_UNIT)
     found = own.solver.solve(near[:, own.order], sharp).v
@@ -133,7 +136,6 @@ def same_position(leads: Leads, a: Array, b: Array) -> bool:
         if first.holds[0] and second.holds[0]:
             return bool((off[:-1] + second.each[0, :-1] < first.alone[0]).all())
     rates = own.solver.rates(found, own.path.rate)
-    size = 1.0 + np.abs(found / own.solver.variable_scale).max()
     allowed = min(_COINCIDE, _ROUNDINGS * _UNIT * float(rates.condition.max()) * size)
     close = (off / own.solver.variable_scale).max() <= allowed
     # two roots that a dead point joins have opposite signs of det J
