@@ -157,6 +157,7 @@ def _followed(model: Model, target: Array, start: Start, certify: bool) -> Posit
         failure = why.beyond_reach(model, start.v, (path, lead, goal), status, limits)
         return _failed(model, target, status, failure, start)
     rows = rows_on_track(solver, path, track, np.array([t]))
+    rows.iterations[0] += start.iterations + sum(node.iterations for node in track.nodes)
     place = _Place(
         path=path,
         track=track,

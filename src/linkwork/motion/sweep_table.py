@@ -72,12 +72,24 @@ class SweepTable:
         inside = [k for k in turns if low - slack <= here + k * FULL_TURN <= high + slack]
         return (inside or turns or [0])[0]
 
-    def put_end(self, end: BranchEnd, branch: str) -> None:
-        """A row of its own for the end of a branch, if its place lies in the table."""
+    def put_end(self, end: BranchEnd, branch: str) -> BranchEnd:
+        """A row of its own for the end of a branch, if its place lies in the table.
+
+        Returned is the end with its limit named as that row is.
+        """
         self._ends.append((end, branch))
         places = self.places_of(end.t)
         if places:
             self._put_at(end, branch, min(places, key=lambda here: abs(here - end.t)))
+        return self.named(end)
+
+    def named(self, end: BranchEnd) -> BranchEnd:
+        """An end with its limit named in the range of the table, if it has a place there."""
+        places = self.places_of(end.t)
+        if not places:
+            return end
+        here = min(places, key=lambda here: abs(here - end.t))
+        return end.named(float(self._inputs(end, here)[0, self.drive.lead]))
 
     def _put_at(self, end: BranchEnd, branch: str, here: float) -> None:
         if end.v is not None and end.first is not None:
