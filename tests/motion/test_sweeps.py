@@ -106,6 +106,8 @@ def test_a_position_that_was_followed_counts_the_iterations_on_the_way() -> None
     near, far, home = mechanism.solve(at=61), mechanism.solve(at=200), mechanism.solve()
     assert home.iterations == mechanism.solve(at=home.input["crank"]).iterations
     assert home.iterations < near.iterations < far.iterations
+    beside = mechanism.solve(at=home.input["crank"] + 1.0)
+    assert home.iterations < beside.iterations <= home.iterations + 3
     direct = mechanism.solve(at=61, from_guess=True)
     assert direct.iterations < near.iterations  # without the guess's own position
     assert direct["rocker"] == pytest.approx(near["rocker"], abs=1e-11)
