@@ -113,7 +113,7 @@ def test_a_whole_circuit_as_json(run: Run) -> None:
     words = ("sweep", "double-rocker.toml", "--step", "10", "--through", "--limits-of", "mu")
     data = _json(run(*words, "--json").stdout)
     assert data["circuit"] == "CLOSED"
-    assert data["counts"] == {"OUT_OF_REACH": 4, "CONVERGED": 70}
+    assert data["counts"] == {"OUT_OF_CIRCUIT": 4, "CONVERGED": 70}
     columns = data["columns"]
     assert columns["branch"].count("circuit 1 branch 2") == 35
     assert columns["limit"].count("dead point") == 4

@@ -81,9 +81,9 @@ Four-bar
 crank from 0 to 360 deg by 10: 37 positions, 2 more at limits and 35 on further
 branches
   found            70
-  out of reach     4 at 0 to 10, 350 to 360 deg: this branch does not reach the
-                   input value: the motion ends at the limit reported, ask for
-                   values before it
+  out of circuit   4 at 0 to 10, 350 to 360 deg: this circuit does not reach the
+                   input value on any of its branches: the motion turns back at
+                   the limits reported, ask for values between them
   dead point       crank = 18.1948723388 deg, where loop "O2 A B O4" locks
                    (coupler and rocker in line)
   dead point       crank = 341.805127661 deg, where loop "O2 A B O4" locks

@@ -92,6 +92,11 @@ def change_point() -> Reached:
     )
 
 
+def out_of_circuit() -> Reached:
+    motion = four_bar(4, 2, 5, 2, at=90).sweep(start=-40, stop=40, step=10, through=True)
+    return motion, "position found"
+
+
 def start_singular() -> Reached:
     mechanism = lw.linkage(
         points={"O2": (0, 0), "A": (40, 0), "B": (160, 0), "T": (300, 0)},
@@ -169,6 +174,7 @@ CASES: dict[lw.Status, Callable[[], Reached]] = {
     lw.Status.STEP_LIMIT: step_limit,
     lw.Status.CANNOT_CLOSE: cannot_close,
     lw.Status.OUT_OF_REACH: out_of_reach,
+    lw.Status.OUT_OF_CIRCUIT: out_of_circuit,
     lw.Status.CHANGE_POINT: change_point,
     lw.Status.START_SINGULAR: start_singular,
     lw.Status.LOST: lost,

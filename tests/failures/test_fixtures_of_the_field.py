@@ -86,7 +86,7 @@ def test_a_folding_four_bar_has_one_change_point_at_180_degrees(side: int, step:
     assert motion.found[inside].all()
     assert motion.certified[inside].all()
     assert_four_bar(motion, bar, side)
-    assert [limit.input for limit in motion.limits] == [-180.0, 180.0]
+    assert [limit.input for limit in motion.limits] == [180.0, 180.0]
     assert {limit.kind for limit in motion.limits} == {lw.LimitKind.CHANGE_POINT}
 
 
@@ -175,7 +175,7 @@ def test_a_rod_as_long_as_the_crank_ends_at_change_points_where_the_block_is_in_
     found = motion.found
     exact = 4 * np.cos(np.radians(crank[found]))
     np.testing.assert_allclose(motion["s"][found], exact, rtol=0, atol=NEAR_SINGULAR)
-    assert [limit.input for limit in motion.limits] == [-90.0, 90.0]
+    assert [limit.input for limit in motion.limits] == [270.0, 90.0]
     assert {limit.kind for limit in motion.limits} == {lw.LimitKind.CHANGE_POINT}
 
 

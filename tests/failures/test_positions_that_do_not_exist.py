@@ -117,7 +117,7 @@ def test_both_tangents_at_the_change_points_of_a_parallelogram() -> None:
 def test_a_folding_linkage_has_one_change_point_and_it_is_at_180_degrees() -> None:
     motion = four_bar(1, 3, 2, 4, at=60).sweep()
     assert {limit.kind for limit in motion.limits} == {lw.LimitKind.CHANGE_POINT}
-    assert [limit.input for limit in motion.limits] == [-180.0, 180.0]
+    assert [limit.input for limit in motion.limits] == [180.0, 180.0]
     assert motion.found.all()
     assert not motion.added.any()
     np.testing.assert_array_equal(motion["crank"][np.array(motion.limit) != ""], [180.0])

@@ -140,3 +140,29 @@ def test_rows_of_a_batch_equal_the_same_rows_alone(examples: list[Example]) -> N
             alone = example.table.residual_and_jacobian(example.v[lane : lane + 1])
             assert agree(alone[0][0], f[lane], size(example)), seed
             assert agree(alone[1][0], jacobian[lane], size(example)), seed
+
+
+def test_equations_repeat_after_whole_turns_where_their_values_do(examples: list[Example]) -> None:
+    rng = np.random.default_rng(5)
+    repeating = 0
+    for seed, example in enumerate(examples):
+        table = example.table
+        turns = np.where(table.turns, rng.integers(-2, 3, table.variables), 0.0)
+        if not turns.any() or example.formulas:
+            continue
+        moved = table.residual(example.v + 2.0 * np.pi * turns)
+        same = agree(moved, table.residual(example.v), size(example))
+        assert table.repeats_after(turns) == same, seed
+        repeating += same
+    assert 20 < repeating < 900
+
+
+def test_functions_of_angles_are_not_known_to_repeat(examples: list[Example]) -> None:
+    seen = 0
+    for example in examples:
+        used = {k for row in example.table.functions for k in row.variables}
+        turning = [k for k in used if example.table.turns[k]]
+        if turning:
+            assert not example.table.repeats_after(np.eye(example.table.variables)[turning[0]])
+            seen += 1
+    assert seen > 10

@@ -105,9 +105,10 @@ def test_the_toggle_and_the_limited_rapier_have_their_known_dead_points() -> Non
     known = [15.563575187105, 76.70292825279]
     assert [limit.input for limit in toggle.limits] == pytest.approx(known, abs=TINY)
     rapier = lw.example("rapier-drive-limited").sweep()
-    assert sorted(limit.input for limit in rapier.limits) == pytest.approx(sorted(RAPIER), abs=TINY)
-    rows = limit_rows(rapier, "dead point")  # a turn away, in the table's place
-    assert rapier["θ12"][rows] == pytest.approx([RAPIER[0], RAPIER[1] + 360], abs=TINY)
+    places = [RAPIER[0], RAPIER[1] + 360]  # a turn away, in the table's place
+    assert sorted(limit.input for limit in rapier.limits) == pytest.approx(places, abs=TINY)
+    rows = limit_rows(rapier, "dead point")
+    assert rapier["θ12"][rows] == pytest.approx(places, abs=TINY)
     assert (~rapier.found).sum() == 52
     assert lw.example("rapier-drive").sweep().limits == ()
 
@@ -484,6 +485,44 @@ def test_extremes_between_the_last_row_and_a_dead_point_are_found(step: float) -
         assert extreme.located
 
 
+@pytest.mark.parametrize("through", [False, True])
+def test_what_turns_back_together_with_the_input_has_its_extreme_at_the_dead_point(
+    through: bool,
+) -> None:
+    motion = four_bar(FOLDING, 90, step=10).sweep(
+        through=through, limits_of=["crank", "A.x", "B.x"]
+    )
+    low, high = (limit.input for limit in motion.limits)
+    found = {(e.name, e.kind, e.input): e for e in motion.output_limits}
+    assert found["crank", "minimum", low].value == pytest.approx(DEAD, abs=TINY)
+    assert found["crank", "maximum", high].value == pytest.approx(360 - DEAD, abs=TINY)
+    for end in (low, high):
+        extreme = found["A.x", "maximum", end]
+        assert extreme.value == pytest.approx(11 / 8, abs=1e-13)  # 2 cos of 11/16
+        assert extreme.located
+        assert extreme.bracket[0] < end < extreme.bracket[1]
+    # each of them once, and nothing that moves on through the dead point
+    assert sum(e.name == "crank" for e in motion.output_limits) == 2
+    assert sum(e.name == "A.x" and e.kind == "maximum" for e in motion.output_limits) == 2
+    assert not [e for e in motion.output_limits if e.name == "B.x" and e.input in (low, high)]
+
+
+def test_limits_are_named_by_the_inputs_of_their_rows() -> None:
+    for start in (0, 360, -720):
+        table = {"start": start, "stop": start + 360, "step": 10}
+        motion = four_bar(FOLDING, 90, **table).sweep(through=True, limits_of=["coupler"])
+        rows = {limit: set() for limit in motion.limit}
+        for limit, value in zip(motion.limit, motion["crank"], strict=True):
+            rows[limit].add(float(value))
+        assert {limit.input for limit in motion.limits} <= rows["dead point"]
+        assert all(start <= limit.input <= start + 360 for limit in motion.limits)
+        for extreme in motion.output_limits:
+            assert extreme.input in rows[f"{extreme.kind} of coupler"]
+        for told in (*motion.limits, *motion.output_limits):
+            assert told.bracket[0] <= told.input <= told.bracket[1]
+            assert told.bracket[1] - told.bracket[0] < 1e-10
+
+
 def test_an_extreme_is_told_once_although_the_track_turns_twice() -> None:
     bar = FourBar(4.0, 2.0, 5.0, 3.5)
     motion = four_bar(bar, 90, start=400, stop=760, step=10).sweep(limits_of=["rocker"])
@@ -500,7 +539,7 @@ def test_extremes_beyond_a_change_point_are_those_of_the_chosen_branch() -> None
     # the coupler has an extreme on the way around, which was not chosen
     assert [extreme.name for extreme in motion.output_limits] == ["rocker", "rocker"]
     around = mechanism.sweep(limits_of=["coupler"])
-    assert [round(extreme.input, 2) for extreme in around.output_limits] == [-48.19]
+    assert [round(extreme.input, 2) for extreme in around.output_limits] == [311.81]
     for row in np.flatnonzero([limit.endswith("of rocker") for limit in motion.limit]):
         beyond = motion["crank"][row] > 180
         assert (motion.certification[row] is Certification.BRANCH_CHOSEN) == beyond

@@ -57,7 +57,34 @@ def test_three_dead_points_within_one_degree_are_all_passed() -> None:
     motion = mechanism.sweep(start=-90, stop=-75, step=1)
     assert motion.certified.all()
     found = sorted(limit.input for limit in mechanism.sweep(through=True).limits)
-    assert found == pytest.approx(limits)
+    assert found == pytest.approx([limit + 360 for limit in limits])  # as in the table
+
+
+def test_rows_that_only_another_branch_of_the_circuit_reaches_say_so() -> None:
+    # the dyad turns back within the range of the four-bar, which goes on without it
+    mechanism = lw.loops(
+        loops={
+            "1": "1.1506868993121604*e^(i*t) + 1.4015301927498651*e^(i*p) "
+            "= 1.0168797508205394 + 2.6587007529023197*e^(i*q)",
+            "2": "1.1506868993121604*e^(i*t) + (1.5918774708532644 - i*2.2387661530443754)*e^(i*p) "
+            "+ 3.266084146225838*e^(i*x) "
+            "= -0.4233697291303557 + i*2.8947794769492443 + 1.531444418102215*e^(i*y)",
+        },
+        guess={"t": -70.65, "p": -159.7, "q": 211.3, "x": 85.9, "y": 148.2},
+        inputs=lw.Input(variable="t", start=-100, stop=-60, step=1),
+    )
+    motion = mechanism.sweep(through=True)
+    asked = motion["t"][motion.asked]
+    first = [motion.status[k] for k in np.flatnonzero(motion.asked)]
+    elsewhere = set(motion["t"][motion.found & motion.added].round(9))
+    reasons = {
+        status: [t for t, s in zip(asked, first, strict=True) if s is status]
+        for status in set(first)
+    }
+    assert set(reasons[lw.Status.OUT_OF_REACH]) <= elsewhere
+    assert not set(reasons[lw.Status.OUT_OF_CIRCUIT]) & elsewhere
+    assert reasons[lw.Status.OUT_OF_REACH]
+    assert reasons[lw.Status.OUT_OF_CIRCUIT]
 
 
 def test_a_single_equation_is_followed_through_its_dead_points() -> None:
@@ -72,3 +99,15 @@ def test_a_single_equation_is_followed_through_its_dead_points() -> None:
     x, y = motion["x"][motion.found], motion["y"][motion.found]
     assert np.abs(x * x + y * y - 1.0).max() < 1e-12
     assert ((x > 1e-3).sum(), (x < -1e-3).sum()) == (15, 15)
+
+
+def test_a_position_that_was_followed_counts_the_iterations_on_the_way() -> None:
+    mechanism = lw.example("four-bar")
+    near, far, home = mechanism.solve(at=61), mechanism.solve(at=200), mechanism.solve()
+    assert home.iterations == mechanism.solve(at=home.input["crank"]).iterations
+    assert home.iterations < near.iterations < far.iterations
+    beside = mechanism.solve(at=home.input["crank"] + 1.0)
+    assert home.iterations < beside.iterations <= home.iterations + 3
+    direct = mechanism.solve(at=61, from_guess=True)
+    assert direct.iterations < near.iterations  # without the guess's own position
+    assert direct["rocker"] == pytest.approx(near["rocker"], abs=1e-11)

@@ -16,7 +16,7 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.motion.circuit.branches import Traced, branches_of, traced
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.start import first_position
-from linkwork.numerics.curve import Curve, Leg, trace
+from linkwork.numerics.curve import Curve, CurveOptions, Leg, trace
 from linkwork.numerics.leaders import same_position
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.proven_curve import prove_curve
@@ -257,7 +257,7 @@ def test_just_beyond_the_change_point_there_are_two_dead_points(exponent: int) -
         assert off < 1e-15 * 10 ** (exponent / 2) * 100
 
 
-@pytest.mark.parametrize("away", [1e-3, 1e-6, 1e-9, 1e-11])
+@pytest.mark.parametrize("away", [1e-3, 1e-6, 1e-9, 1e-11, 1e-12, 1e-13])
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_a_curve_from_just_before_a_dead_point_closes(away: float, way: float) -> None:
     (dead,) = (float(x.mid()) for x in exact_turns(FOLDING))
@@ -267,6 +267,89 @@ def test_a_curve_from_just_before_a_dead_point_closes(away: float, way: float) -
     last = found.curve.legs[-1].v[-1]
     assert same_position(leads, last, found.curve.legs[0].v[0])
     assert found.certified or away < 1e-8  # nearer, the start itself is known too badly
+
+
+@pytest.mark.parametrize("apart", [1e-6, 3e-7, 1e-7])
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("certify", [True, False])
+def test_a_curve_that_passes_itself_closely_is_followed_on(
+    apart: float, side: int, certify: bool
+) -> None:
+    # so near to a dead point that the other assembly is only that far away
+    (dead,) = (float(x.mid()) for x in exact_turns(FOLDING))
+    for away in np.geomspace(1e-16, 1e-10, 61):
+        ends = np.concatenate([FOLDING.phasors(np.array(dead + away), s) for s in (1, -1)])
+        gap = np.abs(ends[:2] - ends[2:]).max()
+        if gap > apart:
+            break
+    assert gap < 3 * apart
+    angle = np.angle(ends[:2] if side > 0 else ends[2:])
+    leads = LeadTable(four_bar_table(FOLDING), PATH, 0)
+    start = np.array([*angle, dead + away])
+    for way in (1.0, -1.0):
+        found = traced(leads, start, way, certify)
+        assert found.curve.end is CircuitEnd.CLOSED
+        assert len(found.turns) == 2
+        first, last = found.curve.legs[0].v[0], found.curve.legs[-1].v[-1]
+        assert np.abs(np.exp(1j * first) - np.exp(1j * last)).max() < 0.3 * apart
+
+
+@pytest.mark.parametrize("more", [1e-6, 2e-8, 1e-9, 1e-12])
+@pytest.mark.parametrize("certify", [True, False])
+def test_a_gear_of_nearly_one_to_one_does_not_close_after_one_turn(
+    more: float, certify: bool
+) -> None:
+    mechanism = lw.loops(
+        angle="rad",
+        loops={"1": f"e^(i*t) + 3*e^(i*p) = s + 0.5*e^(i*{1.0 + more!r}*t)"},
+        guess={"t": 1.0, "p": -0.1, "s": 3.0},
+        inputs=lw.Input(variable="t", start=0, stop=6, step=0.5),
+    )
+    model = mechanism.model
+    start = first_position(model, model.start_inputs, NewtonOptions())
+    leads = LeadTable(model.compiled.table, PATH, 0)
+    curve = trace(leads, start.v, 1.0, CurveOptions(most_turns=3))
+    first, after = curve.legs[0].v[0], curve.passes[0][1]
+    assert after[2] - first[2] == pytest.approx(2 * math.pi, abs=1e-12)
+    assert np.abs(after - first)[:2].max() < 10 * more
+    assert not same_position(leads, after, first)
+    assert curve.end is CircuitEnd.NEVER_CLOSES
+    closed = replace(curve, end=CircuitEnd.CLOSED, legs=curve.legs[: curve.passes[0][0] + 1])
+    assert not (certify and prove_curve(leads, closed).closed)
+
+
+def test_a_gear_with_a_ratio_closes_after_as_many_turns() -> None:
+    for ratio, turns in (("3/2", 2), ("1/3", 3), ("2", 1)):
+        mechanism = lw.loops(
+            angle="rad",
+            loops={"1": f"e^(i*t) + 3*e^(i*p) = s + 0.5*e^(i*{ratio}*t)"},
+            guess={"t": 1.0, "p": -0.1, "s": 3.0},
+            inputs=lw.Input(variable="t", start=0, stop=6, step=0.5),
+        )
+        _, found = circuit_of(mechanism)
+        assert found.certified
+        assert found.curve.end is CircuitEnd.CLOSED
+        gain = found.curve.legs[-1].v[-1, 2] - found.curve.legs[0].v[0, 2]
+        assert gain == pytest.approx(2 * math.pi * turns, abs=1e-12)
+
+
+@pytest.mark.parametrize("apart", [1e-1, 1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("start", [0.35, 0.52, 0.68, 0.86])
+def test_two_dead_points_that_nearly_meet_are_both_seen(apart: float, start: float) -> None:
+    # t = x³ - d x on the circle x² + y² = 1 turns back at x = ±1 and, twice, at x = ±√(d/3)
+    d = 3.0 * (apart / 2.0) ** 2
+    value = start**3 - d * start
+    mechanism = lw.plain_equations(
+        equations={"1": f"x^3 - ({d!r})*x = t", "2": "x^2 + y^2 = 1"},
+        guess={"x": start, "y": math.sqrt(1.0 - start**2), "t": value},
+        inputs=lw.Input(variable="t", start=value, stop=value + 1, step=0.5),
+    )
+    _, found = circuit_of(mechanism)
+    assert found.curve.end is CircuitEnd.CLOSED
+    places = sorted(float(turn.v[0]) for turn in found.turns)
+    half = apart / 2.0
+    assert places == pytest.approx([-1, -half, -half, half, half, 1], abs=1e-4 * apart)
+    assert all(turn.located for turn in found.turns)
 
 
 # ------------------------------------------------------------------ other curves

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
@@ -18,7 +17,6 @@ from linkwork.results.motion import Limit, LimitKind, Motion, Series
 
 __all__ = ["failure_line", "limit_text", "motion_lines"]
 
-_SAME = 1e-11  # of a turn: rounding
 _MOST_RUNS = 4  # stretches of failed rows that are named
 
 
@@ -117,31 +115,15 @@ def _limits(motion: Motion) -> Iterator[tuple[str, str]]:
     """Dead points and other ends of the branch, one to a line."""
     name, _ = _lead(motion)
     unit = motion.input_units[name]
-    named = [
-        replace(limit, input=_as_in_table(motion, limit.input, limit.kind.word))
-        for limit in motion.limits
-    ]
-    # two ends of a branch may be one place, a whole turn apart
-    yield from dict.fromkeys((limit.kind.word, limit_text(limit, name, unit)) for limit in named)
-    for limit_of in motion.output_limits:
-        row = f"{limit_of.kind} of {limit_of.name}"
-        extreme = replace(limit_of, input=_as_in_table(motion, limit_of.input, row))
+    # two ends of a branch may be one place
+    told = ((limit.kind.word, limit_text(limit, name, unit)) for limit in motion.limits)
+    yield from dict.fromkeys(told)
+    for extreme in motion.output_limits:
         value = f"{extreme.value:.10g} {_unit_of(motion, extreme.name)}".rstrip()
         text = f"{extreme.name} = {value} at {name} = {extreme.input:.12g} {unit}".rstrip()
         yield extreme.kind, text
     if motion.circuit is not None:
         yield "circuit", motion.circuit.value
-
-
-def _as_in_table(motion: Motion, value: float, row: str) -> float:
-    """The input of a limit as its row of the table has it, which may be whole turns away."""
-    name, inputs = _lead(motion)
-    turn = motion.units.angle.turn
-    if motion.input_units[name] != motion.units.angle.value:
-        return value
-    away = (inputs[np.array(motion.limit) == row] - value) / turn
-    same = np.round(away[np.abs(away - np.round(away)) < _SAME])
-    return value + float(same[0]) * turn if len(same) and not (same == 0.0).any() else value
 
 
 def _unit_of(motion: Motion, name: str) -> str:

@@ -39,6 +39,7 @@ class LeadTable:
         self.table = _locked(table, path, parameter)
         self.scale = self.table.variable_scale
         self.turns = self.table.turns
+        self.repeats_after = self.table.repeats_after
         self._splitter = TableSplitter(self.table)
         self._pattern = self.table.pattern()
         self._leads: dict[int, Led | None] = {}

@@ -54,3 +54,7 @@ class FormulaRow:
     def second(self, v: Array, d: Array) -> Array:
         """Second derivative along d, (B,)."""
         return self._jet(v, d).d2
+
+    def repeats_after(self, turns: Array) -> bool:
+        """Of a formula that whole turns (k,) do not touch: more is not known of it."""
+        return not turns.any()

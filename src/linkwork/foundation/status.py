@@ -28,6 +28,10 @@ class Status(Enum):
         "this branch does not reach the input value: "
         "the motion ends at the limit reported, ask for values before it"
     )
+    OUT_OF_CIRCUIT = (
+        "this circuit does not reach the input value on any of its branches: "
+        "the motion turns back at the limits reported, ask for values between them"
+    )
     CHANGE_POINT = (
         "the motion reaches a change point, where two branches cross, before this input value: "
         "ask for values before it, or start from a guess beyond it"

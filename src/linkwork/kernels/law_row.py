@@ -9,9 +9,11 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.kernels.piecewise import Piecewise
 
-__all__ = ["LawRow"]
+__all__ = ["TURN_ROUNDING", "LawRow"]
 
 _UNIT = np.finfo(float).eps / 2
+_TURN = 2.0 * np.pi
+TURN_ROUNDING = 8.0 * _UNIT  # a third is no float, but three of them are one turn
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,6 +56,15 @@ class LawRow:
         turned = d[:, list(self.variables)] @ self.inner
         second: Array = -self.law.jet(self._argument(v))[2] * turned**2
         return second
+
+    def repeats_after(self, turns: Array) -> bool:
+        """Whether ``variables`` (k,) moved by so many whole turns satisfy the same equation."""
+        straight, bulk = self.weights @ turns, np.abs(self.weights) @ np.abs(turns)
+        inner, size = self.inner @ turns, np.abs(self.inner) @ np.abs(turns)
+        if self.law.periodic:
+            unit = _TURN / self.law.period
+            inner, size = inner * unit - np.round(inner * unit), size * unit
+        return bool(abs(straight) <= TURN_ROUNDING * bulk and abs(inner) <= TURN_ROUNDING * size)
 
     @property
     def bend(self) -> float:

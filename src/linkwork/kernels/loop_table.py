@@ -14,7 +14,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.kernels.curvature import Curvature, PhaseGroups
-from linkwork.kernels.law_row import LawRow
+from linkwork.kernels.law_row import TURN_ROUNDING, LawRow
 from linkwork.kernels.phasor_rows import PhasorRows
 
 __all__ = ["FunctionRow", "LinearRows", "LoopTable", "TableSplitter"]
@@ -35,6 +35,9 @@ class FunctionRow(Protocol):
 
     def second(self, v: Array, d: Array) -> Array:
         """Second derivative along d, (B,)."""
+
+    def repeats_after(self, turns: Array) -> bool:
+        """Whether ``variables`` (k,) moved by so many whole turns are known to satisfy the same."""
 
 
 _UNIT = np.finfo(float).eps / 2
@@ -137,6 +140,25 @@ class LoopTable:
             parts.append(np.zeros((len(v), len(self.linear.constant))))
             parts += [row.second(v, d)[:, None] for row in self.functions]
         return np.concatenate(parts, axis=1)
+
+    def repeats_after(self, turns: Array) -> bool:
+        """Whether variables (N,) moved by so many whole turns each satisfy the same equations.
+
+        Not so for a phase that they change by a fraction of a turn, nor for a linear row that they
+        change at all.
+        """
+        rows = self.loops
+        each = rows.phase_weight * turns[rows.phase_variable]
+        phase, size = (
+            np.bincount(rows.phase_term, part, minlength=len(rows.row))
+            for part in (each, np.abs(each))
+        )
+        moved, bulk = self._linear_matrix @ turns, np.abs(self._linear_matrix) @ np.abs(turns)
+        return bool(
+            (np.abs(phase - np.round(phase)) <= TURN_ROUNDING * size).all()
+            and (np.abs(moved) <= TURN_ROUNDING * bulk).all()
+            and all(row.repeats_after(turns[list(row.variables)]) for row in self.functions)
+        )
 
     @property
     def bends_boundedly(self) -> bool:

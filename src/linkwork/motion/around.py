@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.motion.branch_rows import Asked, BranchRows, Report, rows_of_branch
@@ -39,11 +39,27 @@ class FurtherBranch:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Around:
-    """The further branches of the start's circuit, its dead points, and how it ends."""
+    """The further branches of the start's circuit, its dead points, and how it ends.
+
+    ``windows``: smallest and largest value of t on every branch, the first one among them.
+    """
 
     branches: tuple[FurtherBranch, ...]
     dead_points: tuple[BranchEnd, ...]
+    windows: tuple[tuple[float, float], ...]
     end: CircuitEnd
+
+    def leaves_out(self, t: Array, free: bool) -> BoolArray:
+        """Which values of t (B,) no branch of a closed circuit comes by, (B,).
+
+        ``free``: whether a value whole turns away will do.
+        """
+        missed = np.full(len(t), self.end.closed)
+        for low, high in self.windows:
+            turns = np.ceil((low - t) / FULL_TURN) if free else 0.0
+            here = t + turns * FULL_TURN
+            missed &= (here < low) | (here > high)
+        return missed
 
 
 def further_branches(
@@ -57,12 +73,8 @@ def further_branches(
     walks = [traced(leads, start, 1.0, certify)]
     if not walks[0].curve.end.closed:
         walks.append(traced(leads, start, -1.0, certify))
-    pieces = [
-        (walk, branch)
-        for walk in walks
-        if walk.curve.legs
-        for branch in branches_of(leads, walk)[1:]
-    ]
+    ways = [(walk, branches_of(leads, walk)) for walk in walks if walk.curve.legs]
+    pieces = [(walk, branch) for walk, branches in ways for branch in branches[1:]]
     found = []
     for number, (walk, branch) in enumerate(pieces, start=2):
         rows = _rows(drive, walk, branch, asked, report, certify)
@@ -75,6 +87,7 @@ def further_branches(
             for walk in walks
             for turn in walk.turns
         ),
+        windows=tuple(branch.range(leads.parameter) for _, branches in ways for branch in branches),
         end=_how_it_ends(walks),
     )
 

@@ -11,14 +11,16 @@ from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.names import canonical, spelled
 from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
+from linkwork.motion.limits import BranchEnd
 from linkwork.motion.model import Model
 from linkwork.motion.reading import Named, named_series
 from linkwork.numerics.track import Track, rows_on_track
 from linkwork.results.motion import OutputLimit, Series
 
-__all__ = ["check_quantities", "output_limits"]
+__all__ = ["check_quantities", "output_limit_at", "output_limits"]
 
 _UNIT = np.finfo(float).eps
+_AT_ONCE = 1e-12  # of the leader: a quantity and the input that turn back so near turn back at once
 
 
 def check_quantities(model: Model, names: Sequence[str]) -> None:
@@ -90,6 +92,33 @@ def output_limits(drive: Drive, track: Track, name: str) -> list[tuple[float, Ou
         )
         found.append((here, limit))
     return found
+
+
+def output_limit_at(drive: Drive, end: BranchEnd, name: str) -> OutputLimit | None:
+    """A quantity's extreme at a dead point, if it stands still there together with the input.
+
+    The quantity's derivative by the input does not vanish there; that by the variable that leads
+    through the dead point does.
+    """
+    if end.led is None or end.node is None:
+        return None
+    led, node, model = end.led, end.node, drive.model
+    v, first, second = (led.whole(x)[None, :] for x in (node.v, node.first, node.second))
+    inputs = np.zeros((1, len(model.equations.inputs)))
+    series = _series(named_series(model, v, first, second, inputs, np.ones(1, dtype=bool)), name)
+    rate, bend = float(series.first[0]), float(series.second[0])
+    noise = 8.0 * _UNIT * node.condition * float(np.abs(series.first[0]) + np.abs(bend))
+    away = (abs(rate) + noise) / abs(bend) if bend else np.inf
+    if not away <= _AT_ONCE * led.path.size * max(1.0, node.condition):
+        return None
+    return OutputLimit(
+        name=name,
+        kind="maximum" if bend < 0.0 else "minimum",
+        input=end.limit.input,
+        value=float(series.value[0]),
+        bracket=end.limit.bracket,
+        located=end.limit.located,
+    )
 
 
 class _Search:

@@ -47,7 +47,8 @@ class BranchEnd:
 
     ``side``: +1 at the upper end, -1 at the lower. ``t``: of the path. ``v`` (N,): the position.
     ``first`` (N,): derivatives there, NaN where they do not exist. ``crossing``: if branches cross
-    there. ``proved``: the position, and that the branch leads to it; ``radius``, ``unique``.
+    there. ``led``, ``node``: a dead point as another leader sees it. ``radius``, ``unique``: of
+    its proof.
     """
 
     side: float
@@ -56,9 +57,18 @@ class BranchEnd:
     v: Array | None = None
     first: Array | None = None
     crossing: ChangePoint | None = None
+    led: Led | None = None
+    node: Node | None = None
     certification: Certification = Certification.NOT_ASKED
     radius: float = np.nan
     unique: float = np.nan
+
+    def named(self, value: float) -> BranchEnd:
+        """The end with its limit at the input value of its row in a table, whole turns away."""
+        low, high = self.limit.bracket
+        shift = value - self.limit.input
+        limit = replace(self.limit, input=value, bracket=(low + shift, high + shift))
+        return replace(self, limit=limit) if shift else self
 
     def demoted(self, standing: Certification) -> BranchEnd:
         """The end with what the way to its branch is worth, if it is proved on it."""
@@ -125,6 +135,8 @@ def end_at_dead_point(
         t=turn.t,
         v=turn.v,
         first=np.full(len(turn.v), np.nan),
+        led=led,
+        node=turn.node,
     )
     if not certify or led is None:
         return found

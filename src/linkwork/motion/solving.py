@@ -89,6 +89,7 @@ def solve(
         if isinstance(reached, following.OutOfReach):
             position = _failed(model, target, reached.status, reached.failure, start)
         else:
+            reached = replace(reached, iterations=start.iterations + reached.iterations)
             position = _position(model, target, reached, start)
     if throw and not position.status.ok:
         raise NotConvergedError(position.message)

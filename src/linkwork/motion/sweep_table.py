@@ -72,12 +72,30 @@ class SweepTable:
         inside = [k for k in turns if low - slack <= here + k * FULL_TURN <= high + slack]
         return (inside or turns or [0])[0]
 
-    def put_end(self, end: BranchEnd, branch: str) -> None:
-        """A row of its own for the end of a branch, if its place lies in the table."""
+    def put_end(self, end: BranchEnd, branch: str) -> BranchEnd:
+        """A row of its own for the end of a branch, if its place lies in the table.
+
+        Returned is the end with its limit named as that row is.
+        """
         self._ends.append((end, branch))
+        here = self._place_of(end)
+        if here is not None:
+            self._put_at(end, branch, here)
+        return self.named(end)
+
+    def named(self, end: BranchEnd) -> BranchEnd:
+        """An end with its limit named in the range of the table, if it has a place there."""
+        here = self._place_of(end)
+        if here is None:
+            return end
+        return end.named(float(self._inputs(end, here)[0, self.drive.lead]))
+
+    def _place_of(self, end: BranchEnd) -> float | None:
+        """Where an end belongs in the table: where the table goes on on the branch's side of it."""
+        low, high = self.span
         places = self.places_of(end.t)
-        if places:
-            self._put_at(end, branch, min(places, key=lambda here: abs(here - end.t)))
+        beside = [here for here in places if (here > low if end.side > 0 else here < high)]
+        return min(beside or places, key=lambda here: abs(here - end.t), default=None)
 
     def _put_at(self, end: BranchEnd, branch: str, here: float) -> None:
         if end.v is not None and end.first is not None:

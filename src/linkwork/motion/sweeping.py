@@ -17,7 +17,7 @@ from linkwork.motion.around import further_branches
 from linkwork.motion.branch_rows import Asked, BranchRows, Report, rows_of_branch
 from linkwork.motion.crossing import beyond_change_point
 from linkwork.motion.drive import Drive
-from linkwork.motion.extremes import check_quantities, output_limits
+from linkwork.motion.extremes import check_quantities, output_limit_at, output_limits
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
@@ -27,7 +27,7 @@ from linkwork.motion.rows import SolvedRows
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.sweep_table import SweepTable
 from linkwork.motion.tracking import track_to
-from linkwork.numerics.leaders import same_position
+from linkwork.numerics.leaders import coincide, whole_turns
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.track import InputPath, Node, Track, follow, node_at
 from linkwork.results.motion import Limit, Motion, OutputLimit
@@ -38,6 +38,7 @@ _ENTRIES = (
     24  # rows, from the nearest on, at which a table of several inputs is tried to be entered
 )
 _MOST_CROSSINGS = 64
+_ROUNDING = 1e-14  # of whole turns, which are no floats
 _SAME = 1e-6  # of the leading input: extremes nearer to each other are one
 
 
@@ -144,9 +145,8 @@ class _Sweep:
         below: list[Limit] = []
         above: list[Limit] = []
         for end in found.ends:
-            told = end.demoted(standing)
+            told = table.put_end(end.demoted(standing), self.model.branch)
             self.ends.append(told)
-            table.put_end(told, self.model.branch)
             passed = self._cross(first, told, policy)
             (below if end.side < 0 else above).extend(passed)
         self.limits = [*below[::-1], *above]
@@ -197,8 +197,8 @@ class _Sweep:
             ahead = [other for other in found.ends if other.side == end.side]
             if not ahead:
                 return told
-            end = ahead[0].demoted(Certification.BRANCH_CHOSEN)
-            table.put_end(end, self.model.circuit)
+            chosen = ahead[0].demoted(Certification.BRANCH_CHOSEN)
+            end = table.put_end(chosen, self.model.circuit)
         return [*told, end.limit]
 
     def go_around(self, asked: Asked) -> None:
@@ -209,20 +209,37 @@ class _Sweep:
             anchor = min(track.nodes, key=self._steepness)
         around = further_branches(self.drive, anchor.v, asked, self.report, self.certify)
         self.circuit = around.end
+        placed: list[BranchEnd] = []
         for branch in around.branches:
             rows = branch.found.rows
             table = SweepTable(self.drive, branch.asked, rows, branch.window, _span(asked.t), False)
             self.tables.append(table)
             self._told(table, branch.found, branch.name, branch.standing, branch.found.here)
-            for end in branch.ends:
-                table.put_end(end, branch.name)
-        known = [end.v for end in self.ends if end.v is not None]
-        self.limits += [
-            end.limit
+            placed += [table.put_end(end, branch.name) for end in branch.ends]
+        table = self.tables[0]
+        fresh = [
+            next((known for known in placed if self._is_same(end, known)), table.named(end))
             for end in around.dead_points
-            if end.v is not None
-            and not any(same_position(self.drive.leads, end.v, v) for v in known)
+            if not any(self._is_same(end, known) for known in self.ends)
         ]
+        self.ends += fresh
+        self.limits += [end.limit for end in fresh]
+        beyond = table.rows.status == Status.OUT_OF_REACH.code
+        beyond &= around.leaves_out(asked.t, self.drive.free)
+        table.rows.status[beyond] = Status.OUT_OF_CIRCUIT.code
+
+    def _is_same(self, end: BranchEnd, known: BranchEnd) -> bool:
+        """Whether two ends are one place: near each other, at one value as far as it is known.
+
+        Two dead points may lie close together; what tells them apart is how well they are located.
+        """
+        leads = self.drive.leads
+        if end.v is None or known.v is None or not coincide(leads, end.v, known.v):
+            return False
+        turns = float(whole_turns(leads, known.v, end.v)[leads.parameter])
+        gap = abs(end.t - known.t - turns * FULL_TURN) / self.drive.unit
+        width = sum(limit.bracket[1] - limit.bracket[0] for limit in (end.limit, known.limit))
+        return gap <= width + _ROUNDING * max(1.0, abs(end.limit.input), abs(known.limit.input))
 
     def _steepness(self, node: Node) -> float:
         """Large near dead points, where a single equation has no bad condition, and crossings."""
@@ -230,26 +247,29 @@ class _Sweep:
         return node.condition * float(np.abs(node.first / weights).max())
 
     def locate_extremes(self, name: str) -> None:
-        """Rows at which a quantity is largest or smallest, on every branch."""
+        """Rows at which a quantity is largest or smallest, on every branch; and at dead points."""
+        lead = self.drive.lead
         for branch in self.branches:
             if not branch.own.any():
                 continue
             table = branch.table
             places: list[float] = []
-            for t, limit in output_limits(self.drive, self._whole_track(branch), name):
+            for t, extreme in output_limits(self.drive, self._whole_track(branch), name):
                 mine = [
                     here
                     for here in table.places_of(t)
                     if table.is_among(here, branch.own)
                     and not any(abs(here - other) < _SAME for other in places)
                 ]
-                if mine:
-                    self.output_limits.append(limit)
                 for here in mine:
-                    places.append(here)
                     row = self._branch_row(branch, t, here)
-                    row.branch[0], row.limit[0] = branch.name, f"{limit.kind} of {name}"
+                    row.branch[0], row.limit[0] = branch.name, f"{extreme.kind} of {name}"
+                    if here == mine[0]:
+                        self.output_limits.append(extreme.named(float(row.inputs[0, lead])))
+                    places.append(here)
                     table.put(row, here)
+        at_ends = [output_limit_at(self.drive, end, name) for end in self.ends]
+        self.output_limits += dict.fromkeys(extreme for extreme in at_ends if extreme is not None)
 
     def _whole_track(self, branch: _Branch) -> Track:
         """The branch's track, of a further branch of the circuit up to its dead points."""

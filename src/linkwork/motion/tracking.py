@@ -13,7 +13,7 @@ from linkwork.motion.model import Model
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.track import InputPath, Node, Track, TrackOptions, follow
 
-__all__ = ["leading_scale", "track_to", "turns_freely", "unchanged_by"]
+__all__ = ["leading_scale", "track_to", "turns_freely"]
 
 
 def leading_scale(model: Model, lead: int) -> float:
@@ -48,21 +48,7 @@ def turns_freely(model: Model) -> bool:
             return False
         turns[whole[0]] = -left / weights[whole[0]]
         given[weights != 0.0] = True
-    return unchanged_by(table, turns)
-
-
-def unchanged_by(table: LoopTable, turns: Array) -> bool:
-    """Whether the equations stay the same if so many turns (N,) are added to the variables."""
-    phases = np.zeros((table.variables, len(table.loops.row)))
-    loops = table.loops
-    np.add.at(phases, (loops.phase_variable, loops.phase_term), loops.phase_weight)
-    moved = list(turns @ phases)
-    still = [float(weights @ turns) for weights in _straight_parts(table)]
-    for row in table.functions:
-        if isinstance(row, LawRow):
-            own = moved if row.law.periodic else still
-            own.append(float(row.inner @ turns[list(row.variables)]))
-    return not any(still) and all(float(turn).is_integer() for turn in moved)
+    return table.repeats_after(turns)
 
 
 def _straight_parts(table: LoopTable) -> Iterator[Array]:

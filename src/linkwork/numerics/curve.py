@@ -25,8 +25,9 @@ from linkwork.numerics.track import BOLD, Node, TrackOptions, follow
 __all__ = ["Curve", "CurveOptions", "Leg", "trace"]
 
 _CONVERGED = Status.CONVERGED.code
-_SAME = 1e-6  # weighted distance below which two positions at one input can be the same
+_SAME = 1e-6  # weighted: a position is moved no further when its parameter is made exact
 _ON_PLANE = 1e-11  # a value of the parameter this near, relative, is reached
+_UNIT = np.finfo(float).eps
 _LEG = 8.0  # natural sizes of the leader, after which a leg ends if nothing else ends it
 
 
@@ -129,6 +130,8 @@ class _Tracer:
         self.crossing: ChangePoint | None = None
         self.legs: list[Leg] = []
         self.passes: list[tuple[int, Array]] = []
+        # a value to be passed on which the curve stands, so that it is not passed again at once
+        self.leaving: float | None = float(start[leads.parameter])
         own = self._own()
         if own is None:
             raise ValueError("the parameter of a curve must determine the position")
@@ -201,7 +204,8 @@ class _Tracer:
         def done(before: Node, after: Node) -> bool:
             speed = np.abs(after.first) / weights
             if not own:
-                passed.extend(self._passes(led, before, after))
+                leaving = self.leaving if before is node else None
+                passed.extend(self._passes(led, before, after, leaving))
                 if passed or speed[place] * opt.slow >= speed.max():
                     return True
             if bool((np.abs(after.v / weights)[~self.leads.turns[led.order]] > opt.far).any()):
@@ -213,16 +217,19 @@ class _Tracer:
             size = max(size, abs(node.t) / _LEG)
         goal = node.t + sign * _LEG * size
         if own:
-            goal = self._next_plane(node.t, sign)
+            goal = self._next_plane(node.t, sign, self.leaving)
         path = replace(led.path, size=size)
         nodes, end = follow(led.solver, path, node, goal, opt.track, watch=done)
         chain = [node, *nodes]
+        if nodes:
+            self.leaving = None
         if passed:
             crossing = self._crossing(led, passed[0])
             if crossing is not None:
-                chain[-1] = crossing
+                chain[-1], self.leaving = crossing, passed[0].value
                 self.passes.append((len(self.legs), led.whole(crossing.v)))
         elif own and nodes and nodes[-1].t == goal:
+            self.leaving = goal
             self.passes.append((len(self.legs), led.whole(nodes[-1].v)))
         return Leg(led=led, nodes=tuple(chain)), end
 
@@ -230,63 +237,71 @@ class _Tracer:
     def _period(self) -> float:
         return 2.0 * np.pi if self.leads.turns[self.leads.parameter] else np.inf
 
-    def _next_plane(self, t: float, sign: float) -> float:
-        """The next value of the parameter that equals the starting one, whole turns aside."""
+    def _next_plane(self, t: float, sign: float, leaving: float | None) -> float:
+        """The next value of the parameter that equals the starting one, whole turns aside.
+
+        ``leaving``: one of them that does not count.
+        """
         home, period = float(self.start[self.leads.parameter]), self._period
         if not np.isfinite(period):
-            if (home - t) * sign > 0.0:
+            if (home - t) * sign > 0.0 and home != leaving:
                 return home
             return t + sign * 1e3 * float(self.leads.scale[self.leads.parameter])
         turns = (t - home) / period
-        nearest = round(turns)
-        if abs(turns - nearest) < 1e-12:
-            turns = nearest
-        following = math.floor(turns) + 1 if sign > 0 else math.ceil(turns) - 1
-        return home + following * period
+        number = math.floor(turns) + 1 if sign > 0 else math.ceil(turns) - 1
+        while (home + number * period - t) * sign <= 0.0 or home + number * period == leaving:
+            number += int(sign)
+        return home + number * period
 
-    def _passes(self, led: Led, before: Node, after: Node) -> list[_Pass]:
+    def _passes(self, led: Led, before: Node, after: Node, leaving: float | None) -> list[_Pass]:
         """The first pass of the starting value (whole turns aside) between two nodes, if any."""
         place = led.place(self.leads.parameter)
         for low, high in itertools.pairwise(one_way(led, place, before, after)):
-            value = self._plane_between(float(low.v[place]), float(high.v[place]))
-            if value is not None:
-                return [_Pass(value=value, low=low, high=high)]
+            t0, t1 = float(low.v[place]), float(high.v[place])
+            if t0 != t1:
+                value = self._next_plane(t0, math.copysign(1.0, t1 - t0), leaving)
+                if (value - t0) * (value - t1) <= 0.0:
+                    return [_Pass(value=value, low=low, high=high)]
+            leaving = None
         return []
 
-    def _plane_between(self, t0: float, t1: float) -> float | None:
-        if t0 == t1:
-            return None
-        following = self._next_plane(t0, math.copysign(1.0, t1 - t0))
-        return following if (following - t0) * (following - t1) <= 0.0 else None
-
     def _crossing(self, led: Led, passed: _Pass) -> Node | None:
-        """The position in a piece of a step at which the parameter has the value.
+        """The position in a piece of a step at which the parameter has the value, to rounding.
 
         The piece is narrowed down at true positions: over a long step interpolation is not good
         enough close to a dead point, where the value is passed twice.
         """
         place = led.place(self.leads.parameter)
         value, low, high = passed.value, passed.low, passed.high
+        best: Node | None = None
+        off = _ON_PLANE * max(1.0, abs(value))
         for _ in range(60):
             here = node_between(led, low, high, share_at(place, low, high, value))
-            if here is None:
-                return None
-            if abs(here.v[place] - value) <= _ON_PLANE * max(1.0, abs(value)):
-                return self._polished(led, here, value)
+            if here is None or here.t in (low.t, high.t):
+                break
+            gap = abs(float(here.v[place]) - value)
+            if gap <= off:
+                best, off = here, gap
+            if gap <= 2.0 * _UNIT * max(1.0, abs(value)):
+                break
             if (here.v[place] < value) == (low.v[place] < value):
                 low = here
             else:
                 high = here
-        return None
+        if best is None and abs(float(high.v[place]) - value) <= off:
+            best = high
+        return None if best is None else self._polished(led, best, value)
 
     def _polished(self, led: Led, here: Node, value: float) -> Node:
         """The position with exactly the value, if the parameter determines it well enough."""
         own = self.own
         near = led.whole(here.v)
+        side = own.node(near).orientation
         near[self.leads.parameter] = value
         found = own.solver.solve(near[own.order][None, :])
         v = own.whole(found.v[0])
         same = np.abs((v - near) / self.leads.scale).max() < _SAME
+        same = same and np.array_equal(own.node(v).orientation, side)
         return led.node(v) if found.status[0] == _CONVERGED and same else here
 
     def _ending(self) -> CircuitEnd | None:

@@ -16,13 +16,13 @@ from linkwork.numerics.track import Node, node_at
 __all__ = ["divided", "node_between", "one_way", "share_at", "sign_change"]
 
 _CONVERGED = Status.CONVERGED.code
-_STILL = 1e-11  # relative: a variable that moves less over a step rests
 _UNIT = np.finfo(float).eps
-_DIVISIONS = 12  # halvings of a step in which a variable turns back several times
-_CUBIC = 1e-3  # relative error of a cubic that is good enough
+_STILL = 8.0 * _UNIT  # relative: a variable that moves less over a step rests, to rounding
+_DIVISIONS = 24  # halvings of a step in which a variable turns back several times
+_SAFE = 4.0  # the error of a cubic is at most so many times that halfway
 _SEARCH = 80  # positions solved to find a sign change
 _EDGE = 1e-3  # of a bracket: nearer to its ends nothing is tried
-_SHARES = np.linspace(0.0625, 0.9375, 15)
+_SHARES = np.linspace(0.0, 1.0, 65)
 
 
 def node_between(led: Led, low: Node, high: Node, s: float, sharp: bool = False) -> Node | None:
@@ -105,9 +105,9 @@ def sign_change(
 def divided(led: Led, place: int, a: Node, b: Node, depth: int = _DIVISIONS) -> list[Node]:
     """A step, divided so finely that a variable turns back at most once in each piece.
 
-    Halved until the cubic through the variable's rates at both ends meets the rate halfway; then
-    divided where that cubic is zero more than once. What turns back and forth within less than the
-    cubic's error is not seen.
+    The cubic through the variable's rates and their derivatives at both ends is compared with the
+    rate halfway. The step is halved until that cubic, give or take its error, is zero at most once;
+    what turns back and forth within the rounding of the rate is not seen.
     """
     h = b.t - a.t
     ends = (a.first[place], a.second[place], b.first[place], b.second[place])
@@ -116,21 +116,56 @@ def divided(led: Led, place: int, a: Node, b: Node, depth: int = _DIVISIONS) -> 
         return [a, b]
     size = max(abs(ends[0]), abs(ends[2]), abs(middle.first[place]))
     if size * abs(h) <= _STILL * max(1.0, abs(float(a.v[place]))):
-        return [a, b]  # it rests, to rounding
-    guesses = _hermite(_SHARES, h, *ends)
+        return [a, b]
     off = abs(float(middle.first[place]) - float(_hermite(0.5, h, *ends)))
-    signs = np.sign([ends[0], *guesses, ends[2]])
-    least = float(np.abs([ends[0], *guesses, ends[2]]).min())
-    once = np.count_nonzero(signs[1:] != signs[:-1]) <= 1
-    if once and (4.0 * off < least or off <= _CUBIC * size):
+    if _zero_once(_SAFE * off + 8.0 * _UNIT * size, h, *ends):
         return [a, b]
     left = divided(led, place, a, middle, depth - 1)
     return [*left, *divided(led, place, middle, b, depth - 1)[1:]]
 
 
-def _hermite(s: float | Array, h: float, v0: Array, d0: Array, v1: Array, d1: Array) -> Array:
+def _zero_once(error: float, h: float, v0: float, d0: float, v1: float, d1: float) -> bool:
+    """Whether any function that near to a cubic, as cubics through both ends are, has one zero.
+
+    The cubic's error is about e · 16 s²(1 - s)², its slope's at most 3.1 e: where the function may
+    be zero it must not level off.
+    """
+    value = _hermite(_SHARES, h, v0, d0, v1, d1)
+    slope = _hermite_slope(_SHARES, h, v0, d0, v1, d1)
+    space = 0.5 * (_SHARES[1] - _SHARES[0])  # a cubic does not change more between two samples
+    steepest = float(np.abs(slope).max()) + space * _steepest_change(h, v0, d0, v1, d1)
+    near = np.abs(value) <= error + space * steepest
+    if not near.any():
+        return True
+    least = 3.1 * error + space * _steepest_change(h, v0, d0, v1, d1)
+    rising, falling = slope[near] > least, slope[near] < -least
+    return bool(rising.all() or falling.all())
+
+
+def _hermite(
+    s: float | Array,
+    h: float,
+    v0: Array | float,
+    d0: Array | float,
+    v1: Array | float,
+    d1: Array | float,
+) -> Array:
     """The cubic through both ends of a step, at the fraction s of it."""
     rise = v1 - v0
     bend = 3.0 * rise - h * (2.0 * d0 + d1) + s * (h * (d0 + d1) - 2.0 * rise)
-    value: Array = v0 + s * (h * d0 + s * bend)
-    return value
+    return np.asarray(v0 + s * (h * d0 + s * bend))
+
+
+def _hermite_slope(s: Array, h: float, v0: float, d0: float, v1: float, d1: float) -> Array:
+    """Its derivative by s."""
+    rise = v1 - v0
+    square, cubic = 3.0 * rise - h * (2.0 * d0 + d1), h * (d0 + d1) - 2.0 * rise
+    slope: Array = h * d0 + s * (2.0 * square + s * (3.0 * cubic))
+    return slope
+
+
+def _steepest_change(h: float, v0: float, d0: float, v1: float, d1: float) -> float:
+    """The largest second derivative of the cubic by s, in size."""
+    rise = v1 - v0
+    square, cubic = 3.0 * rise - h * (2.0 * d0 + d1), h * (d0 + d1) - 2.0 * rise
+    return max(abs(2.0 * square), abs(2.0 * square + 6.0 * cubic))

@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.numerics.curve import Curve, Leg
-from linkwork.numerics.leaders import Leads, Led, apart
+from linkwork.numerics.leaders import Leads, Led, apart, whole_turns
 from linkwork.numerics.proof import prove, reach
 from linkwork.numerics.proven_path import Beads, ProvenPath, prove_path
 
@@ -40,7 +40,7 @@ def prove_curve(leads: Leads, curve: Curve) -> ProvenCurve:
     legs = np.zeros(len(curve.legs), dtype=bool)
     joints = np.zeros(max(len(curve.legs) - 1, 0), dtype=bool)
     steps = 0
-    if all(_provable(leg.led) for leg in curve.legs):
+    if all(leg.led.provable for leg in curve.legs):
         for k, leg in enumerate(curve.legs):
             proof = _proof_of(leg, max(_MOST_STEPS - steps, 0))
             legs[k] = proof.connected_to(0).all()
@@ -53,7 +53,7 @@ def prove_curve(leads: Leads, curve: Curve) -> ProvenCurve:
             joints[k] &= np.array_equal(last, following.v[0]) and _goes_on(leads, leg, following)
     own = leads.by(leads.parameter)
     closed = False
-    if curve.end.closed and own is not None and _provable(own):
+    if curve.end.closed and own is not None and own.provable:
         last = curve.legs[-1]
         first = curve.legs[0]
         closed = same_solution(own, first.led, first.v[0])
@@ -69,10 +69,6 @@ def _goes_on(leads: Leads, leg: Leg, following: Leg) -> bool:
         for part, place in ((leg, -1), (following, 0))
     )
     return bool(arrival @ departure > 0.0)
-
-
-def _provable(led: Led) -> bool:
-    return all(block.system.bends_boundedly for block in led.solver.blocks)
 
 
 def leg_is_proved(leg: Leg) -> bool:
@@ -113,6 +109,8 @@ def same_solution(one: Led, other: Led, v: Array) -> bool:
 
 def _meets(leads: Leads, own: Led, start: Array, end: Array) -> bool:
     """Whether two proved positions at one value of the parameter are one, whole turns aside."""
+    if not leads.repeats_after(whole_turns(leads, start, end)):
+        return False
     gap = apart(leads, start, end)
     # whole turns are no floats: what is left of them, and their rounding, may be off
     left = np.abs(gap) + 8.0 * _UNIT * np.maximum(np.abs(end), np.abs(start))

@@ -77,7 +77,8 @@ BOLD = TrackOptions(
 class Node:
     """A solved position on a track with its derivatives by t; ``v`` etc. are (N,).
 
-    ``condition``, ``nearness``: see :class:`Rates`.
+    ``condition``, ``nearness``: see :class:`Rates`. ``iterations``: of Newton-Raphson in the step
+    that arrived here.
     """
 
     t: float
@@ -87,6 +88,7 @@ class Node:
     orientation: StatusArray
     condition: float
     nearness: float
+    iterations: int = 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,7 +138,7 @@ def node_at(solver: BlockSolver, path: InputPath, t: float, v: Array) -> Node:
     return _node(t, v, rates)
 
 
-def _node(t: float, v: Array, rates: Rates) -> Node:
+def _node(t: float, v: Array, rates: Rates, iterations: int = 0) -> Node:
     return Node(
         t=t,
         v=v,
@@ -145,6 +147,7 @@ def _node(t: float, v: Array, rates: Rates) -> Node:
         orientation=rates.orientation[0],
         condition=float(rates.condition[0]),
         nearness=float(rates.nearness[0]),
+        iterations=iterations,
     )
 
 
@@ -271,7 +274,7 @@ def _step(
         return None, None
     if turn > 0:
         factor = min(factor, (0.5 * opt.rate_error / turn) ** (1.0 / 3.0))
-    return _node(t, found.v[0], rates), factor
+    return _node(t, found.v[0], rates, int(found.iterations[0])), factor
 
 
 def _kind_of_end(solver: BlockSolver, start: Node, here: Node, scale: float) -> Status:

@@ -25,7 +25,8 @@ __all__ = ["TurningPoint", "turn_beyond", "turning_points"]
 _CONVERGED = Status.CONVERGED.code
 _UNIT = np.finfo(float).eps
 _MOST_STEPS = 400  # to a dead point ahead: it is near, unless it is none
-_RESTING = 1e-7  # weighted rate below which, from node to node, the parameter does not move at all
+_RESTING = 1e-7  # weighted rate below which the parameter may not move at all,
+_LEVEL = 100.0  # nor does it if the rate's own rate is at most so many times that
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,9 +58,13 @@ def turning_points(leads: Leads, curve: Curve) -> Iterator[TurningPoint]:
         if leg.led.lead == leads.parameter:
             continue
         place = leg.led.place(leads.parameter)
-        resting = _RESTING * leads.scale[leads.parameter] / leads.scale[leg.led.lead]
+        still = _RESTING * leads.scale[leads.parameter] / leads.scale[leg.led.lead]
+        level = _LEVEL * still / leads.scale[leg.led.lead]
         for k, (a, b) in enumerate(itertools.pairwise(leg.nodes)):
-            if max(abs(a.first[place]), abs(b.first[place])) < resting:
+            if all(
+                abs(node.first[place]) < still and abs(node.second[place]) < level
+                for node in (a, b)
+            ):
                 continue
             chain = divided(leg.led, place, a, b)
             for low, high in itertools.pairwise(chain):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any
 
@@ -109,7 +109,7 @@ class Limit:
 
 @dataclass(frozen=True, kw_only=True)
 class OutputLimit:
-    """Where a quantity is largest or smallest while the input moves on.
+    """Where a quantity is largest or smallest on the way, dead points of the input among it.
 
     Parameters
     ----------
@@ -130,6 +130,12 @@ class OutputLimit:
     value: float
     bracket: tuple[float, float]
     located: bool
+
+    def named(self, value: float) -> OutputLimit:
+        """The same at another name of its input value, whole turns away."""
+        low, high = self.bracket
+        shift = value - self.input
+        return replace(self, input=value, bracket=(low + shift, high + shift))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

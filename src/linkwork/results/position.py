@@ -94,6 +94,8 @@ class Position:
         The same by time, if the input has a speed.
     residual : float
         Largest closure error divided by the longest link.
+    iterations : int
+        Of Newton-Raphson: at the guess, and at every step along the branch from there.
     condition : float
         Largest condition number (largest norm, weighted) of a block's Jacobian.
     redundant : Mapping[str, float]

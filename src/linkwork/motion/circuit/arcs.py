@@ -16,7 +16,7 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
 from linkwork.motion.circuit.branches import CurveBranch, Traced, branches_of, traced
 from linkwork.numerics.change_point import ChangePoint, Crossing
-from linkwork.numerics.leaders import Leads, Led, apart, fastest_leader, same_position
+from linkwork.numerics.leaders import Leads, Led, apart, coincide, fastest_leader, same_position
 
 __all__ = ["Arc", "Explorer", "positions_near"]
 
@@ -145,7 +145,7 @@ class Explorer:
         v = led.whole(found.v)
         directions = np.stack([led.whole(d) for d in found.directions])
         number = next(
-            (k for k, known in enumerate(self.crossings) if same_position(self.leads, known.v, v)),
+            (k for k, known in enumerate(self.crossings) if coincide(self.leads, known.v, v)),
             len(self.crossings),
         )
         if number == len(self.crossings):

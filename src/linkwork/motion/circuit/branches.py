@@ -37,9 +37,12 @@ class Traced:
 
 
 def traced(leads: Leads, start: Array, heading: float | Array, certify: bool) -> Traced:
-    """Trace a curve boldly; with care where the bold one cannot be proved."""
+    """Trace a curve boldly; with care where the bold one cannot be proved, or is not to be."""
     best: Traced | None = None
-    for care in (CurveOptions(), CurveOptions(track=TrackOptions())):
+    own = leads.by(leads.parameter)
+    proves = certify and own is not None and own.provable
+    careful = CurveOptions(track=TrackOptions())
+    for care in (CurveOptions(), careful) if proves else (careful,):
         curve = trace(leads, start, heading, care)
         if not curve.legs:
             return Traced(curve=curve, proof=None, turns=())
@@ -47,7 +50,7 @@ def traced(leads: Leads, start: Array, heading: float | Array, certify: bool) ->
         found = Traced(curve=curve, proof=proof, turns=tuple(turning_points(leads, curve)))
         if best is None or found.certified:
             best = found
-        if not certify or best.certified:
+        if best.certified:
             break
     assert best is not None
     return best

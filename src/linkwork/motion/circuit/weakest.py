@@ -10,7 +10,7 @@ from linkwork.equations.leading import LeadTable
 from linkwork.foundation.arrays import Array
 from linkwork.motion.circuit.branches import CurveBranch
 from linkwork.numerics.divided_steps import sign_change
-from linkwork.numerics.leaders import fastest_leader, same_position
+from linkwork.numerics.leaders import coincide, fastest_leader
 from linkwork.numerics.track import Node
 
 __all__ = ["weakest_place"]
@@ -56,7 +56,7 @@ def smallest_singular_values(leads: LeadTable, v: Array) -> Array:
 
 def _closed_up(leads: LeadTable, v: Array) -> Array:
     """Positions (K, N) along a curve; of a closed one with the second position again at the end."""
-    if len(v) > 2 and same_position(leads, v[0], v[-1]):
+    if len(v) > 2 and coincide(leads, v[0], v[-1]):
         return np.concatenate([v, v[1:2] + (v[-1] - v[0])])
     return v
 

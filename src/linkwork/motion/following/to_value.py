@@ -89,7 +89,7 @@ def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | Ou
         v=rows.v[0] if laps is None else rows.v[0] + laps.gain,
         status=Status.of_code(int(rows.status[0])),
         residual=float(rows.residual[0]),
-        iterations=int(rows.iterations[0]),
+        iterations=int(rows.iterations[0]) + sum(node.iterations for node in track.nodes),
         certificate=_certificate(model, place, rows, laps) if certify else Certificate(),
     )
 

@@ -10,8 +10,8 @@ import numpy as np
 from linkwork.equations.leading import LeadTable
 from linkwork.foundation.arrays import Array
 from linkwork.motion.model import Model
-from linkwork.motion.tracking import unchanged_by
 from linkwork.numerics.curve import CurveOptions, trace
+from linkwork.numerics.leaders import whole_turns
 from linkwork.numerics.proven_curve import prove_curve
 from linkwork.numerics.track import BOLD, InputPath
 
@@ -63,8 +63,8 @@ def laps_to(model: Model, v: Array, target: Array) -> Laps | None:
         return None
     gain = curve.legs[-1].v[-1] - v
     turns = round(float(gain[n]) / _TURN)
-    whole = np.where(leads.turns, np.round(gain / _TURN), 0.0)
-    if turns == 0 or not unchanged_by(model.compiled.table, whole):
+    whole = whole_turns(leads, v, curve.legs[-1].v[-1])
+    if turns == 0 or not leads.repeats_after(whole):
         return None
     gain = _TURN * whole
     laps = math.floor(abs(span) / (abs(turns) * unit))
