@@ -62,6 +62,12 @@ class BranchRows:
         """Which rows lie on the branch, (B,)."""
         return ~np.isnan(self.placed)
 
+    @property
+    def converged(self) -> BoolArray:
+        """Which of them were found, (B,)."""
+        converged: BoolArray = self.rows.status == Status.CONVERGED.code
+        return self.here & converged
+
 
 class Report:
     """Progress as a fraction: tracking, rows and proofs take about a third each."""

@@ -2,20 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
 
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.short_number import short_number
 from linkwork.foundation.status import Status
-from linkwork.motion.branch_rows import Asked
+from linkwork.motion.branch_rows import Asked, BranchRows
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.rows import SolvedRows
 
-__all__ = ["SweepTable"]
+__all__ = ["NamedEnd", "SweepTable"]
 
 _SAME_INPUT = 1e-11  # relative: a row asked for at a limit is that limit's row
+
+
+class _PlaceOfEnd(NamedTuple):
+    """Where an end may be in the table, and how far that is from where it was met."""
+
+    guessed: bool  # no row of its branch is beside it
+    away: float
+    t: float
+
+
+#: The end of a branch, and the branch's name.
+NamedEnd = tuple[BranchEnd, str]
 
 
 class SweepTable:
@@ -23,10 +38,11 @@ class SweepTable:
 
     Parameters
     ----------
-    window : (float, float)
-        Smallest and largest value of t that has a place in the table.
-    span : (float, float)
-        Smallest and largest value of t that the sweep was asked for.
+    found : BranchRows
+        The rows of the branch that the table is begun with.
+    windows : ((float, float), (float, float))
+        Smallest and largest value of t that has a place in the table, and those that the sweep was
+        asked for.
     free : bool
         Whether a row a whole turn away is the same position.
     """
@@ -35,16 +51,36 @@ class SweepTable:
         self,
         drive: Drive,
         asked: Asked,
-        rows: SolvedRows,
-        window: tuple[float, float],
-        span: tuple[float, float],
+        found: BranchRows,
+        windows: tuple[tuple[float, float], tuple[float, float]],
         free: bool,
     ) -> None:
-        self.drive, self.asked, self.rows = drive, asked, rows
-        self.window, self.span, self.free = window, span, free
-        self._ends: list[tuple[BranchEnd, str]] = []
+        self.drive, self.asked, self.rows = drive, asked, found.rows
+        self.window, self.span = windows
+        self.free = free
+        self._placed = found.placed.copy()
+        self._ends: list[NamedEnd] = []
         self._extra: list[SolvedRows] = []
         self._extra_t: list[float] = []
+
+    def not_straight(self, end: BranchEnd) -> IndexArray:
+        """Rows beyond the end of a branch that are not there, or only whole turns around."""
+        missing = self.rows.status != Status.CONVERGED.code
+        missing |= self._placed != self.asked.t
+        return np.flatnonzero(missing & (end.side * (self.asked.t - end.t) > 0.0))
+
+    def take(self, found: BranchRows, where: IndexArray) -> BoolArray:
+        """Take rows of another branch, asked for at the rows ``where``; which of all were taken.
+
+        Straight ahead goes before whole turns around, and of these the first one that is there.
+        """
+        straight = found.converged & (found.placed == self.asked.t[where])
+        put = straight | (self.rows.status[where] != Status.CONVERGED.code)
+        self.rows.put(where[put], found.rows.take(np.flatnonzero(put)))
+        self._placed[where[put]] = found.placed[put]
+        taken = np.zeros(len(self.rows), dtype=bool)
+        taken[where[put & found.converged]] = True
+        return taken
 
     def places_of(self, t: float) -> list[float]:
         """Where a value belongs in the table's range, whole turns apart too."""
@@ -72,34 +108,51 @@ class SweepTable:
         inside = [k for k in turns if low - slack <= here + k * FULL_TURN <= high + slack]
         return (inside or turns or [0])[0]
 
-    def put_end(self, end: BranchEnd, branch: str) -> BranchEnd:
-        """A row of its own for the end of a branch, if its place lies in the table.
+    def put_ends(self, ends: Sequence[NamedEnd]) -> list[BranchEnd]:
+        """A row of its own for every end of a branch whose place lies in the table.
 
-        Returned is the end with its limit named as that row is.
+        Returned are the ends with their limits named as those rows are.
         """
-        self._ends.append((end, branch))
-        here = self._place_of(end)
-        if here is not None:
-            self._put_at(end, branch, here)
-        return self.named(end)
+        self._ends += ends
+        placed = {k: places[0] for k, (end, _) in enumerate(ends) if (places := self._places(end))}
+        named = [end for end, _ in ends]
+        for k in sorted(placed, key=placed.__getitem__):
+            (end, branch), here = ends[k], placed[k].t
+            if self._put_at(end, branch, here):
+                named[k] = self._named(end, here)
+        return named
 
     def named(self, end: BranchEnd) -> BranchEnd:
         """An end with its limit named in the range of the table, if it has a place there."""
-        here = self._place_of(end)
-        if here is None:
-            return end
+        places = self._places(end)
+        return self._named(end, places[0].t) if places else end
+
+    def _named(self, end: BranchEnd, here: float) -> BranchEnd:
         return end.named(float(self._inputs(end, here)[0, self.drive.lead]))
 
-    def _place_of(self, end: BranchEnd) -> float | None:
-        """Where an end belongs in the table: where the table goes on on the branch's side of it."""
-        low, high = self.span
-        places = self.places_of(end.t)
-        beside = [here for here in places if (here > low if end.side > 0 else here < high)]
-        return min(beside or places, key=lambda here: abs(here - end.t), default=None)
+    def _places(self, end: BranchEnd) -> list[_PlaceOfEnd]:
+        """Where an end belongs in the table, best first.
 
-    def _put_at(self, end: BranchEnd, branch: str, here: float) -> None:
-        if end.v is not None and end.first is not None:
-            self.put(self._row_of(end, end.v, end.first, branch, here), here)
+        Whole turns away it does only if rows on the branch's side of it are there as many turns
+        away, or none is.
+        """
+        found = []
+        for here in self.places_of(end.t):
+            away = abs(here - end.t)
+            beside = np.flatnonzero(end.side * (here - self.asked.t) > self._slack(abs(here)))
+            if not len(beside):
+                found.append(_PlaceOfEnd(True, away, here))
+                continue
+            nearest = beside[np.abs(self.asked.t[beside] - here).argmin()]
+            gap = self.asked.t[nearest] - self._placed[nearest] - (here - end.t)
+            if not abs(gap) > 1.0:  # NaN is no row
+                found.append(_PlaceOfEnd(bool(np.isnan(gap)), away, here))
+        return sorted(found)
+
+    def _put_at(self, end: BranchEnd, branch: str, here: float) -> bool:
+        if end.v is None or end.first is None:
+            return True
+        return self.put(self._row_of(end, end.v, end.first, branch, here), here)
 
     def _row_of(
         self, end: BranchEnd, v: Array, first: Array, branch: str, here: float
@@ -114,26 +167,29 @@ class SweepTable:
         row.branch[0], row.limit[0] = branch, end.limit.kind.word
         return row
 
-    def put(self, row: SolvedRows, here: float) -> None:
-        """A row at a value of t: in the place of one that was asked for just there, or between."""
+    def put(self, row: SolvedRows, here: float) -> bool:
+        """A row at a value of t: in the place of one that was asked for just there, or between.
+
+        Whether it was put: where a limit is already nothing is.
+        """
         slack = self._slack(abs(here))
         if any(abs(t - here) <= slack for t in self._extra_t):
-            return
+            return False
         same = np.flatnonzero(np.abs(self.asked.t - here) <= slack)
-        for k in same:
-            if self.rows.limit[k]:
-                continue
+        fresh = [k for k in same if not self.rows.limit[k]]
+        for k in fresh:
             row.inputs[0] = self.rows.inputs[k]
             self.rows.put(np.array([k]), row)
         if not len(same):
             self._extra.append(row)
             self._extra_t.append(here)
+        return bool(fresh) or not len(same)
 
     def finished(self) -> tuple[SolvedRows, BoolArray]:
         """All rows in the table's order, and which of them were not asked for."""
         for end, branch in self._ends:  # where nothing else is, whole turns away
-            for here in self.places_of(end.t):
-                self._put_at(end, branch, here)
+            for place in self._places(end):
+                self._put_at(end, branch, place.t)
         added = np.arange(len(self.rows) + len(self._extra)) >= len(self.rows)
         if not self._extra:
             return self.rows, added

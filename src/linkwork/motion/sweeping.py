@@ -25,7 +25,7 @@ from linkwork.motion.motion_of_rows import motion_of_rows
 from linkwork.motion.proving import way_is_proved
 from linkwork.motion.rows import SolvedRows
 from linkwork.motion.start import Start, first_position
-from linkwork.motion.sweep_table import SweepTable
+from linkwork.motion.sweep_table import NamedEnd, SweepTable
 from linkwork.motion.tracking import track_to
 from linkwork.numerics.leaders import coincide, whole_turns
 from linkwork.numerics.newton import NewtonOptions
@@ -136,25 +136,26 @@ class _Sweep:
     def run(self, anchor: Node, entered: bool, asked: Asked, policy: ChangePointPolicy) -> None:
         """The table of the start's branch, and of those beyond change points if asked."""
         standing = Certification.CERTIFIED if entered else Certification.MOTION_NOT_PROVED
-        found = self._branch(anchor, asked)
-        found.rows.demote(standing)
+        found = self._branch(anchor, asked, self.model.branch, standing)
         span = _span(asked.t)
-        table = SweepTable(self.drive, asked, found.rows, span, span, self.drive.free)
+        table = SweepTable(self.drive, asked, found, (span, span), self.drive.free)
         self.tables.append(table)
-        first = self._told(table, found, self.model.branch, standing, found.here)
-        below: list[Limit] = []
-        above: list[Limit] = []
+        first = self._keep(table, found, self.model.branch, standing, found.here)
+        below: list[NamedEnd] = []
+        above: list[NamedEnd] = []
         for end in found.ends:
-            told = table.put_end(end.demoted(standing), self.model.branch)
-            self.ends.append(told)
-            passed = self._cross(first, told, policy)
-            (below if end.side < 0 else above).extend(passed)
-        self.limits = [*below[::-1], *above]
+            met = self._cross(first, end.demoted(standing), policy)
+            (below if end.side < 0 else above).extend(met)
+        self.ends = table.put_ends([*below[::-1], *above])
+        self.limits = [end.limit for end in self.ends]
 
-    def _branch(self, anchor: Node, asked: Asked) -> BranchRows:
-        return rows_of_branch(self.drive, anchor, asked, self.report, self.certify)
+    def _branch(self, anchor: Node, asked: Asked, name: str, standing: Certification) -> BranchRows:
+        found = rows_of_branch(self.drive, anchor, asked, self.report, self.certify)
+        found.rows.demote(standing)
+        found.rows.branch[found.converged] = name
+        return found
 
-    def _told(
+    def _keep(
         self,
         table: SweepTable,
         found: BranchRows,
@@ -162,44 +163,37 @@ class _Sweep:
         standing: Certification,
         own: BoolArray,
     ) -> _Branch:
-        """Keep a branch, its rows named."""
-        found.rows.branch[found.here & (found.rows.status == Status.CONVERGED.code)] = name
+        """Keep a branch with its own rows (B,), which are no other branch's any more."""
+        for other in (branch for branch in self.branches if branch.table is table):
+            other.own[own] = False
         branch = _Branch(table=table, found=found, name=name, standing=standing, own=own.copy())
         self.branches.append(branch)
         return branch
 
-    def _cross(self, first: _Branch, end: BranchEnd, policy: ChangePointPolicy) -> list[Limit]:
-        """Rows beyond the change points on one side, as far as the policy leads; their limits.
+    def _cross(self, first: _Branch, end: BranchEnd, policy: ChangePointPolicy) -> list[NamedEnd]:
+        """Rows beyond the change points on one side, as far as the policy leads; the ends met.
 
         A chosen way goes before the way around through a whole turn.
         """
-        table, told = first.table, []
-        around = first.own & (first.found.placed != table.asked.t)
-        missing = (table.rows.status != Status.CONVERGED.code) | around
+        table, name, met = first.table, first.name, []
         for _ in range(_MOST_CROSSINGS):
-            beyond = np.flatnonzero(missing & (end.side * (table.asked.t - end.t) > 0.0))
+            beyond = table.not_straight(end)
             if policy is ChangePointPolicy.STOP or end.crossing is None or not len(beyond):
                 break
             node = beyond_change_point(self.drive, end.crossing, end.side, policy)
             if node is None:
                 break
-            told.append(replace(end.limit, passed=policy.value))
-            found = self._branch(node, table.asked.take(beyond))
-            found.rows.demote(Certification.BRANCH_CHOSEN)
-            good = found.here & (found.rows.status == Status.CONVERGED.code)
-            mine = np.zeros(len(missing), dtype=bool)
-            mine[beyond[good]] = True
-            self._told(table, found, self.model.circuit, Certification.BRANCH_CHOSEN, mine)
-            put = np.flatnonzero(good | ~around[beyond])
-            table.rows.put(beyond[put], found.rows.take(put))
-            first.own[mine] = False
-            missing &= ~mine
+            passed = replace(end, limit=replace(end.limit, passed=policy.value))
+            met.append((passed, name))
+            name = self.model.circuit
+            standing = Certification.BRANCH_CHOSEN
+            found = self._branch(node, table.asked.take(beyond), name, standing)
+            self._keep(table, found, name, standing, table.take(found, beyond))
             ahead = [other for other in found.ends if other.side == end.side]
             if not ahead:
-                return told
-            chosen = ahead[0].demoted(Certification.BRANCH_CHOSEN)
-            end = table.put_end(chosen, self.model.circuit)
-        return [*told, end.limit]
+                return met
+            end = ahead[0].demoted(standing)
+        return [*met, (end, name)]
 
     def go_around(self, asked: Asked) -> None:
         """The further branches of the circuit, in the direction of travel."""
@@ -211,11 +205,13 @@ class _Sweep:
         self.circuit = around.end
         placed: list[BranchEnd] = []
         for branch in around.branches:
-            rows = branch.found.rows
-            table = SweepTable(self.drive, branch.asked, rows, branch.window, _span(asked.t), False)
+            found, name = branch.found, branch.name
+            found.rows.branch[found.converged] = name
+            windows = (branch.window, _span(asked.t))
+            table = SweepTable(self.drive, branch.asked, found, windows, False)
             self.tables.append(table)
-            self._told(table, branch.found, branch.name, branch.standing, branch.found.here)
-            placed += [table.put_end(end, branch.name) for end in branch.ends]
+            self._keep(table, found, name, branch.standing, found.here)
+            placed += table.put_ends([(end, name) for end in branch.ends])
         table = self.tables[0]
         fresh = [
             next((known for known in placed if self._is_same(end, known)), table.named(end))
@@ -263,7 +259,7 @@ class _Sweep:
                 ]
                 for here in mine:
                     row = self._branch_row(branch, t, here)
-                    row.branch[0], row.limit[0] = branch.name, f"{extreme.kind} of {name}"
+                    row.limit[0] = f"{extreme.kind} of {name}"
                     if here == mine[0]:
                         self.output_limits.append(extreme.named(float(row.inputs[0, lead])))
                     places.append(here)
@@ -287,9 +283,8 @@ class _Sweep:
         turns = round((here - t) / FULL_TURN) + table.turns_at(here)
         everyday = inputs / scale + turns * path.rate * (FULL_TURN / scale)
         asked = Asked(t=np.array([t]), inputs=inputs, everyday=everyday)
-        rows = self._branch(track.nodes[track.start], asked).rows
-        rows.demote(branch.standing)
-        return rows
+        anchor = track.nodes[track.start]
+        return self._branch(anchor, asked, branch.name, branch.standing).rows
 
     def motion(self, message: str) -> Motion:
         """Everything in one result."""

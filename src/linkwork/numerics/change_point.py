@@ -19,6 +19,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.joined import JoinedBlocks, closure_of
+from linkwork.numerics.system import System
 from linkwork.numerics.track import InputPath, Node
 
 __all__ = [
@@ -169,20 +170,36 @@ def _placed(solver: BlockSolver, where: IndexArray, values: Array) -> Array:
 def most_singular(solver: BlockSolver, v: Array) -> int | None:
     """The block with the smallest singular value, relative to its largest; ``None`` if all are far
     from singular at v (N,).
+
+    Columns of J are divided by their sizes near by: those of lengths that differ much are no sign
+    of a singular position, one that is about to vanish is.
     """
     ratios = []
     for block in solver.blocks:
         n = len(block.unknowns)
-        system = block.system
-        j = system.jacobian(v[None, block.variables])[0, :, :n]
-        scaled = j / system.equation_scale[:, None]
-        longest = np.abs(scaled).max(axis=0, initial=0.0)
-        # columns of lengths that differ much are no sign of a singular position
-        values = np.linalg.svd(scaled / np.where(longest > 0.0, longest, 1.0), compute_uv=False)
+        system, here = block.system, v[block.variables]
+        j = system.jacobian(here[None, :])[0, :, :n]
+        sizes = np.maximum(
+            np.abs(j / system.equation_scale[:, None]).max(axis=0), _near(system, here)
+        )
+        scaled = j / system.equation_scale[:, None] / np.where(sizes > 0.0, sizes, 1.0)
+        values = np.linalg.svd(scaled, compute_uv=False)
         ratios.append(float(values[-1] / values[0]) if values[0] > 0 else 0.0)
     if not ratios or min(ratios) > 1e-3:
         return None
     return int(np.argmin(ratios))
+
+
+def _near(system: System, v: Array) -> Array:
+    """How long the columns of J become near v (N,): the largest change by a natural step, (n,)."""
+    n, count = len(system.equation_scale), len(v)
+    i, j = (index.ravel() for index in np.indices((n, count)))
+    column, step = np.eye(count)[i], np.diag(system.variable_scale)[j]
+    lanes = np.repeat(v[None, :], n * count, axis=0)
+    mixed = 0.25 * (system.second(lanes, column + step) - system.second(lanes, column - step))
+    changes: Array = np.abs(mixed / system.equation_scale).max(axis=1).reshape(n, count)
+    largest: Array = changes.max(axis=1)
+    return largest
 
 
 class _Crossing:
