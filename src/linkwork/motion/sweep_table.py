@@ -93,8 +93,11 @@ class SweepTable:
     def _place_of(self, end: BranchEnd) -> float | None:
         """Where an end belongs in the table: where the table goes on on the branch's side of it."""
         low, high = self.span
+        slack = self._slack(max(abs(low), abs(high)))
         places = self.places_of(end.t)
-        beside = [here for here in places if (here > low if end.side > 0 else here < high)]
+        beside = [
+            here for here in places if (here > low + slack if end.side > 0 else here < high - slack)
+        ]
         return min(beside or places, key=lambda here: abs(here - end.t), default=None)
 
     def _put_at(self, end: BranchEnd, branch: str, here: float) -> None:
