@@ -111,3 +111,43 @@ def test_a_position_that_was_followed_counts_the_iterations_on_the_way() -> None
     direct = mechanism.solve(at=61, from_guess=True)
     assert direct.iterations < near.iterations  # without the guess's own position
     assert direct["rocker"] == pytest.approx(near["rocker"], abs=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("start", "stop", "crossed"),
+    [
+        (5, 1075, (360, 720)),
+        (1075, 5, (360, 720)),
+        (0, 1440, (360, 720, 1080)),
+        (360, 720, (360,)),  # the guess lies before the table, at 90 deg
+        (-720, 360, (-360, 0)),
+    ],
+)
+def test_straight_through_change_points_every_lap_goes_on_from_the_last(
+    start: float, stop: float, crossed: tuple[float, ...]
+) -> None:
+    """Two turns of the crank are one of the follower: in 5 deg of the crank it moves 5 deg most."""
+    step = 5 if stop > start else -5
+    motion = lw.example("galloway").sweep(
+        start=start, stop=stop, step=step, change_points="straight"
+    )
+    assert motion.found.all()
+    for name in motion.unknowns:
+        assert np.abs(np.diff(motion[name])).max() < 5
+    assert [limit.input for limit in motion.limits if limit.passed] == list(crossed)
+    at = np.array(motion.limit) == "change point"
+    assert set(motion["crank"][at]) >= {x for x in crossed if min(start, stop) <= x}
+    # on the crank's line, both long links over each other: half of the crank's turns
+    for name in motion.unknowns:
+        np.testing.assert_allclose(motion[name][at], motion["crank"][at] / 2, atol=1e-9)
+
+
+def test_around_through_a_whole_turn_rows_of_change_points_belong_to_those_beside_them() -> None:
+    """Without a way across, every turn repeats the one of the guess, up to its end."""
+    motion = lw.example("galloway").sweep(start=5, stop=720, step=5)
+    at = {float(x): k for k, x in enumerate(motion["crank"])}
+    for name in motion.unknowns:
+        assert motion[name][at[360.0]] == pytest.approx(180, abs=1e-9)
+        assert motion[name][at[365.0]] == pytest.approx(motion[name][at[5.0]], abs=1e-9)
+        assert motion[name][at[720.0]] == pytest.approx(180, abs=1e-9)
+    assert [motion.limit[at[x]] for x in (360.0, 720.0)] == ["change point"] * 2

@@ -187,9 +187,9 @@ class SweepTable:
 
     def finished(self) -> tuple[SolvedRows, BoolArray]:
         """All rows in the table's order, and which of them were not asked for."""
-        for end, branch in self._ends:  # where nothing else is, whole turns away
-            for place in self._places(end):
-                self._put_at(end, branch, place.t)
+        everywhere = [(p, k) for k, (end, _) in enumerate(self._ends) for p in self._places(end)]
+        for place, k in sorted(everywhere):  # where nothing else is, whole turns away
+            self._put_at(*self._ends[k], place.t)
         added = np.arange(len(self.rows) + len(self._extra)) >= len(self.rows)
         if not self._extra:
             return self.rows, added
