@@ -12,7 +12,7 @@ from linkwork.equations.cam_program import FollowerPath, program
 from linkwork.equations.frames import Frames
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.kernels.piecewise import Piecewise
-from linkwork.mechanism.contact_checks import guide_named
+from linkwork.mechanism.contact_checks import follower_frame, guide_named
 from linkwork.mechanism.contacts import Cam
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.parts import Slider, Slot
@@ -108,11 +108,7 @@ def _swinging(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
     assert cam.link is not None
     assert cam.pivot is not None
     assert cam.point is not None
-    frame = next(
-        name
-        for name, points in linkage.links.items()
-        if name not in (cam.cam, cam.link) and {cam.center, cam.pivot} <= set(points)
-    )
+    frame = follower_frame(linkage, cam)
     local, own = linkage.shapes.local[frame], linkage.shapes.local[cam.link]
     arm = own[cam.point] - own[cam.pivot]
     ground = local[cam.center] - local[cam.pivot]

@@ -256,12 +256,10 @@ class _Orientation:
             return line - own + (0.0 if along else math.pi)
         if slider.angle is not None:
             return line + linkage.numbers(slider.angle) * linkage.angle.radians
-        points = linkage.links[slider.link]
-        if len(points) < 2:
+        if slider.link != GROUND and len(linkage.links[slider.link]) < 2:
             return line
         a, b = (linkage.sketched(p) for p in slider.line)
-        own_direction = linkage.sketched(points[1]) - linkage.sketched(points[0])
-        return line + cmath.phase(own_direction * (b - a).conjugate())
+        return line + self.sketched_angle(slider.link) - cmath.phase(b - a)
 
     def angle_of(self, body: str) -> LinkAngle:
         """The body's angle: its group's variable plus a constant; ground stands at zero."""

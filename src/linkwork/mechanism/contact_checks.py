@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from linkwork.foundation.errors import choices
@@ -16,7 +16,13 @@ if TYPE_CHECKING:
     from linkwork.mechanism.linkage import Linkage
     from linkwork.mechanism.shape import Shapes
 
-__all__ = ["check_contacts", "check_distances", "guide_named"]
+__all__ = [
+    "check_contacts",
+    "check_distances",
+    "follower_frame",
+    "guide_named",
+    "swinging_frames",
+]
 
 Key = tuple[str | int, ...]
 _AGREE = 1e-9  # relative: radii and the distance of centres must agree to this
@@ -80,6 +86,20 @@ def guide_named(linkage: Linkage, name: str | None) -> Slider | Slot | None:
     """The slider or slot of that name."""
     guides: Sequence[Slider | Slot] = (*linkage.sliders, *linkage.slots)
     return next((guide for guide in guides if guide.name == name), None)
+
+
+def follower_frame(linkage: Linkage, cam: Cam) -> str:
+    """The link on which a cam's follower slides, or that carries its pivot and the cam's centre."""
+    guide = guide_named(linkage, cam.slider)
+    return next(swinging_frames(linkage, cam)) if guide is None else guide.on
+
+
+def swinging_frames(linkage: Linkage, cam: Cam) -> Iterator[str]:
+    """Links that carry both a cam's centre and the pivot of its follower."""
+    both = {cam.center, cam.pivot}
+    for name, points in linkage.links.items():
+        if name not in (cam.cam, cam.link) and both <= set(points):
+            yield name
 
 
 def _pair(names: Iterable[str]) -> str:
@@ -299,12 +319,7 @@ class _Checker:
                 self._on(name, cam.link, (*key, field))
         if cam.pivot is not None and cam.pivot == cam.point:
             self.problems.add((*key, "point"), "must be another point than the pivot")
-        frames = [
-            name
-            for name, points in self.linkage.links.items()
-            if name not in (cam.cam, cam.link) and {cam.center, cam.pivot} <= set(points)
-        ]
-        if cam.pivot is not None and not frames:
+        if cam.pivot is not None and not any(swinging_frames(self.linkage, cam)):
             self.problems.add(
                 (*key, "pivot"),
                 f"no link carries both {cam.center} and {cam.pivot}: cam and follower turn on "

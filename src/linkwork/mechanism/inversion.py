@@ -9,20 +9,28 @@ from typing import Any
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import canonical
-from linkwork.mechanism.contacts import names_of
+from linkwork.mechanism.directed import free_name, named_in
+from linkwork.mechanism.inverted_contacts import inverted_cam, inverted_curve
 from linkwork.mechanism.inverted_values import Frame, inverted_input, inverted_output
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import GROUND, PART_KINDS, Linkage
 from linkwork.mechanism.parts import Input, Number, Slider
 
 __all__ = ["inverted", "settled"]
 
 #: What a linkage may hold and still be inverted; anything else might refer to the old ground.
-_CARRIED = frozenset({
-    "points", "links", "lengths", "angles", "slots", "sliders", "cylinders", "inputs", "outputs",
-    "trace", "dimensions", "welds", "gears", "belts", "racks", "rolling",
-})  # fmt: skip
-
-_NAMED = ("gears", "belts", "racks", "rolling", "cams", "curves")
+_CARRIED = frozenset(
+    {
+        "points",
+        "links",
+        "lengths",
+        "angles",
+        "inputs",
+        "outputs",
+        "trace",
+        "dimensions",
+        *PART_KINDS,
+    }
+)
 
 Places = Mapping[str, complex]
 Coordinates = tuple[Number, ...]
@@ -48,7 +56,8 @@ def settled(linkage: Linkage, places: Places) -> Linkage:
 def inverted(linkage: Linkage, link: str, places: Places, which: Input | None = None) -> Linkage:
     """The linkage with another link as ground; the old ground becomes the link ``frame``.
 
-    The new ground's first point is the origin, its second lies on the positive x axis. Every
+    The new ground's first point is the origin, its second lies on the positive x axis. Wheels and
+    a ground of one point need a second one for their direction: see :func:`directed`. Every
     input drives the same relative angle, or the same length, as before, unless ``which`` is given.
     Outputs keep their meaning: they are rewritten to be seen from the old ground.
 
@@ -92,19 +101,6 @@ def _check_carried(linkage: Linkage) -> None:
             f"an inversion of {linkage.name} would have to carry [{held[0]}] to another ground, "
             "which it cannot: remove it, or write the inversion by hand"
         )
-    for wheel in linkage.links:
-        if wheel in linkage.turning_on_one_point - {GROUND} and len(linkage.links[wheel]) < 2:
-            (point,) = linkage.links[wheel]
-            raise InputError(
-                f'"{wheel}" has only the point {point}, so its direction cannot be carried to '
-                "another ground: add a second point to it"
-            )
-    if len(linkage.links[GROUND]) < 2:
-        (point,) = linkage.links[GROUND]
-        raise InputError(
-            f"ground has only the point {point}, and a link that moves needs two: "
-            "add a second fixed point to it"
-        )
 
 
 @dataclass
@@ -117,22 +113,8 @@ class _Inverting:
 
     def __post_init__(self) -> None:
         linkage = self.linkage
-        self.taken = {
-            canonical(name)
-            for names in (
-                linkage.points,
-                linkage.links,
-                linkage.dimensions,
-                linkage.outputs,
-                (slot.name for slot in linkage.slots),
-                (slider.name for slider in linkage.sliders),
-                *(names_of(p) for kind in _NAMED for p in getattr(linkage, kind)),
-                (cylinder.name for cylinder in linkage.cylinders),
-                (c.angle_name for c in linkage.cylinders),
-            )
-            for name in names
-        }
-        self.frame = self._free("frame")
+        self.taken = set(map(canonical, named_in(linkage)))
+        self.frame = free_name("frame", self.taken)
         own = linkage.shapes.local[self.link]
         self.first = linkage.links[self.link][0]
         axis = self._axis()
@@ -140,14 +122,8 @@ class _Inverting:
             name: (z - self.places[self.first]) / axis for name, z in self.places.items()
         } | dict(own)
         self.fixed = list(linkage.links[self.link])
-
-    def _free(self, name: str) -> str:
-        """A name that nothing has yet."""
-        found, k = name, 1
-        while canonical(found) in self.taken:
-            found, k = f"{name}{k}", k + 1
-        self.taken.add(canonical(found))
-        return found
+        fixed, (origin, second) = linkage.shapes.local[GROUND], linkage.links[GROUND][:2]
+        self.turn = cmath.phase(fixed[second] - fixed[origin])
 
     def _axis(self) -> complex:
         """The direction of the new ground's x axis in the old one's coordinates."""
@@ -189,15 +165,13 @@ class _Inverting:
         return replace(linkage, **changes)
 
     def _seen_frame(self) -> Frame:
-        ground = self.linkage.links[GROUND]
-        fixed = self.linkage.shapes.local[GROUND]
-        origin, second = ground[:2]
+        origin = self.linkage.links[GROUND][0]
         return Frame(
             ground=self.link,
             name=self.frame,
             origin=origin,
-            place=fixed[origin],
-            turn=cmath.phase(fixed[second] - fixed[origin]),
+            place=self.linkage.shapes.local[GROUND][origin],
+            turn=self.turn,
         )
 
     def _name(self, link: str) -> str:
@@ -224,22 +198,28 @@ class _Inverting:
             "rolling": tuple(
                 replace(r, wheel=name(r.wheel), on=name(r.on)) for r in linkage.rolling
             ),
+            "cams": tuple(inverted_cam(linkage, c, name, self.turn) for c in linkage.cams),
+            "curves": tuple(inverted_curve(c, name, self.turn) for c in linkage.curves),
         }
 
     def _slider(self, slider: Slider) -> Slider:
         """The slider; one of the new ground turns round, so that the other link slides on it.
 
-        Its displacement stays the same: the new line runs the other way.
+        Its displacement stays the same: the new line runs the other way. The guide of a cam's
+        follower or of a rack stays the guide.
         """
-        if slider.link != self.link:
-            return replace(slider, link=self._name(slider.link), on=self._name(slider.on))
+        linkage = self.linkage
+        guides = {cam.slider for cam in linkage.cams} | {rack.slider for rack in linkage.racks}
+        if slider.link != self.link or slider.name in guides:
+            same = replace(slider, link=self._name(slider.link), on=self._name(slider.on))
+            return replace(same, angle=self._angle_from_line(slider))
         start, end = (self.seen[point] for point in slider.line)
         along = (end - start) / abs(end - start)
         own = self.seen[slider.points[0]]
         foot = own - 1j * along * self.linkage.numbers(slider.offset)
         line = []
         for name, place in (("foot", foot), ("guide", foot - (end - start))):
-            line.append(self._free(f"{slider.name}_{name}"))
+            line.append(free_name(f"{slider.name}_{name}", self.taken))
             self.seen[line[-1]] = place
         if foot == own:  # then the block's own point is the foot
             del self.seen[line[0]]
@@ -252,6 +232,18 @@ class _Inverting:
             on=GROUND,
             line=(line[0], line[1]),
         )
+
+    def _angle_from_line(self, slider: Slider) -> Number | None:
+        """The angle of a slider of one point; ground's is counted from its x axis."""
+        linkage, angle = self.linkage, slider.angle
+        if len(slider.points) > 1:
+            return angle
+        if angle is None and slider.link == self.link and len(linkage.links[self.link]) < 2:
+            return 0.0  # a block, which has the line's direction
+        if angle is None or slider.link != GROUND or not self.turn:
+            return angle
+        turn = linkage.angle.from_radians(self.turn)
+        return f"({angle}) + ({turn!r})" if isinstance(angle, str) else angle + turn
 
     def _points(self) -> dict[str, Coordinates]:
         """The new ground exactly, with its length as the file gives it; the rest as a sketch."""

@@ -216,8 +216,6 @@ def _check_slider(linkage: Linkage, slider: Slider, key: Key, problems: Problems
     if slider.link not in linkage.links:
         problems.add((*key, "link"), _no_link(linkage, slider.link))
         return
-    if slider.link == GROUND:
-        problems.add((*key, "link"), "ground cannot slide: name the moving link, with on = ground")
     if slider.link == slider.on:
         problems.add((*key, "on"), f'"{slider.link}" cannot slide on itself')
     if len(slider.points) not in (1, 2):

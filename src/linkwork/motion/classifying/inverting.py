@@ -8,6 +8,7 @@ from linkwork.foundation.errors import InputError
 from linkwork.mechanism.chain import Chain
 from linkwork.mechanism.chain_graph import orbits
 from linkwork.mechanism.description import Description
+from linkwork.mechanism.directed import directed
 from linkwork.mechanism.inversion import inverted, settled
 from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
@@ -31,6 +32,8 @@ def inversion(model: Model, link: str, which: Input | None = None) -> Linkage:
         If there is no such link.
     """
     linkage = _linkage(model)
+    if link != GROUND:
+        linkage = directed(linkage)
     return inverted(linkage, link, _places(model, linkage), which)
 
 
@@ -44,8 +47,12 @@ def _linkage(model: Model) -> Linkage:
 
 
 def _places(model: Model, linkage: Linkage) -> dict[str, complex]:
-    """All points at the guess; the sketch if nothing can be assembled there."""
-    position = solve(model, certify=False)
+    """All points of the linkage, which may have more of them than the model, at the guess.
+
+    Where nothing can be assembled they are those of the sketch.
+    """
+    same = model if linkage is model.description else model_of(linkage)
+    position = solve(same, certify=False)
     if not position.status.ok:
         return {point: linkage.sketched(point) for point in linkage.points}
     return {name: complex(x, y) for name, (x, y) in position.points.items()}
@@ -53,7 +60,7 @@ def _places(model: Model, linkage: Linkage) -> dict[str, complex]:
 
 def inversions(model: Model) -> tuple[Inversion, ...]:
     """Every link as ground, the present one first, with what that makes of the chain."""
-    linkage = _linkage(model)
+    linkage = directed(_linkage(model))
     chain = Chain.of(linkage)
     alike = {link: group[0] for group in orbits(chain.with_blocks()) for link in group}
     places = _places(model, linkage)
