@@ -428,8 +428,13 @@ def test_solve_takes_a_configuration_by_name() -> None:
     stuck = looped({"l": "4*e^(i*q) + 2*e^(i*a) = 4 + 1.5*e^(i*b)"}, a=10, b=60)
     position = stuck.solve(90, configuration="open")
     assert position.status is lw.Status.CANNOT_CLOSE
-    assert position.message == "there is no configuration at this input: the loops cannot be closed"
-    with pytest.raises(lw.NotConvergedError, match="there is no configuration at this input"):
+    gap = 'loop "l" cannot be closed at q = 90°: nearest to the guess a gap of 2.15685 mm remains'
+    assert position.message.startswith(gap)
+    assert position.message.endswith("; no configuration exists there")
+    assert position.failure is not None
+    # 2 + 1.5 do not reach from the driven point to the far pivot
+    assert position.failure.gap == pytest.approx(4 * math.sqrt(2) - 3.5, rel=1e-12)
+    with pytest.raises(lw.NotConvergedError, match=f"^{gap}"):
         stuck.solve(90, configuration="open", throw=True)
     with pytest.raises(lw.InputError, match="plain equations"):
         lw.example("newton-inflection").solve(configuration="open")

@@ -235,14 +235,10 @@ class _Inverting:
 
     def _angle_from_line(self, slider: Slider) -> Number | None:
         """The angle of a slider of one point; ground's is counted from its x axis."""
-        linkage, angle = self.linkage, slider.angle
-        if len(slider.points) > 1:
-            return angle
-        if angle is None and slider.link == self.link and len(linkage.links[self.link]) < 2:
-            return 0.0  # a block, which has the line's direction
+        angle = slider.angle
         if angle is None or slider.link != GROUND or not self.turn:
             return angle
-        turn = linkage.angle.from_radians(self.turn)
+        turn = self.linkage.angle.from_radians(self.turn)
         return f"({angle}) + ({turn!r})" if isinstance(angle, str) else angle + turn
 
     def _points(self) -> dict[str, Coordinates]:

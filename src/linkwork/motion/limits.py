@@ -34,10 +34,12 @@ __all__ = [
     "dead_point_limit",
     "end_at_dead_point",
     "ends_of",
+    "slack_at",
 ]
 
 _MOVES = 1e-7  # weighted: a direction along which the input moves at all
 _SOUND = 1e4  # condition up to which a node is as good as any
+_SAME_INPUT = 1e-11  # relative: a value asked for at a limit is that limit's
 _TOUCHING = 1e-12  # residual at a located crossing, where Newton-Raphson must not take a step
 
 
@@ -70,11 +72,20 @@ class BranchEnd:
         limit = replace(self.limit, input=value, bracket=(low + shift, high + shift))
         return replace(self, limit=limit) if shift else self
 
+    def is_at(self, t: float) -> bool:
+        """Whether a value of the path that was asked for is this end's, and a position is there."""
+        return self.v is not None and abs(t - self.t) <= slack_at(t)
+
     def demoted(self, standing: Certification) -> BranchEnd:
         """The end with what the way to its branch is worth, if it is proved on it."""
         if self.certification is not Certification.CERTIFIED:
             return self
         return replace(self, certification=standing)
+
+
+def slack_at(t: float) -> float:
+    """How far values of the path near t may be apart and yet mean one place."""
+    return _SAME_INPUT * max(1.0, abs(t))
 
 
 def ends_of(drive: Drive, track: Track, certify: bool = False) -> tuple[BranchEnd, ...]:

@@ -43,13 +43,17 @@ class Evidence:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Found:
-    """A position that was found (or not, as ``status`` tells): variables v (N,) and evidence."""
+    """A position that was found (or not, as ``status`` tells): variables v (N,) and evidence.
+
+    ``first`` (N,): derivatives at a dead point or change point, NaN where there are none.
+    """
 
     v: Array
     status: Status
     residual: float
     iterations: int
     certificate: Certificate
+    first: Array | None = None
 
 
 def found_message(status: Status, condition: float, failure: Failure | None = None) -> str:

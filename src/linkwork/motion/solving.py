@@ -25,12 +25,13 @@ from linkwork.motion.positions import (
 from linkwork.motion.reading import named_series
 from linkwork.motion.redundancy import FITS, lengths_found, misfit, without_redundant
 from linkwork.motion.start import Start, first_position
+from linkwork.numerics.block_solver import Rates
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.proof import prove, rounding_of_inputs
 from linkwork.results.failure import Failure, Remedy
 from linkwork.results.position import Certificate, Position
 
-__all__ = ["solve"]
+__all__ = ["failed_position", "solve"]
 
 
 def solve(
@@ -80,14 +81,14 @@ def solve(
             and not np.array_equal(inputs, model.start_inputs)
         ):
             failure = why.without_start(model, failure, inputs)
-        position = _failed(model, target, start.status, failure, start)
+        position = failed_position(model, target, start.status, failure, start)
     elif from_guess or np.array_equal(inputs, model.start_inputs):
         found = _arrived(model, start, certify)
         position = _position(model, target, found, start, _other_root(model, start.v))
     else:
         reached = following.followed(model, start.v, target, certify)
         if isinstance(reached, following.OutOfReach):
-            position = _failed(model, target, reached.status, reached.failure, start)
+            position = failed_position(model, target, reached.status, reached.failure, start)
         else:
             reached = replace(reached, iterations=start.iterations + reached.iterations)
             position = _position(model, target, reached, start)
@@ -136,9 +137,10 @@ def _other_root(model: Model, found: Array) -> Failure | None:
     return None
 
 
-def _failed(
+def failed_position(
     model: Model, target: Array, status: Status, failure: Failure | None, start: Start
 ) -> Position:
+    """No position at the values (p,), everyday units, with the reason and what was tried."""
     nothing = np.full((1, model.compiled.solver.variables), np.nan)
     named = named_series(model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool))
     evidence = Evidence(
@@ -165,6 +167,16 @@ def _does_not_fit(model: Model, v: Array) -> Failure:
     return Failure(what=Status.DOES_NOT_FIT.value, remedies=tuple(remedies), units=model.units)
 
 
+def _at_limit(first: Array) -> Rates:
+    """Derivatives by the input where a branch ends, as far as they exist: first (N,), no second."""
+    nothing = np.full((1, len(first)), np.nan)
+    endless = np.full(1, np.inf)
+    sign = np.zeros((1, 0), dtype=np.int8)
+    return Rates(
+        first=first[None, :], second=nothing, condition=endless, nearness=endless, orientation=sign
+    )
+
+
 def _position(
     model: Model, target: Array, found: Found, start: Start, failure: Failure | None = None
 ) -> Position:
@@ -172,8 +184,10 @@ def _position(
     solver = model.compiled.solver
     v = found.v[None, :]
     if found.status.ok and misfit(model.equations, v)[0] > FITS:
-        return _failed(model, target, Status.DOES_NOT_FIT, _does_not_fit(model, found.v), start)
-    rates = solver.rates(v, input_rate(model))
+        return failed_position(
+            model, target, Status.DOES_NOT_FIT, _does_not_fit(model, found.v), start
+        )
+    rates = solver.rates(v, input_rate(model)) if found.first is None else _at_limit(found.first)
     ok = np.array([found.status.ok])
     named = named_series(model, v, rates.first, rates.second, target[None, :], ok)
     condition = float(rates.condition[0])

@@ -13,12 +13,10 @@ from linkwork.foundation.short_number import short_number
 from linkwork.foundation.status import Status
 from linkwork.motion.branch_rows import Asked, BranchRows
 from linkwork.motion.drive import Drive
-from linkwork.motion.limits import BranchEnd
+from linkwork.motion.limits import BranchEnd, slack_at
 from linkwork.motion.rows import SolvedRows
 
 __all__ = ["NamedEnd", "SweepTable"]
-
-_SAME_INPUT = 1e-11  # relative: a row asked for at a limit is that limit's row
 
 
 class _PlaceOfEnd(NamedTuple):
@@ -85,7 +83,7 @@ class SweepTable:
     def places_of(self, t: float) -> list[float]:
         """Where a value belongs in the table's range, whole turns apart too."""
         low, high = self.window
-        slack = self._slack(max(abs(low), abs(high)))
+        slack = slack_at(max(abs(low), abs(high)))
         turns = np.zeros(1)
         if self.free:
             first = np.ceil((low - slack - t) / FULL_TURN)
@@ -103,7 +101,7 @@ class SweepTable:
         named = self.asked.everyday[:, lead] * scale
         beside = np.argsort(np.abs(self.asked.t - here), kind="stable")[:2]
         turns = [round(float(named[k] - self.asked.t[k]) / FULL_TURN) for k in beside]
-        slack = self._slack(abs(here))
+        slack = slack_at(abs(here))
         low, high = self.span
         inside = [k for k in turns if low - slack <= here + k * FULL_TURN <= high + slack]
         return (inside or turns or [0])[0]
@@ -118,7 +116,7 @@ class SweepTable:
         named = [end for end, _ in ends]
         for k in sorted(placed, key=placed.__getitem__):
             (end, branch), here = ends[k], placed[k].t
-            if self._put_at(end, branch, here):
+            if self._put_at(end, branch, here) or not placed[k].guessed:
                 named[k] = self._named(end, here)
         return named
 
@@ -139,7 +137,7 @@ class SweepTable:
         found = []
         for here in self.places_of(end.t):
             away = abs(here - end.t)
-            beside = np.flatnonzero(end.side * (here - self.asked.t) > self._slack(abs(here)))
+            beside = np.flatnonzero(end.side * (here - self.asked.t) > slack_at(abs(here)))
             if not len(beside):
                 found.append(_PlaceOfEnd(True, away, here))
                 continue
@@ -172,7 +170,7 @@ class SweepTable:
 
         Whether it was put: where a limit is already nothing is.
         """
-        slack = self._slack(abs(here))
+        slack = slack_at(abs(here))
         if any(abs(t - here) <= slack for t in self._extra_t):
             return False
         same = np.flatnonzero(np.abs(self.asked.t - here) <= slack)
@@ -202,7 +200,7 @@ class SweepTable:
         """Whether one of the rows beside a value of t is among some rows (B,)."""
         order = np.argsort(self.asked.t, kind="stable")
         t = self.asked.t[order]
-        slack = self._slack(abs(here))
+        slack = slack_at(abs(here))
         left = int(np.searchsorted(t, here + slack, side="right")) - 1
         right = int(np.searchsorted(t, here - slack, side="left"))
         beside = [order[k] for k in (left, right) if 0 <= k < len(t)]
@@ -215,7 +213,3 @@ class SweepTable:
         everyday[self.drive.lead] = end.limit.input
         turns = round((here - end.t) / FULL_TURN) + self.turns_at(here)
         return (everyday + turns * path.rate * (FULL_TURN / scale))[None, :]
-
-    @staticmethod
-    def _slack(size: float) -> float:
-        return _SAME_INPUT * max(1.0, size)

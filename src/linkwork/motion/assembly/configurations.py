@@ -24,9 +24,12 @@ from linkwork.motion.positions import (
 )
 from linkwork.motion.reading import named_series
 from linkwork.motion.redundancy import without_redundant
-from linkwork.motion.solving import solve
+from linkwork.motion.solving import failed_position, solve
+from linkwork.motion.start import first_position
 from linkwork.numerics.generic_roots import SEED
+from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.configurations import Configurations
+from linkwork.results.failure import Failure
 from linkwork.results.position import Certificate, Position
 
 __all__ = ["configurations", "solve_configuration", "started_in"]
@@ -119,20 +122,22 @@ def solve_configuration(
         raise InputError(f"{model.description.name}: {found.message}")
     if len(found):
         return found[name]
+    position = _unassembled(model, target_values(model, at))
     if throw:
-        raise NotConvergedError(_NONE)
-    target = target_values(model, at)
-    nothing = np.full((1, model.compiled.solver.variables), np.nan)
-    named = named_series(model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool))
-    evidence = Evidence(
-        status=Status.CANNOT_CLOSE,
-        message=_NONE,
-        residual=np.nan,
-        iterations=0,
-        condition=np.inf,
-        certificate=Certificate(certification=Certification.NO_POSITION),
-    )
-    return position_of(model, named, 0, evidence, nothing[0, : model.compiled.solver.unknowns])
+        raise NotConvergedError(position.message)
+    return position
+
+
+def _unassembled(model: Model, target: Array) -> Position:
+    """What to say where there is no configuration: the loop that does not close, if one is known.
+
+    Newton-Raphson is tried from the guess, as for every position; where it fails is what is told.
+    """
+    start = first_position(model, target * model.input_scale, NewtonOptions())
+    if start.failure is not None:
+        return failed_position(model, target, start.status, start.failure, start)
+    failure = Failure(what=_NONE, units=model.units)
+    return failed_position(model, target, Status.CANNOT_CLOSE, failure, start)
 
 
 def started_in(model: Model, name: str) -> Model:

@@ -10,7 +10,6 @@ if TYPE_CHECKING:
     from linkwork.motion.failure.failing import (
         another_root,
         beyond_reach,
-        limits_met,
         no_position,
         without_circuit,
         without_start,
@@ -22,7 +21,6 @@ else:
             "failing": (
                 "another_root",
                 "beyond_reach",
-                "limits_met",
                 "no_position",
                 "without_circuit",
                 "without_start",
@@ -33,7 +31,6 @@ else:
 __all__ = [
     "another_root",
     "beyond_reach",
-    "limits_met",
     "no_position",
     "without_circuit",
     "without_start",

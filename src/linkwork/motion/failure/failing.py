@@ -11,19 +11,17 @@ from linkwork.foundation.angles import within_half_a_turn
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.newton_trouble import NewtonTrouble
 from linkwork.foundation.status import Status
-from linkwork.motion.drive import Drive
 from linkwork.motion.failure.dyads import dyad_of
 from linkwork.motion.failure.elsewhere import ElsewhereAt, block_positions, positions_elsewhere
 from linkwork.motion.failure.newton_reasons import Miss, miss_of, root_beside_guess, trouble_of
 from linkwork.motion.failure.reach import MOST_UNKNOWNS, Reach, assembled_near, reach_towards
 from linkwork.motion.failure.remedies import remedies_of
-from linkwork.motion.limits import ends_of
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.block_solver import Block
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.track import InputPath, Track
+from linkwork.numerics.track import InputPath
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit
 from linkwork.results.quantity import Kind
@@ -31,7 +29,6 @@ from linkwork.results.quantity import Kind
 __all__ = [
     "another_root",
     "beyond_reach",
-    "limits_met",
     "no_position",
     "without_circuit",
     "without_start",
@@ -141,12 +138,6 @@ def another_root(model: Model, found: Array) -> Failure | None:
             )
         here[block.unknowns] = found[block.unknowns]
     return None
-
-
-def limits_met(model: Model, path: InputPath, track: Track, lead: int) -> tuple[Limit, ...]:
-    """Where a track ended before its goals, lower end first."""
-    drive = Drive(model=model, path=path, lead=lead)
-    return tuple(end.limit for end in ends_of(drive, track))
 
 
 def beyond_reach(

@@ -10,7 +10,9 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.motion import failure as why
+from linkwork.motion.drive import Drive
 from linkwork.motion.following.whole_turns import Laps, laps_to
+from linkwork.motion.limits import BranchEnd, ends_of
 from linkwork.motion.model import Model
 from linkwork.motion.positions import Found
 from linkwork.motion.proving import prove_rows
@@ -67,12 +69,22 @@ def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | Ou
     first = node_at(solver, path, float(origin[lead]), v)
     goal = float(inputs[lead])
     limits: tuple[Limit, ...] = ()
+    drive = Drive(model=model, path=path, lead=lead)
     for turns in _turns_away(model, goal - first.t):
         t = goal - turns * 2.0 * np.pi
         track = track_to(solver, path, first, [t])
+        place = _Place(
+            path=path,
+            track=track,
+            asked=asked - (turns * model.units.angle.turn if turns else 0.0),
+        )
         if not track.ends:
             break
-        met = why.limits_met(model, path, track, lead)
+        ends = ends_of(drive, track, certify)
+        for end in ends:
+            if end.is_at(t):
+                return _at_end(model, end, place, laps, certify)
+        met = [end.limit for end in ends]
         limits += tuple(limit for limit in met if limit.input not in [old.input for old in limits])
     else:
         reasons = {limit.status for limit in limits}
@@ -80,11 +92,6 @@ def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | Ou
         failure = why.beyond_reach(model, v, (path, lead, goal), status, limits)
         return OutOfReach(status=status, failure=failure)
     rows = rows_on_track(solver, path, track, np.array([t]))
-    place = _Place(
-        path=path,
-        track=track,
-        asked=asked - (turns * model.units.angle.turn if turns else 0.0),
-    )
     return Found(
         v=rows.v[0] if laps is None else rows.v[0] + laps.gain,
         status=Status.of_code(int(rows.status[0])),
@@ -92,6 +99,34 @@ def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | Ou
         iterations=int(rows.iterations[0]) + sum(node.iterations for node in track.nodes),
         certificate=_certificate(model, place, rows, laps) if certify else Certificate(),
     )
+
+
+def _at_end(model: Model, end: BranchEnd, place: _Place, laps: Laps | None, certify: bool) -> Found:
+    """The position at the end of the branch, which is where the value asked lies."""
+    solver, track, v = model.compiled.solver, place.track, end.v
+    assert v is not None
+    if certify and end.certification is Certification.CERTIFIED:
+        last = track.nodes[-1] if end.side > 0 else track.nodes[0]
+        rows = rows_on_track(solver, place.path, track, np.array([last.t]))
+        proofs = prove_rows(solver, place.path, track, rows, place.path.at(rows.t))
+        proved = proofs.up_to_ends and (laps is None or laps.proved)
+        end = end if proved else end.demoted(Certification.MOTION_NOT_PROVED)
+    return Found(
+        v=v if laps is None else v + laps.gain,
+        status=Status.CONVERGED,
+        residual=float(solver.residual(v[None, :])[0]),
+        iterations=sum(node.iterations for node in track.nodes),
+        certificate=Certificate(
+            certification=end.certification,
+            radius=_known(end.radius),
+            unique_within=_known(end.unique),
+        ),
+        first=end.first,
+    )
+
+
+def _known(number: float) -> float | None:
+    return float(number) if np.isfinite(number) else None
 
 
 def _turns_away(model: Model, way: float) -> list[int]:
