@@ -76,3 +76,18 @@ def test_just_beyond_a_dead_point_there_is_no_position(beyond: float) -> None:
     for value, side in ((low, -1), (high, 1)):
         assert mechanism.solve(at=value + side * beyond).status is lw.Status.OUT_OF_REACH
         assert mechanism.solve(at=value - side * beyond).status is lw.Status.CONVERGED
+
+
+def test_the_message_of_a_motion_tells_every_limit_once() -> None:
+    motion = _limited("triple rocker").sweep()
+    missing = int((~motion.found & motion.asked).sum())
+    low, high = motion.limits
+    assert motion.message == (
+        f"{missing} of 361 positions were not found; {lw.Status.OUT_OF_REACH.value}; "
+        f'dead point at crank = {low.input:.12g} deg, where loop "O2 A B O4" locks '
+        "(coupler and rocker in line); "
+        f'dead point at crank = {high.input:.12g} deg, where loop "O2 A B O4" locks '
+        "(coupler and rocker in line)"
+    )
+    found = lw.example("four-bar").sweep()
+    assert found.message == lw.Status.CONVERGED.value

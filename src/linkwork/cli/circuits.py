@@ -8,7 +8,6 @@ import click
 
 from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
-from linkwork.cli.motion_page import limit_text
 from linkwork.cli.options import debug_option, file_argument, json_option, set_option
 from linkwork.cli.output_file import check_outputs
 from linkwork.cli.position_page import listed_links, redundant_lines
@@ -162,7 +161,7 @@ def _facts(found: Circuits, circuit: Circuit) -> Iterator[tuple[str, str]]:
     if resting:
         yield "input at rest", f"along {', '.join(resting)} {CircuitEnd.INPUT_CONSTANT.story}"
     for limit in (*circuit.dead_points, *circuit.change_points):
-        yield limit.kind.word, limit_text(limit, found.input, found.input_unit)
+        yield limit.kind.word, limit.told(found.input, found.input_unit)
     yield from redundant_lines(redundant)
     if not (circuit.dead_points or circuit.change_points):
         where = f"{found.input} = {circuit.weakest:.3g} {found.input_unit}".rstrip()

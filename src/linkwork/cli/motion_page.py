@@ -13,9 +13,9 @@ from linkwork.cli.text_table import Column, short, table_lines
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
-from linkwork.results.motion import Limit, LimitKind, Motion, Series
+from linkwork.results.motion import Motion, Series
 
-__all__ = ["failure_line", "limit_text", "motion_lines"]
+__all__ = ["failure_line", "motion_lines"]
 
 _MOST_RUNS = 4  # stretches of failed rows that are named
 
@@ -95,28 +95,12 @@ def _runs(motion: Motion, status: Status) -> str:
     return f"{', '.join(shown)} {motion.input_units[name]}".rstrip() + more
 
 
-def limit_text(limit: Limit, name: str, unit: str) -> str:
-    """Where a limit lies, which loops lock there, and how the motion went on."""
-    text = f"{name} = {limit.input:.12g} {unit}".rstrip()
-    if limit.loops:
-        quoted = ", ".join(f'"{loop}"' for loop in limit.loops)
-        one = len(limit.loops) == 1
-        does = "can close in two ways" if limit.kind is LimitKind.CHANGE_POINT else "lock"
-        text += f", where {'loop' if one else 'loops'} {quoted} {does}"
-        text += "s" if one and does == "lock" else ""
-    if limit.in_line:
-        text += f" ({' and '.join(limit.in_line)} in line)"
-    if limit.passed:
-        text += "; went straight on" if limit.passed == "straight" else "; turned off"
-    return text
-
-
 def _limits(motion: Motion) -> Iterator[tuple[str, str]]:
     """Dead points and other ends of the branch, one to a line."""
     name, _ = _lead(motion)
     unit = motion.input_units[name]
     # two ends of a branch may be one place
-    told = ((limit.kind.word, limit_text(limit, name, unit)) for limit in motion.limits)
+    told = ((limit.kind.word, limit.told(name, unit)) for limit in motion.limits)
     yield from dict.fromkeys(told)
     for extreme in motion.output_limits:
         value = f"{extreme.value:.10g} {_unit_of(motion, extreme.name)}".rstrip()

@@ -291,12 +291,27 @@ class _Sweep:
         first, *further = (table.finished() for table in self.tables)
         added = [first[1], *(np.ones(len(rows), dtype=bool) for rows, _ in further)]
         rows = SolvedRows.joined([first[0], *(rows for rows, _ in further)])
-        return replace(
+        motion = replace(
             motion_of_rows(self.model, rows, message, np.concatenate(added)),
             limits=tuple(self.limits),
             output_limits=tuple(self.output_limits),
             circuit=self.circuit,
         )
+        return replace(motion, message=_message(motion))
+
+
+def _message(motion: Motion) -> str:
+    """What became of the rows: that of the start if all were found, else every limit once."""
+    asked = motion.asked
+    missing = int((asked & ~motion.found).sum())
+    if not missing:
+        return motion.message
+    name, unit = next(iter(motion.input_units.items()))
+    told = (f"{limit.kind.word} at {limit.told(name, unit)}" for limit in motion.limits)
+    misses = [status.value for status in motion.counts if not status.ok]
+    return "; ".join(
+        [f"{missing} of {int(asked.sum())} positions were not found", *misses, *dict.fromkeys(told)]
+    )
 
 
 def _onto_path(drive: Drive, start: Start, t: Array, certify: bool) -> tuple[Node, bool] | None:

@@ -106,6 +106,24 @@ class Limit:
             "passed": self.passed,
         }
 
+    def told(self, name: str, unit: str) -> str:
+        """Where it lies, which loops lock there with which links in line, how the motion went on.
+
+        ``name`` and ``unit`` are the leading input's.
+        """
+        text = f"{name} = {self.input:.12g} {unit}".rstrip()
+        if self.loops:
+            quoted = ", ".join(f'"{loop}"' for loop in self.loops)
+            one = len(self.loops) == 1
+            does = "can close in two ways" if self.kind is LimitKind.CHANGE_POINT else "lock"
+            text += f", where {'loop' if one else 'loops'} {quoted} {does}"
+            text += "s" if one and does == "lock" else ""
+        if self.in_line:
+            text += f" ({' and '.join(self.in_line)} in line)"
+        if self.passed:
+            text += "; went straight on" if self.passed == "straight" else "; turned off"
+        return text
+
 
 @dataclass(frozen=True, kw_only=True)
 class OutputLimit:
@@ -186,6 +204,9 @@ class Motion:
         The unknowns with angles in radians.
     failure : Failure, optional
         Why no position was found at the guess.
+    message : str
+        How many rows were not found, and every limit of the motion once: where it lies, which links
+        are in line there. The values nearest to those rows are the limits'.
     """
 
     mechanism: str
