@@ -162,3 +162,17 @@ def test_a_parallelogram_in_line_has_two_freedoms_there_and_one_beside() -> None
     report = flat.check()
     assert (report.mobility_count, report.mobility_rank) == (1, 2)
     assert report.mobility_why.endswith("beside it the rank gives 1")
+
+
+def test_at_a_change_point_no_way_is_taken_that_a_redundant_link_does_not_fit() -> None:
+    """Straight on all cranks stay parallel; turned off, the third one would have another length."""
+    mechanism = lw.example("parallel-cranks")
+    straight = mechanism.sweep(start=0, stop=360, step=20, change_points="straight")
+    assert straight.found.all()
+    assert [limit.passed for limit in straight.limits] == ["", "straight", ""]
+    np.testing.assert_allclose(straight["third"], straight["first"], atol=1e-9)
+    turned = mechanism.sweep(start=0, stop=360, step=20, change_points="turn")
+    assert [(limit.input, limit.passed) for limit in turned.limits] == [(0.0, ""), (180.0, "")]
+    beyond = (turned["first"] > 180) & (turned["first"] < 360)
+    assert {turned.status[k] for k in np.flatnonzero(beyond)} == {Status.DOES_NOT_FIT}
+    assert turned.found[~beyond].all()

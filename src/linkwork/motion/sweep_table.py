@@ -80,6 +80,11 @@ class SweepTable:
         taken[where[put & found.converged]] = True
         return taken
 
+    def leave_out(self, where: IndexArray, status: Status) -> None:
+        """Those of some rows that are not there say why."""
+        there = self.rows.status[where] == Status.CONVERGED.code
+        self.rows.status[where[~there]] = status.code
+
     def places_of(self, t: float) -> list[float]:
         """Where a value belongs in the table's range, whole turns apart too."""
         low, high = self.window

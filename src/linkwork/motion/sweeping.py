@@ -23,6 +23,7 @@ from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import motion_of_rows
 from linkwork.motion.proving import way_is_proved
+from linkwork.motion.redundancy import FITS, misfit
 from linkwork.motion.rows import SolvedRows
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.sweep_table import NamedEnd, SweepTable
@@ -173,7 +174,8 @@ class _Sweep:
     def _cross(self, first: _Branch, end: BranchEnd, policy: ChangePointPolicy) -> list[NamedEnd]:
         """Rows beyond the change points on one side, as far as the policy leads; the ends met.
 
-        A chosen way goes before the way around through a whole turn.
+        A chosen way goes before the way around through a whole turn. A way on which a redundant
+        link does not fit is none: its rows say so.
         """
         table, name, met = first.table, first.name, []
         for _ in range(_MOST_CROSSINGS):
@@ -182,6 +184,9 @@ class _Sweep:
                 break
             node = beyond_change_point(self.drive, end.crossing, end.side, policy)
             if node is None:
+                break
+            if misfit(self.model.equations, node.v[None, :])[0] > FITS:
+                table.leave_out(beyond, Status.DOES_NOT_FIT)
                 break
             passed = replace(end, limit=replace(end.limit, passed=policy.value))
             met.append((passed, name))
