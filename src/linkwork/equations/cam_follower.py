@@ -12,8 +12,8 @@ from linkwork.equations.cam_program import FollowerPath, program
 from linkwork.equations.frames import Frames
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.kernels.piecewise import Piecewise
-from linkwork.mechanism.contact_checks import follower_frame, guide_named
 from linkwork.mechanism.contacts import Cam
+from linkwork.mechanism.followers import follower_frame, guide_named
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.parts import Slider, Slot
 

@@ -83,6 +83,11 @@ class FollowerPath:
         ------
         Undercut
             If no outline makes the follower move like that.
+
+        Notes
+        -----
+        Looked for at samples, every quarter of a degree of the cam's turn and sixteen times in
+        every piece of the motion: an undercut between them is not seen. Nothing is proved.
         """
         drawn = np.linspace(0.0, 2.0 * np.pi, _SAMPLES, endpoint=False)
         pieces = np.diff(self.motion.breaks)[:, None] * (np.arange(_PARTS) + 0.5) / _PARTS

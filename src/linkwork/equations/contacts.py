@@ -24,9 +24,9 @@ from linkwork.expression.tree import Name
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.names import canonical
 from linkwork.kernels.piecewise import Piecewise
-from linkwork.mechanism.contact_checks import guide_named
 from linkwork.mechanism.contacts import Cam, Curve
 from linkwork.mechanism.description import Problems
+from linkwork.mechanism.followers import guide_named
 from linkwork.mechanism.parts import Slider
 
 __all__ = ["Contacts"]

@@ -59,7 +59,10 @@ class Outline:
         return bend
 
     def deepest(self) -> tuple[complex, float]:
-        """Where a closed curve is most hollow, or else least rounded, and its curvature there."""
+        """Where a closed curve is most hollow, or else least rounded, and its curvature there.
+
+        The least of 64 samples of every piece between given points, which is not proved.
+        """
         u = self.samples(_FINE * (len(self.x.breaks) - 1) + 1)
         bend = self.bend(u)
         k = int(bend.argmin())

@@ -12,9 +12,9 @@ from fractions import Fraction
 from linkwork.equations.frames import Frames
 from linkwork.equations.model import LinearEquation
 from linkwork.foundation.names import canonical
-from linkwork.mechanism.contact_checks import guide_named
 from linkwork.mechanism.contacts import Belt, Gear, Rack, Rolling
 from linkwork.mechanism.description import Problems
+from linkwork.mechanism.followers import guide_named
 from linkwork.mechanism.parts import Slider
 
 __all__ = ["wheels_in_mesh"]

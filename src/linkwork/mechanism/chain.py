@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 from linkwork.foundation.frozen import FrozenDict
-from linkwork.mechanism.contact_checks import guide_named
+from linkwork.mechanism.followers import guide_named
 from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.mechanism.parts import Slider
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from linkwork.mechanism.contact_checks import guide_named
 from linkwork.mechanism.contacts import Belt, Cam, Gear, Rolling
+from linkwork.mechanism.followers import guide_named
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.parts import Slider
 

@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-from linkwork.mechanism.contact_checks import follower_frame
 from linkwork.mechanism.contacts import Cam, Curve
+from linkwork.mechanism.followers import follower_frame
 from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.mechanism.parts import Number
 

@@ -7,11 +7,12 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from linkwork.foundation.errors import choices
-from linkwork.mechanism.contact_checks import check_contacts, check_distances
+from linkwork.mechanism.contact_checks import check_contacts
 from linkwork.mechanism.contacts import names_of
 from linkwork.mechanism.description import Problems, declared
 from linkwork.mechanism.parts import Cylinder, Input, Number, Slider, Slot
 from linkwork.mechanism.shape import Shapes
+from linkwork.mechanism.wheel_checks import check_distances
 
 if TYPE_CHECKING:
     from linkwork.mechanism.linkage import Linkage
