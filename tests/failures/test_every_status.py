@@ -94,7 +94,13 @@ def change_point() -> Reached:
 
 def out_of_circuit() -> Reached:
     motion = four_bar(4, 2, 5, 2, at=90).sweep(start=-40, stop=40, step=10, through=True)
-    return motion, "position found"
+    place = 'where loop "O2 A B O4" locks (coupler and rocker in line)'
+    return motion, (
+        "9 of 9 positions were not found; this circuit does not reach the input value on any of "
+        "its branches: the motion turns back at the limits reported, ask for values between them; "
+        f"dead point at crank = 46.5674634422 deg, {place}; "
+        f"dead point at crank = 313.432536558 deg, {place}"
+    )
 
 
 def start_singular() -> Reached:
