@@ -12,6 +12,7 @@ Registers by name, one number per lane each:
 ``step<b>`` ``begin<b>``    weighted size of the latest and of the first correction
 ``side<b>`` ``sign<b>``     the sign of det J at the trial and at the last node
 ``e<k>`` ``x<k>``           how far the true position may be from the trial, from the last node
+``radius``                  the largest of the former, weighted
 ``y<k>``                    how far it may get from the trial on the way between both
 """
 
@@ -46,8 +47,6 @@ class MarchPrograms:
     judge: Program
     take: Program
     stand: Program
-    keep_start: Program
-    back_to_start: Program
 
 
 class _Writer:
@@ -57,8 +56,20 @@ class _Writer:
         self, table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str], certified: bool
     ) -> None:
         self.table, self.parts, self.zeros, self.certified = table, parts, zeros, certified
-        self.kept = "wsqpx" if certified else "wsqp"
         self.n, self.count = table.unknowns, table.variables
+        self.alone = self.count == self.n + 1  # a single input is the path's own value
+
+    def _scale(self, rec: Recorder, k: int) -> Value:
+        """The weight of a variable: 1 for angles."""
+        return rec.constant(1.0) if self.table.turns[k] else rec.input(f"scale{k}")
+
+    def _rate(self, rec: Recorder, j: int) -> Value:
+        """By how much an input changes with t."""
+        return rec.constant(1.0) if self.alone else rec.input(f"u{j}.rate")
+
+    def _weighted(self, rec: Recorder, k: int, change: Value) -> Value:
+        """|change| of a variable in its weight."""
+        return abs(change) if self.table.turns[k] else abs(change) / rec.input(f"scale{k}")
 
     def predict(self) -> Recorder:
         """The cubic through both last nodes with their derivatives, at t; the inputs there."""
@@ -76,48 +87,53 @@ class _Writer:
             a, e = r1 - slope, r0 - slope
             rec.write(f"v{k}", x1 + h * (r1 + q * (a + more * (e + a))))
         for j in range(self.count - self.n):
-            value = rec.input(f"u{j}.origin") + rec.input(f"u{j}.rate") * t
+            value = t if self.alone else rec.input(f"u{j}.origin") + self._rate(rec, j) * t
             rec.write(f"v{self.n + j}", value)
-            rec.write(f"r{self.n + j}", rec.input(f"u{j}.rate"))
         for b in range(len(self.parts)):
             rec.write(f"live{b}", rec.input("active"))
         return rec
 
+    def _moved(self, rec: Recorder, k: int) -> Value:
+        """The rate of a variable that a block takes as known."""
+        return rec.input(f"r{k}") if k < self.n else self._rate(rec, k - self.n)
+
     def iterate(self, number: int, first: bool, damped: bool) -> Recorder:
-        """One Newton-Raphson step of a block, with the rates at the iterate."""
+        """One Newton-Raphson step of a block; without proofs with rates and the sign of det J."""
         part, rec = self.parts[number], Recorder()
         v = [rec.input(f"v{k}") for k in range(self.count)]
         closure = Closure(self.table, part, rec, v, self.zeros)
         known = closure.known()
-        slopes = closure.jacobian(known)
+        slopes = [] if self.certified else closure.jacobian(known)
         drives = [
-            rec.total([rec.multiply(x, rec.input(f"r{k}")) for x, k in zip(row, known, strict=True)])
+            rec.total(
+                [rec.multiply(x, self._moved(rec, k)) for x, k in zip(row, known, strict=True)]
+            )
             for row in slopes
         ]
         matrix = closure.jacobian(part.unknowns)
         f = closure.residual()
-        answer = solved(rec, matrix, [f, drives])
-        change, moved = answer.columns
+        answer = solved(rec, matrix, [f] if self.certified else [f, drives])
+        change = answer.columns[0]
         live = rec.input(f"live{number}")
         turns = [abs(d) for d, k in zip(change, part.unknowns, strict=True) if self.table.turns[k]]
         if damped and turns:
             factor = rec.smallest([1.0, rec.input("most_turn") / rec.largest(turns)])
             change = [factor * d for d in change]
-        sizes = [
-            abs(d) * rec.input(f"per_scale{k}")
-            for d, k in zip(change, part.unknowns, strict=True)
-        ]
-        size = rec.largest(sizes)
-        for d, r, k in zip(change, moved, part.unknowns, strict=True):
-            rec.write(f"v{k}", rec.where(live, v[k] - d, v[k]))
-            rec.write(f"r{k}", rec.where(live, -r, rec.input(f"r{k}")))
-        rec.write(f"step{number}", rec.where(live, size, rec.input(f"step{number}")))
-        if first:
-            rec.write(f"begin{number}", size)
-        rec.write(
-            f"side{number}",
-            rec.where(live, answer.determinant, rec.input(f"side{number}")),
+        size = rec.largest(
+            self._weighted(rec, k, d) for d, k in zip(change, part.unknowns, strict=True)
         )
+        for d, k in zip(change, part.unknowns, strict=True):
+            rec.write(f"v{k}", rec.where(live, v[k] - d, v[k]))
+        for moved in answer.columns[1:]:
+            for r, k in zip(moved, part.unknowns, strict=True):
+                rec.write(f"r{k}", rec.where(live, -r, rec.input(f"r{k}")))
+        if not self.certified:
+            rec.write(f"step{number}", rec.where(live, size, rec.input(f"step{number}")))
+        if not self.certified:
+            if first:
+                rec.write(f"begin{number}", size)
+            side = rec.where(live, answer.determinant, rec.input(f"side{number}"))
+            rec.write(f"side{number}", side)
         goes_on = rec.at_most(size, rec.input("tolerance"))
         rec.write(f"live{number}", rec.where(goes_on, 0.0, live))
         return rec
@@ -126,7 +142,9 @@ class _Writer:
         """A block's proof: of the trial, and that it lies on the branch of the last node."""
         rec, part = Recorder(), self.parts[number]
         v = [rec.input(f"v{k}") for k in range(self.count)]
-        proof = BlockProof(Closure(self.table, part, rec, v, self.zeros))
+        closure = Closure(self.table, part, rec, v, self.zeros)
+        used = (*part.unknowns, *closure.known())
+        proof = BlockProof(closure, {k: self._scale(rec, k) for k in used})
         near: dict[int, Value] = {}
         far: dict[int, Value] = {}
         step = abs(rec.input("t") - rec.input("t1")) * (1.0 + 16.0 * _UNIT)
@@ -135,7 +153,9 @@ class _Writer:
                 near[k], far[k] = rec.input(f"e{k}"), rec.input(f"y{k}")
             else:
                 near[k] = abs(v[k]) * (4.0 * _UNIT)
-                far[k] = step * abs(rec.input(f"u{k - self.n}.rate")) + 2.0 * near[k]
+                far[k] = step * abs(self._rate(rec, k - self.n)) + 2.0 * near[k]
+        for k, rate in zip(part.unknowns, proof.rates(self._moved), strict=True):
+            rec.write(f"r{k}", rate)
         here, there = proof.within(near), proof.within(far)
         masks = [here.holds, there.holds]
         for k, error, reach, alone in zip(
@@ -146,12 +166,14 @@ class _Writer:
             away = abs(v[k] - rec.input(f"w{k}")) + rec.largest([error, rec.input(f"x{k}")])
             masks.append(rec.at_most(away, alone * (1.0 - 4.0 * _UNIT)))
         rec.write(f"ok{number}", rec.all_of(masks))
+        rec.write(f"radius{number}", here.radius)
         return rec
 
     def judge_proof(self) -> Recorder:
         """``good``: where everything is proved."""
         rec = Recorder()
         masks = [rec.input(f"ok{b}") for b in range(len(self.parts))]
+        rec.write("radius", rec.largest(rec.input(f"radius{b}") for b in range(len(self.parts))))
         rec.write("good", rec.all_of([*masks, rec.input("active")]))
         return rec
 
@@ -166,7 +188,7 @@ class _Writer:
             masks.append(rec.at_most(0.0, product))
         h = rec.input("t") - rec.input("t1")
         drifts = [
-            abs((rec.input(f"r{k}") - rec.input(f"s{k}")) * h) * rec.input(f"per_scale{k}")
+            self._weighted(rec, k, (rec.input(f"r{k}") - rec.input(f"s{k}")) * h)
             for k in range(self.n)
         ]
         masks.append(rec.at_most(rec.largest(drifts), rec.input("most_drift")))
@@ -193,7 +215,7 @@ class _Writer:
         rec.write("t0", moved("t1", "t0"))
         rec.write("t1", moved("t", "t1"))
         rec.write("first", rec.where(moves, 0.0, rec.input("first")))
-        for b in range(len(self.parts)):
+        for b in range(0 if self.certified else len(self.parts)):
             rec.write(f"sign{b}", moved(f"side{b}", f"sign{b}"))
         return rec
 
@@ -205,25 +227,12 @@ class _Writer:
                 rec.write(f"{to}{k}", rec.input(f"{source}{k}"))
             if self.certified:
                 rec.write(f"x{k}", rec.input(f"e{k}"))
-        for b in range(len(self.parts)):
+        for b in range(0 if self.certified else len(self.parts)):
             rec.write(f"sign{b}", rec.input(f"side{b}"))
         for name in ("t0", "t1"):
             rec.write(name, rec.input("t"))
         rec.write("first", 1.0)
         return rec
-
-    def copied(self, pairs: Sequence[tuple[str, str]]) -> Recorder:
-        """Registers copied: (to, from)."""
-        rec = Recorder()
-        for to, source in pairs:
-            rec.write(to, rec.input(source))
-        return rec
-
-    def start_pairs(self) -> list[tuple[str, str]]:
-        """What is kept of the start: (kept, at the last node)."""
-        pairs = [(f"start.{a}{k}", f"{a}{k}") for k in range(self.n) for a in self.kept]
-        pairs += [(f"start.sign{b}", f"sign{b}") for b in range(len(self.parts))]
-        return [*pairs, *[(f"start.{name}", name) for name in ("t1", "t0", "first")]]
 
 
 def march_programs(
@@ -244,15 +253,12 @@ def march_programs(
         Names of coefficients that are zero in every design.
     """
     writer = _Writer(table, parts, zeros, certified)
-    keep = writer.start_pairs()
     blocks = range(len(parts))
     recorded = [
         writer.predict(),
         writer.judge_proof() if certified else writer.judge(),
         writer.take(),
         writer.stand(),
-        writer.copied(keep),
-        writer.copied([(to, source) for source, to in keep]),
         *[writer.iterate(b, first=True, damped=False) for b in blocks],
         *[writer.iterate(b, first=False, damped=True) for b in blocks],
         *[writer.iterate(b, first=False, damped=False) for b in blocks],
@@ -262,7 +268,7 @@ def march_programs(
     for rec in recorded:
         reserve(rec, registers)
     programs = [lowered(rec, registers, registers.count) for rec in recorded]
-    predict, judge, take, stand, keep_start, back, *rest = programs
+    predict, judge, take, stand, *rest = programs
     count = len(parts)
     return MarchPrograms(
         registers=registers,
@@ -271,8 +277,6 @@ def march_programs(
         judge=judge,
         take=take,
         stand=stand,
-        keep_start=keep_start,
-        back_to_start=back,
         begin=tuple(rest[:count]),
         damped=tuple(rest[count : 2 * count]),
         iterate=tuple(rest[2 * count : 3 * count]),

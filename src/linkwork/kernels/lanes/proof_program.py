@@ -7,7 +7,7 @@ known variables may have. Bounds of rounding are taken coarser where that costs 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,9 +24,12 @@ _PHASOR = 14.0  # roundings in one term: sine and cosine, products
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """``holds`` as a mask; a solution within ``each``, no other within ``alone`` (own units)."""
+    """``holds`` as a mask; a solution within ``each``, no other within ``alone`` (own units), and
+    within ``radius``, weighted.
+    """
 
     holds: Value
+    radius: Value
     each: list[Value]
     alone: list[Value]
 
@@ -38,13 +41,15 @@ class BlockProof:
     ----------
     closure : Closure
         At the position, by the variables of its recorder.
+    scale : Mapping[int, Value]
+        Weights of the block's unknowns and of what it takes as known.
     """
 
-    def __init__(self, closure: Closure) -> None:
+    def __init__(self, closure: Closure, scale: Mapping[int, Value]) -> None:
         self.closure, self.rec = closure, closure.rec
         rec, part = self.rec, closure.part
         self.unknowns, self.known = part.unknowns, closure.known()
-        self.scale = {k: rec.input(f"scale{k}") for k in (*self.unknowns, *self.known)}
+        self.scale = scale
         jacobian = closure.jacobian(self.unknowns)
         f = closure.residual()
         n = len(self.unknowns)
@@ -72,13 +77,14 @@ class BlockProof:
             self.defect.append(row)
         slopes = closure.jacobian(self.known)
         lines = range(2 * len(closure.loops), n)
-        self.slope = [
+        self.signed = [
             [
-                rec.absolute(self._product(self.inverse[i], [row[m] for row in slopes]))
+                self._product(self.inverse[i], [row[m] for row in slopes])
                 for m in range(len(self.known))
             ]
             for i in range(n)
         ]
+        self.slope = [[rec.absolute(x) for x in row] for row in self.signed]
         self.lines = [
             [
                 rec.absolute(
@@ -88,6 +94,11 @@ class BlockProof:
             ]
             for i in range(n)
         ]
+
+    def rates(self, rate: Callable[[Recorder, int], Value]) -> list[Value]:
+        """Derivatives of the unknowns by t, given those of the known variables."""
+        moved = [rate(self.rec, k) for k in self.known]
+        return [-self._product(row, moved) for row in self.signed]
 
     def _product(self, row: Sequence[Value | float], column: Sequence[Value | float]) -> Value:
         rec = self.rec
@@ -244,7 +255,7 @@ class BlockProof:
             for p, j, g in held:
                 z = rec.add(z, slide[p] * known[j] * own[g])
                 omega = rec.add(omega, slide[p] * known[j] * own[g] * own[g])
-            per = rec.divide(_SLACK, w)
+            per = rec.divide(_SLACK, w) if rec._number(w) != 1.0 else rec.constant(_SLACK)
             rows.append(tuple(rec.multiply(x, per) for x in (y, z, omega, bent)))
         return self._radii(rows)
 
@@ -274,4 +285,4 @@ class BlockProof:
             own = yi + exists * (zi + 0.5 * curve * exists)
             each.append(rec.smallest([own * _SLACK, exists]) * self.scale[k])
             alone.append(unique * self.scale[k])
-        return Found(holds, each, alone)
+        return Found(holds, exists, each, alone)
