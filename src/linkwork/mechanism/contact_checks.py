@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from linkwork.foundation.errors import choices
+from linkwork.foundation.lanes import largest, vector
 from linkwork.mechanism.contacts import Belt, Cam, Curve, Gear, Rack, Rolling, Weld
 from linkwork.mechanism.motion_laws import LAWS
 from linkwork.mechanism.parts import Number, Slider, Slot
@@ -67,7 +68,7 @@ def check_distances(linkage: Linkage, shapes: Shapes, problems: Problems) -> Non
                 )
             continue
         wanted = abs(first - second) if pair.internal else first + second
-        if abs(distance - wanted) > _AGREE * max(distance, wanted):
+        if abs(distance - wanted) > _AGREE * largest((distance, wanted)):
             how = "differ by" if pair.internal else "add up to"
             problems.add(
                 (*key, "radii"),
@@ -155,7 +156,7 @@ class _Checker:
         sizes = [self._positive(number, (*key, field), field) for number in given]
         if field == "teeth" and any(size != round(size) for size in sizes if size > 0):
             self.problems.add((*key, "teeth"), "must be whole numbers")
-        elif field == "teeth" and max(sizes) > _MOST_TEETH:
+        elif field == "teeth" and largest(sizes) > _MOST_TEETH:
             self.problems.add((*key, "teeth"), f"are too many: at most {_MOST_TEETH}")
         ring = isinstance(pair, Gear) and pair.internal
         if ring and sizes[0] == sizes[1] and sizes[0] > 0:
@@ -381,7 +382,7 @@ class _Checker:
             x, y = (
                 self.linkage.numbers.check_number(self.problems.add, (*key, k), n) for n in pair
             )
-            places.append(complex(x, y))
+            places.append(vector(x, y))
         if closed and places[0] == places[-1]:
             self.problems.add(key, "closes by itself: leave out the last point, it is the first")
         for k in range(1, len(places)):

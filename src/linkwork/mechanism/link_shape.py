@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -10,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.lanes import choose, degrees, largest, phase, rect, sqrt, turn, vector
 
 __all__ = ["Distance", "LinkShape", "ShapeError", "VertexAngle", "place"]
 
@@ -79,19 +79,19 @@ class VertexAngle:
 
     @property
     def amount_text(self) -> str:
-        return f"{math.degrees(self.angle):.12g}°"
+        return f"{degrees(self.angle):.12g}°"
 
     def error(self, z: Mapping[str, complex]) -> float:
         """Disagreement with placed points [rad], within half a turn."""
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
-        return cmath.phase(rays * cmath.exp(-1j * self.angle)) if rays else math.inf
+        return phase(rays * turn(-self.angle)) if rays else math.inf
 
     def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
         return abs(self.error(z)) <= tolerance
 
     def shown(self, z: Mapping[str, complex]) -> str:
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
-        return f"an angle of {math.degrees(cmath.phase(rays)):.12g}° at {self.vertex}"
+        return f"an angle of {degrees(phase(rays)):.12g}° at {self.vertex}"
 
 
 Given = Distance | VertexAngle
@@ -134,9 +134,9 @@ class _Placing:
             if v.vertex not in self.z:
                 continue
             if v.b == point and v.a in self.z:
-                return v.vertex, cmath.phase(self.z[v.a] - self.z[v.vertex]) + v.angle
+                return v.vertex, phase(self.z[v.a] - self.z[v.vertex]) + v.angle
             if v.a == point and v.b in self.z:
-                return v.vertex, cmath.phase(self.z[v.b] - self.z[v.vertex]) - v.angle
+                return v.vertex, phase(self.z[v.b] - self.z[v.vertex]) - v.angle
         return None
 
     def place_next(self, measure: int) -> bool:
@@ -149,7 +149,7 @@ class _Placing:
                 vertex, direction = seen
                 length = self.distance(vertex, point, measure >= 1)
                 if length is not None:
-                    self.z[point] = self.z[vertex] + cmath.rect(length, direction)
+                    self.z[point] = self.z[vertex] + rect(length, direction)
                     return True
             centres = [q for q in self.z if frozenset((q, point)) in self.distances]
             if len(centres) + measure < 2:
@@ -168,26 +168,25 @@ class _Placing:
         assert r2 is not None
         base = self.z[second] - self.z[first]
         d = abs(base)
-        if d <= _AGREE * max(r1, r2):
+        if d <= _AGREE * largest((r1, r2)):
             raise ShapeError(
                 f"{first} and {second} are at the same place: "
                 f"{point} cannot be placed by its distances from both"
             )
         x = (r1 * r1 - r2 * r2 + d * d) / (2.0 * d)
         square = r1 * r1 - x * x
-        tolerance = _AGREE * max(r1, r2, d) ** 2
-        if square < -tolerance:
+        size = largest((r1, r2, d)) ** 2
+        if square < -_AGREE * size:
             raise ShapeError(
                 f"no triangle has |{first}{second}| = {d:.12g}, |{first}{point}| = {r1:.12g} "
                 f"and |{second}{point}| = {r2:.12g}"
             )
-        y = math.sqrt(square) if square > 1e-14 * max(r1, r2, d) ** 2 else 0.0
+        y = sqrt(choose(square > 1e-14 * size, square, 0.0))
         sketched = (self.sketch[point] - self.sketch[first]) * (
             self.sketch[second] - self.sketch[first]
         ).conjugate()
-        if sketched.imag < 0:
-            y = -y
-        return self.z[first] + complex(x, y) * base / d
+        y = choose(sketched.imag < 0, -y, y)
+        return self.z[first] + vector(x, y) * base / d
 
 
 def place(
@@ -224,7 +223,7 @@ def place(
     a, b = _base(points, distances, vertices)
     length = state.distance(a, b, measure=True)
     assert length is not None
-    state.z = {a: 0j, b: complex(length)}
+    state.z = {a: 0j, b: length + 0j}
     while len(state.z) < len(points):
         if not (state.place_next(0) or state.place_next(1)):
             state.place_next(2)
@@ -331,5 +330,6 @@ def _upright(z: Mapping[str, complex], points: tuple[str, ...]) -> dict[str, com
     axis = z[points[1]] - z[points[0]]
     if axis == 0:
         raise ShapeError(f"{points[0]} and {points[1]} coincide: a link's angle needs two places")
-    turned = {p: (z[p] - z[points[0]]) * axis.conjugate() / abs(axis) for p in points}
-    return {**turned, points[0]: 0j, points[1]: complex(abs(axis))}
+    size = abs(axis)
+    turned = {p: (z[p] - z[points[0]]) * axis.conjugate() / size for p in points[2:]}
+    return {points[0]: 0j, points[1]: size + 0j, **turned}
