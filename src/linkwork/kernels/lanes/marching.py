@@ -51,6 +51,13 @@ def _prove(code, spans, w, blocks):  # type: ignore[no-untyped-def]
 
 
 @compiled
+def _restart(w, lane, common, h, first):  # type: ignore[no-untyped-def]
+    w[common[T0], lane] = w[common[T1], lane]
+    w[common[FIRST], lane] = 1.0
+    h[lane] = first
+
+
+@compiled
 def _load(w, lane, registers, data, member):  # type: ignore[no-untyped-def]
     for j in range(len(registers)):
         w[registers[j], lane] = data[j, member]
@@ -85,11 +92,16 @@ def begin(code, spans, w, common, live, coefficients, design, guesses, guess, st
         _one(code, spans, w, PREDICT)
         _solve(code, spans, w, BLOCKS + blocks, BLOCKS + blocks, live, _START_STEPS)
         _one(code, spans, w, STAND)
-        _prove(code, spans, w, blocks)
-        _one(code, spans, w, STAND)
+        if len(spans) > BLOCKS + 3 * blocks:
+            _prove(code, spans, w, blocks)
+            _one(code, spans, w, STAND)  # with the error of the position that was just proved
+            _prove(code, spans, w, blocks)
+            _one(code, spans, w, JUDGE)
+        else:
+            w[common[GOOD], :] = 1.0
         for lane in range(min(LANES, count - base)):
             member = base + lane
-            fine = True
+            fine = w[common[GOOD], lane] > 0.5
             for b in range(blocks):
                 fine &= w[live[b], lane] == 0.0
             for j in range(len(state)):
@@ -148,11 +160,9 @@ def march(  # type: ignore[no-untyped-def]
                     _load(w, i, coefficients, design, member[i])
                     w[common[ACTIVE], i] = 1.0
                 _load(w, i, state, node, member[i])
-                w[common[T0], i] = w[t1, i]
-                w[common[FIRST], i] = 1.0
+                _restart(w, i, common, h, steps[0])
                 above = np.searchsorted(rows, w[t1, i])
                 row[i] = above if way[i] == 1 else above - 1
-                h[i] = steps[0]
         if busy <= 0:
             break
         for i in range(LANES):
