@@ -1,4 +1,4 @@
-"""Designs over a table of inputs by the compiled march; what it leaves open, one design at a time."""
+"""Designs over a table of inputs by the compiled march; what it leaves open, one by one."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.batch.designs import Designs
-from linkwork.foundation.arrays import Array, BoolArray, IndexArray, StatusArray
+from linkwork.foundation.arrays import Array, BoolArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.status import Status
@@ -40,10 +40,10 @@ class DesignRows:
 
     @classmethod
     def blank(cls, unknowns: int, rows: int, designs: int, certify: bool) -> DesignRows:
-        """No positions yet."""
+        """No positions yet; unknowns are left as they come."""
         none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
         return cls(
-            v=np.full((unknowns, rows, designs), np.nan),
+            v=np.empty((unknowns, rows, designs)),
             status=np.full((rows, designs), Status.NO_START.code, dtype=np.int8),
             certification=np.full((rows, designs), none.code, dtype=np.int8),
             radius=np.full((rows, designs), np.nan),
@@ -59,12 +59,12 @@ def design_rows(designs: Designs, *, certify: bool, threads: int = 1) -> DesignR
     equations are swept one at a time, so that every row has the status that it has by itself.
     """
     model = designs.base
-    found = DesignRows.blank(
-        model.compiled.solver.unknowns, len(model.rows), len(designs), certify
-    )
+    found = DesignRows.blank(model.compiled.solver.unknowns, len(model.rows), len(designs), certify)
     left = designs.problem == 0
     march = _Path.of(model)
-    if march is not None:
+    if march is None:
+        found.v[:] = np.nan
+    else:
         left &= ~march.fill(designs, found, certify, threads)
     for k in np.flatnonzero(left):
         _alone(designs, int(k), found, certify)
@@ -95,71 +95,47 @@ class _Path:
         n = self.model.compiled.solver.unknowns
         inputs = designs.start[:, n:]
         start = inputs[:, self.lead]
-        size = np.maximum(1.0, np.abs(inputs))
-        on_path = (
-            np.abs(inputs - (self.origin + self.rate * start[:, None])) <= _ON_PATH * size
-        ).all(axis=1)
-        served = np.flatnonzero((designs.problem == 0) & on_path)
-        done = np.zeros(len(designs), dtype=bool)
-        if not len(served):
-            return done
-        t = self.model.rows[:, self.lead]
-        order = np.argsort(t, kind="stable")
-        kernel, coefficients = self._kernel(designs, served, certify)
-        rows = kernel.run(
-            coefficients,
-            np.ascontiguousarray(designs.start[served, :n].T),
-            start[served],
-            t[order],
-            Steps(),
-            threads,
+        away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
+        served = (designs.problem == 0) & (away <= _ON_PATH * np.maximum(1.0, np.abs(inputs))).all(
+            axis=1
         )
-        whole = rows.reached.all(axis=0)
-        self._put(found, rows, order, served, whole, certify)
-        done[served[whole]] = True
-        return done
+        t = self.model.rows[:, self.lead]
+        way = slice(None, None, -1 if t[-1] < t[0] else 1)
+        radius = found.radius[way] if certify else found.radius[:0]
+        rows = LaneRows.over(found.v[:, way], radius)
+        kernel, coefficients = self._kernel(designs, certify)
+        guess = np.where(served, designs.start[:, :n].T, np.nan)  # not found, so not followed
+        kernel.run(coefficients, guess, start, t[way].copy(), Steps(), rows, threads)
+        whole: BoolArray = np.logical_and.reduce(rows.reached, axis=0)
+        reached = rows.reached[way]
+        found.v[:, ~reached] = np.nan
+        found.status[reached] = Status.CONVERGED.code
+        if certify:
+            found.certification[reached] = Certification.CERTIFIED.code
+        return whole
 
-    def _kernel(
-        self, designs: Designs, served: IndexArray, certify: bool
-    ) -> tuple[LaneKernel, dict[str, Array]]:
+    def _kernel(self, designs: Designs, certify: bool) -> tuple[LaneKernel, dict[str, Array]]:
         compiled = self.model.compiled
         coefficients: dict[str, Array] = {}
         for term in range(designs.loops.shape[1]):
-            column = designs.loops[served, term]
+            column = designs.loops[:, term]
             coefficients[f"c{term}.re"] = np.ascontiguousarray(column.real)
             coefficients[f"c{term}.im"] = np.ascontiguousarray(column.imag)
         for row in range(designs.linear.shape[1]):
-            coefficients[f"k{row}"] = np.ascontiguousarray(designs.linear[served, row])
+            coefficients[f"k{row}"] = np.ascontiguousarray(designs.linear[:, row])
         zeros = {name for name, values in coefficients.items() if not values.any()}
-        length = designs.length_scale[served]
+        length = designs.length_scale
         for k, turns in enumerate(compiled.table.turns):
             if not turns:
                 coefficients[f"scale{k}"] = length
         for j, (origin, rate) in enumerate(zip(self.origin, self.rate, strict=True)):
-            coefficients[f"u{j}.origin"] = np.full(len(served), origin)
-            coefficients[f"u{j}.rate"] = np.full(len(served), rate)
+            coefficients[f"u{j}.origin"] = np.full(len(designs), origin)
+            coefficients[f"u{j}.rate"] = np.full(len(designs), rate)
         parts = [
             BlockPart(equations=block.equations, unknowns=tuple(block.unknowns.tolist()))
             for block in compiled.solver.blocks
         ]
         return LaneKernel(compiled.table, parts, zeros, certify), coefficients
-
-    def _put(
-        self,
-        found: DesignRows,
-        rows: LaneRows,
-        order: IndexArray,
-        served: IndexArray,
-        whole: BoolArray,
-        certify: bool,
-    ) -> None:
-        target = np.ix_(order, served[whole])
-        for k in range(len(found.v)):
-            found.v[k][target] = rows.v[k][:, whole]
-        found.status[target] = Status.CONVERGED.code
-        if certify:
-            found.certification[target] = Certification.CERTIFIED.code
-            found.radius[target] = rows.radius[:, whole]
 
 
 def _alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
@@ -167,7 +143,11 @@ def _alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
     found.alone[k] = True
     try:
         motion = sweep(designs.design(k), certify=certify)
-    except LinkworkError:
+    except LinkworkError:  # what is wrong with it is told by ``designs.message``
+        found.v[:, :, k] = found.radius[:, k] = np.nan
+        found.status[:, k] = Status.NO_START.code
+        none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
+        found.certification[:, k] = none.code
         return
     asked = ~motion.added
     found.v[:, :, k] = motion.q[asked].T
@@ -176,5 +156,3 @@ def _alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
         c.code for c, a in zip(motion.certification, asked, strict=True) if a
     ]
     found.radius[:, k] = motion.radius[asked]
-
-

@@ -15,9 +15,11 @@ from linkwork.foundation.arrays import IndexArray
 from linkwork.kernels.lanes.program import Recorder, Value
 from linkwork.kernels.loop_table import LoopTable
 
-__all__ = ["BlockPart", "Closure", "Linear", "solved"]
+__all__ = ["BlockPart", "Closure", "Linear", "Phase", "solved"]
 
 Pair = tuple[Value | float, Value | float]
+#: Variables with their weights; empty for a fixed direction.
+Phase = tuple[tuple[int, float], ...]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,7 +63,7 @@ class Closure:
         self.lines = [k - loops.rows for k in part.equations if k >= loops.rows]
         self.terms = {k: np.flatnonzero(loops.row == k).tolist() for k in self.loops}
         self.phases = _phases(loops.phase_term, loops.phase_variable, loops.phase_weight)
-        self._phasors: dict[tuple[tuple[int, float], ...], Pair] = {}
+        self._phasors: dict[Phase, Pair] = {}
 
     def phasor(self, term: int) -> Pair:
         """Cosine and sine of a term's phase."""
@@ -70,7 +72,7 @@ class Closure:
             self._phasors[phase] = self._turned(phase)
         return self._phasors[phase]
 
-    def _turned(self, phase: tuple[tuple[int, float], ...]) -> Pair:
+    def _turned(self, phase: Phase) -> Pair:
         if not phase:
             return 1.0, 0.0
         if len(phase) == 1 and phase[0][1] in (1.0, -1.0):
@@ -111,12 +113,14 @@ class Closure:
         imag = [rec.total([y for _, y in sums[k]]) for k in self.loops]
         return [*real, *imag, *[self._line(row) for row in self.lines]]
 
-    def _line(self, row: int) -> Value:
+    def entries(self, row: int) -> list[tuple[int, float]]:
+        """Variables and weights of a linear row."""
         linear = self.table.linear
         mine = np.flatnonzero(linear.row == row)
-        parts: list[Value | float] = [
-            self.v[linear.variable[k]] * float(linear.weight[k]) for k in mine
-        ]
+        return [(int(linear.variable[k]), float(linear.weight[k])) for k in mine]
+
+    def _line(self, row: int) -> Value:
+        parts: list[Value | float] = [self.v[k] * weight for k, weight in self.entries(row)]
         name = f"k{row}"
         return self.rec.total([*parts, 0.0 if name in self.zeros else self.rec.input(name)])
 
@@ -160,9 +164,7 @@ class Closure:
         return sorted(found - set(self.part.unknowns))
 
 
-def _phases(
-    terms: IndexArray, variables: IndexArray, weights: np.ndarray
-) -> dict[int, tuple[tuple[int, float], ...]]:
+def _phases(terms: IndexArray, variables: IndexArray, weights: np.ndarray) -> dict[int, Phase]:
     found: dict[int, dict[int, float]] = {}
     for t, k, w in zip(terms.tolist(), variables.tolist(), weights.tolist(), strict=True):
         phase = found.setdefault(t, {})
@@ -178,9 +180,11 @@ class Linear:
     determinant: Value
 
 
-def solved(
-    rec: Recorder, matrix: Sequence[Sequence[Value | float]], sides: Sequence[Sequence[Value | float]]
-) -> Linear:
+#: Entries of a matrix by rows.
+Row = Sequence[Value | float]
+
+
+def solved(rec: Recorder, matrix: Sequence[Row], sides: Sequence[Row]) -> Linear:
     """Solve small linear systems lane by lane.
 
     One and two unknowns in closed form; more by elimination with the largest pivot of each
@@ -200,9 +204,7 @@ def solved(
     return _by_elimination(rec, matrix, sides)
 
 
-def _by_cramer(
-    rec: Recorder, m: Sequence[Sequence[Value | float]], sides: Sequence[Sequence[Value | float]]
-) -> Linear:
+def _by_cramer(rec: Recorder, m: Sequence[Row], sides: Sequence[Row]) -> Linear:
     (a, b), (c, d) = m
     determinant = rec.subtract(rec.multiply(a, d), rec.multiply(b, c))
     inverse = rec.divide(1.0, determinant)
@@ -214,11 +216,7 @@ def _by_cramer(
     return Linear(columns, determinant)
 
 
-def _by_elimination(
-    rec: Recorder,
-    matrix: Sequence[Sequence[Value | float]],
-    sides: Sequence[Sequence[Value | float]],
-) -> Linear:
+def _by_elimination(rec: Recorder, matrix: Sequence[Row], sides: Sequence[Row]) -> Linear:
     n = len(matrix)
     rows: list[list[Value | float]] = [
         [*row, *[side[k] for side in sides]] for k, row in enumerate(matrix)
@@ -227,9 +225,9 @@ def _by_elimination(
     inverses: list[Value] = []
     for k in range(n):
         for i in range(k + 1, n):
-            if _is_zero(rec, rows[i][k]):
+            if rec.is_zero(rows[i][k]):
                 continue
-            if _is_zero(rec, rows[k][k]):
+            if rec.is_zero(rows[k][k]):
                 rows[k], rows[i] = rows[i], rows[k]
                 determinant = -determinant
                 continue
@@ -256,7 +254,3 @@ def _by_elimination(
             x[k] = rec.multiply(rest, inverses[k])
         columns.append(x)
     return Linear(columns, determinant)
-
-
-def _is_zero(rec: Recorder, x: Value | float) -> bool:
-    return rec._number(x) == 0.0

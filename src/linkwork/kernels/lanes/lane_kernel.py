@@ -41,11 +41,12 @@ class Steps:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LaneRows:
-    """What became of D designs over R rows.
+    """Where the march of D designs over R rows leaves what it finds.
 
-    ``v`` (n, R, D): unknowns, NaN where not reached. ``radius`` (R, D): of the proof, weighted
-    ((0, D) without). ``reached`` (R, D). ``found`` (D,): the start. ``stopped`` (2, D): the last
-    value of t downwards and upwards where a design could go no further, NaN where it went through.
+    ``v`` (n, R, D): unknowns, untouched where not reached. ``radius`` (R, D): of the proof,
+    weighted ((0, D) without). ``reached`` (R, D). ``found`` (D,): the start. ``stopped`` (2, D):
+    the last value of t downwards and upwards where a design could go no further, NaN where it went
+    through.
     """
 
     v: Array
@@ -53,6 +54,18 @@ class LaneRows:
     reached: BoolArray
     found: BoolArray
     stopped: Array
+
+    @classmethod
+    def over(cls, v: Array, radius: Array) -> LaneRows:
+        """Nothing found yet; ``v`` and ``radius`` are written to."""
+        _, rows, count = v.shape
+        return cls(
+            v=v,
+            radius=radius,
+            reached=np.zeros((rows, count), dtype=bool),
+            found=np.zeros(count, dtype=bool),
+            stopped=np.full((2, count), np.nan),
+        )
 
 
 class LaneKernel:
@@ -106,8 +119,9 @@ class LaneKernel:
         start: Array,
         rows: Array,
         steps: Steps,
+        found: LaneRows,
         threads: int = 1,
-    ) -> LaneRows:
+    ) -> None:
         """March D designs through R rows.
 
         Parameters
@@ -118,6 +132,8 @@ class LaneKernel:
             Of the unknowns, at ``start`` (D,).
         rows : (R,)
             Increasing values of t.
+        found : LaneRows
+            Filled.
         """
         named = self.registers.named
         used = [name for name in coefficients if name in named]
@@ -127,13 +143,6 @@ class LaneKernel:
         given = np.zeros((len(self.guess), count))
         given[:n] = given[n : 2 * n] = guess
         given[-1] = start
-        found = LaneRows(
-            v=np.full((n, len(rows), count), np.nan),
-            radius=np.full((len(rows) if self.certified else 0, count), np.nan),
-            reached=np.zeros((len(rows), count), dtype=bool),
-            found=np.zeros(count, dtype=bool),
-            stopped=np.full((2, count), np.nan),
-        )
 
         def one(first: int) -> None:
             part = slice(first, first + _PART)
@@ -146,7 +155,6 @@ class LaneKernel:
         else:
             for first in firsts:
                 one(first)
-        return found
 
     def _part(
         self,

@@ -24,8 +24,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.kernels.lanes.closure import BlockPart, Closure, solved
-from linkwork.kernels.lanes.proof_program import BlockProof
 from linkwork.kernels.lanes.program import Program, Recorder, Registers, Value, lowered, reserve
+from linkwork.kernels.lanes.proof_program import BlockProof
 from linkwork.kernels.loop_table import LoopTable
 
 __all__ = ["MarchPrograms", "march_programs"]

@@ -112,8 +112,24 @@ def begin(code, spans, w, common, live, coefficients, design, guesses, guess, st
 
 @compiled
 def march(  # type: ignore[no-untyped-def]
-    code, spans, w, common, live, coefficients, design, state, node, found,
-    rows, steps, unknowns, out, radius, reached, end, last,
+    code,
+    spans,
+    w,
+    common,
+    live,
+    coefficients,
+    design,
+    state,
+    node,
+    found,
+    rows,
+    steps,
+    unknowns,
+    out,
+    radius,
+    reached,
+    end,
+    last,
 ):
     """Follow every mechanism from its start through the rows of the table.
 
@@ -168,7 +184,9 @@ def march(  # type: ignore[no-untyped-def]
         for i in range(LANES):
             if member[i] >= 0:
                 away = rows[row[i]] - w[t1, i]
-                w[t, i] = rows[row[i]] if abs(away) <= h[i] else w[t1, i] + math.copysign(h[i], away)
+                w[t, i] = (
+                    rows[row[i]] if abs(away) <= h[i] else w[t1, i] + math.copysign(h[i], away)
+                )
         _one(code, spans, w, PREDICT)
         _solve(code, spans, w, BLOCKS, BLOCKS + 2 * blocks, live, _STEPS)
         _prove(code, spans, w, blocks)

@@ -133,6 +133,10 @@ class Recorder:
         held = self.payload[x.number]
         return held if self.ops[x.number] is Op.CONSTANT and isinstance(held, float) else None
 
+    def is_zero(self, x: Value | float) -> bool:
+        """Whether something is the constant 0."""
+        return self._number(x) == 0.0
+
     def _negated(self, x: Value) -> Value | None:
         """y for x = -y."""
         if self.ops[x.number] is not Op.NEG:
@@ -195,8 +199,8 @@ class Recorder:
         a, b = self._number(x), self._number(y)
         if a is not None and b is not None:
             return self.constant(a / b)
-        if b is not None and abs(b) == 1.0:
-            return self.multiply(x, b)
+        if b is not None and b and abs(np.frexp(b)[0]) == 0.5:  # exact for powers of two
+            return self.multiply(x, 1.0 / b)
         if a == 0.0:
             return self.constant(0.0)
         return self._new(Op.DIV, self._value(x).number, self._value(y).number)
@@ -349,9 +353,7 @@ class _Lowering:
             here, there = self._register(value), self.registers.of(name)
             if here != there:
                 code.append((int(Op.COPY), there, here, there, there))
-        return Program(
-            code=np.array(code, dtype=np.uint32).reshape(len(code), 5), height=self.top
-        )
+        return Program(code=np.array(code, dtype=np.uint32).reshape(len(code), 5), height=self.top)
 
     def _needed(self) -> set[int]:
         rec, todo, found = self.recorder, list(self.recorder.writes.values()), set[int]()
@@ -439,9 +441,7 @@ class _Lowering:
         self.place[k] = place
         return place
 
-    def _instruction(
-        self, k: int, target: Mapping[int, int]
-    ) -> tuple[int, int, int, int, int]:
+    def _instruction(self, k: int, target: Mapping[int, int]) -> tuple[int, int, int, int, int]:
         rec = self.recorder
         op, arguments = self.fused.get(k, (rec.ops[k], rec.arguments[k]))
         sources = [self._register(a) for a in arguments]
