@@ -10,6 +10,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.kernels.lanes.closure import BlockPart
+from linkwork.kernels.lanes.folding import LastNodes
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import march_programs
 from linkwork.kernels.lanes.marching import begin, march
@@ -32,7 +33,7 @@ class Steps:
 
     first: float = 0.05
     largest: float = 0.6
-    smallest: float = 1e-3
+    smallest: float = 2e-4
     tolerance: float = 1e-8
     most_turn: float = float(np.radians(40.0))
     most_correction: float = 0.1
@@ -46,7 +47,7 @@ class LaneRows:
     ``v`` (n, R, D): unknowns, untouched where not reached. ``radius`` (R, D): of the proof,
     weighted ((0, D) without). ``reached`` (R, D). ``found`` (D,): the start. ``stopped`` (2, D):
     the last value of t downwards and upwards where a design could go no further, NaN where it went
-    through.
+    through; ``last`` (2, S, D): the node there, see :meth:`LaneKernel.last_nodes`.
     """
 
     v: Array
@@ -54,9 +55,10 @@ class LaneRows:
     reached: BoolArray
     found: BoolArray
     stopped: Array
+    last: Array
 
     @classmethod
-    def over(cls, v: Array, radius: Array) -> LaneRows:
+    def over(cls, v: Array, radius: Array, kernel: LaneKernel) -> LaneRows:
         """Nothing found yet; ``v`` and ``radius`` are written to."""
         _, rows, count = v.shape
         return cls(
@@ -65,6 +67,18 @@ class LaneRows:
             reached=np.zeros((rows, count), dtype=bool),
             found=np.zeros(count, dtype=bool),
             stopped=np.full((2, count), np.nan),
+            last=np.empty((2, len(kernel.node), count)),
+        )
+
+    def take(self, where: IndexArray) -> LaneRows:
+        """Some of the designs."""
+        return LaneRows(
+            v=self.v[:, :, where],
+            radius=self.radius[:, where],
+            reached=self.reached[:, where],
+            found=self.found[where],
+            stopped=self.stopped[:, where],
+            last=self.last[:, :, where],
         )
 
 
@@ -156,6 +170,13 @@ class LaneKernel:
             for first in firsts:
                 one(first)
 
+    def last_nodes(self, found: LaneRows, way: int, where: IndexArray) -> LastNodes:
+        """The nodes at which some designs stopped, downwards (0) or upwards (1)."""
+        n, last = self.table.unknowns, found.last[way][:, where]
+        w, q, s, p = (last[k * n : (k + 1) * n] for k in range(4))
+        x = last[4 * n : 5 * n] if self.certified else np.zeros_like(w)
+        return LastNodes(t=found.stopped[way, where], w=w, s=s, q=q, p=p, x=x)
+
     def _part(
         self,
         places: IndexArray,
@@ -190,5 +211,5 @@ class LaneKernel:
             places, design, self.node, node, begun,
             rows, np.array([steps.first, steps.largest, steps.smallest]), self.unknowns,
             found.v[:, :, part], found.radius[:, part], found.reached[:, part],
-            found.stopped[:, part], np.empty((2, len(self.node), count)),
+            found.stopped[:, part], found.last[:, :, part],
         )  # fmt: skip
