@@ -21,7 +21,7 @@ class LinkworkSweep(Peer):
 
     def __init__(self, *, certify: bool) -> None:
         self.certify = certify
-        self.name = "linkwork sweep, certified" if certify else "linkwork sweep"
+        self.name = "linkwork, certified" if certify else "linkwork"
 
     def prepare(self, work: Work) -> Prepared:
         mechanisms = [mechanism_of(member.loops, work) for member in work.members]

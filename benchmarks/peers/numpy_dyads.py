@@ -16,7 +16,7 @@ Points = dict[str, tuple[Array, Array]]
 class NumpyDyads(DyadPeer):
     """Circles intersected by their radical line, x and y apart; the side is given, not followed."""
 
-    name = "NumPy dyads, vectorised"
+    name = "NumPy dyads"
     distribution = "numpy"
     module = "numpy"
 

@@ -19,7 +19,7 @@ __all__ = ["ScipyFsolve"]
 class ScipyFsolve(Peer):
     """The textbook recipe: the row before is the estimate of the next."""
 
-    name = "scipy fsolve, Jacobian"
+    name = "scipy fsolve"
     distribution = "scipy"
     module = "scipy"
     most_members = 20
