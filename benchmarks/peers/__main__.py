@@ -33,7 +33,7 @@ def main(arguments: Sequence[str]) -> int:
     for work in asked:
         entries += compare(work, peers, options.repeats, _tell)
         _tell("")
-        print(f"\n{table(entries[-len(peers):])}", flush=True)
+        print(f"\n{table(entries[-len(peers) :])}", flush=True)
     if options.to is not None:
         options.to.mkdir(parents=True, exist_ok=True)
         write_figures(options.to / "peers.json", described, options.repeats, entries)

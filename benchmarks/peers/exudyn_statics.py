@@ -173,10 +173,10 @@ class _Builder:
         away = complex(start - pivot)
         symbolic = self.exudyn.symbolic
 
-        def along_x(mbs: Any, t: Any, itemNumber: Any, lOffset: Any) -> Any:  # noqa: N803
+        def along_x(mbs: Any, t: Any, itemNumber: Any, lOffset: Any) -> Any:
             return radius * symbolic.cos(first + turn * t) - away.real
 
-        def along_y(mbs: Any, t: Any, itemNumber: Any, lOffset: Any) -> Any:  # noqa: N803
+        def along_y(mbs: Any, t: Any, itemNumber: Any, lOffset: Any) -> Any:
             return radius * symbolic.sin(first + turn * t) - away.imag
 
         create = import_module("exudyn.advancedUtilities").CreateSymbolicUserFunction

@@ -94,4 +94,5 @@ def _choose_signs(
         system.solve_kinematics(inputs.reshape(1, -1).copy())
         x, y = traced()
         gaps[signs] = float(np.nanmedian(np.abs(x + 1j * y - wanted)))
-    system.change_signs(list(min(gaps, key=gaps.__getitem__)))
+    best, _ = min(gaps.items(), key=lambda item: item[1])
+    system.change_signs(list(best))

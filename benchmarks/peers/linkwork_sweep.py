@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import linkwork as lw
+from benchmarks.peers.dyad_linkage import ComplexArray
 from benchmarks.peers.loop_system import LoopSystem
 from benchmarks.peers.peer import Peer, Prepared
 from benchmarks.peers.work import Work
@@ -31,7 +32,7 @@ class LinkworkSweep(Peer):
 
         return Prepared(run=run, read=self._read)
 
-    def _read(self, motions: list[lw.Motion]) -> np.ndarray[tuple[int, ...], np.dtype[np.complex128]]:
+    def _read(self, motions: list[lw.Motion]) -> ComplexArray:
         proved = [motion.certified | (not self.certify) for motion in motions]
         return np.array(
             [

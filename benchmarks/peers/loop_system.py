@@ -42,7 +42,7 @@ class LoopSystem:
     @property
     def angles(self) -> int:
         """How many unknowns are angles; they come first."""
-        return self.turning.shape[1]
+        return int(self.turning.shape[1])
 
     @property
     def unknowns(self) -> int:
@@ -56,13 +56,15 @@ class LoopSystem:
 
     def driven(self, u: float) -> ComplexArray:
         """The part of the loops that an input fixes, shape (m,)."""
-        return self.crank * np.exp(1j * u) + self.fixed
+        driven: ComplexArray = self.crank * np.exp(1j * u) + self.fixed
+        return driven
 
     def residual(self, q: Array, driven: ComplexArray) -> Array:
         """Real and imaginary parts of all loops, shape (2m,)."""
         n = self.angles
         gap = self.turning @ np.exp(1j * q[:n]) + self.sliding @ q[n:] + driven
-        return gap.view(np.float64)
+        parts: Array = gap.view(np.float64)
+        return parts
 
     def jacobian(self, q: Array) -> Array:
         """Derivatives of the residual, shape (2m, unknowns)."""
@@ -75,7 +77,8 @@ class LoopSystem:
     def trace(self, q: Array, inputs: Array) -> ComplexArray:
         """The compared point, shape (rows,), of solutions q (rows, unknowns)."""
         phasors = np.exp(1j * q[..., : self.angles]) @ self.traced[: self.angles]
-        return phasors + self.traced[-2] * np.exp(1j * inputs) + self.traced[-1]
+        place: ComplexArray = phasors + self.traced[-2] * np.exp(1j * inputs) + self.traced[-1]
+        return place
 
 
 def newton(system: LoopSystem, inputs: Array, largest_step: float = 0.01) -> Array:
@@ -125,10 +128,9 @@ def loops_of(linkage: DyadLinkage, first_input: float) -> LoopSystem:
     """
     at = linkage.positions(np.array([first_input]))
     places: dict[str, PhasorSum] = {
-        name: {FIXED: complex(point)}  # type: ignore[arg-type]  # one linkage, no family
-        for name, point in linkage.ground.items()
+        name: {FIXED: complex(point)} for name, point in linkage.ground.items()
     }
-    places[linkage.pin] = _sum(places[linkage.pivot], {CRANK: complex(linkage.radius)})  # type: ignore[arg-type]
+    places[linkage.pin] = _sum(places[linkage.pivot], {CRANK: complex(linkage.radius)})
     loops: list[PhasorSum] = []
     start: list[float] = []
     for dyad in linkage.dyads:

@@ -104,9 +104,7 @@ def _of_dyads(linkage: DyadLinkage, start: Array, inputs: Array) -> tuple[Any, A
         ways[dyad.point] = [*ways[dyad.second], (other_bar, unknowns + 1, 0.0)]
         closed.append((there, ways[dyad.point]))
         unknowns += 2
-    loose = [
-        (way[-1]) for point, way in ways.items() if way and _hangs(point, linkage)
-    ]
+    loose = [(way[-1]) for point, way in ways.items() if way and _hangs(point, linkage)]
 
     def loops(x: Array, i: float) -> Array:
         def along(way: list[Any]) -> Array:

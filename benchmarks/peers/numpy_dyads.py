@@ -22,7 +22,8 @@ class NumpyDyads(DyadPeer):
 
     def prepare(self, work: Work) -> Prepared:
         family = stacked(work.dyads)
-        fixed = {name: (np.real(p), np.imag(p)) for name, p in family.ground.items()}
+        ground = {name: np.asarray(point, complex) for name, point in family.ground.items()}
+        fixed: Points = {name: (point.real, point.imag) for name, point in ground.items()}
 
         def run() -> tuple[Array, Array]:
             return _placed(family, fixed, work.inputs)[family.traced]

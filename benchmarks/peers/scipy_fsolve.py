@@ -85,6 +85,6 @@ class _WrittenLoops:
         return self.matrix
 
     def _phasors(self, q: Array) -> list[complex]:
-        values = q.tolist()
-        turning = [complex(cos(x), sin(x)) for x in values[: self.angles]]
+        values: list[complex] = q.tolist()
+        turning = [complex(cos(x), sin(x)) for x in q[: self.angles].tolist()]
         return turning + values[self.angles :]

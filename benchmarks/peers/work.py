@@ -107,7 +107,7 @@ def four_bar(rows: int) -> Work:
 def four_bar_family(members: int = 10_000, rows: int = 200) -> Work:
     """Random crank-rockers whose shortest transmission angle stays above about 15 degrees."""
     rng = np.random.default_rng(200)
-    linkages = []
+    linkages: list[DyadLinkage] = []
     while len(linkages) < members:
         crank = rng.uniform(0.2, 0.5)
         ground, coupler, rocker = rng.uniform(0.8, 1.6, 3)

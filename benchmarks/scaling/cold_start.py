@@ -12,7 +12,7 @@ from benchmarks.peers.work import four_bar
 from benchmarks.scaling.part import Growth
 from benchmarks.timing import interleaved
 
-__all__ = ["cold_start", "first_cycle"]
+__all__ = ["cold_start"]
 
 
 def cold_start(repeats: int) -> Growth:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from benchmarks.peers.registry import chosen
 from benchmarks.peers.work import Member, Work, dyad_work
 from benchmarks.scaling.chains import coupled_loops, dyad_chain
 from benchmarks.scaling.part import Growth, grown
-
-import numpy as np
 
 __all__ = ["chain_of_dyads", "coupled"]
 

@@ -53,18 +53,20 @@ class Growth:
     notes: list[str] = field(default_factory=list)
 
     def table(self) -> str:
-        """Medians, and in brackets how many times the first of the same solver each is."""
+        """Medians; below them how many times the first of the same solver each is."""
         sizes = sorted({size for curve in self.times.values() for size in curve})
-        width = min(16, 58 // max(1, len(sizes)))
-        lines = [f"{self.title} [{self.unit}; in brackets: times the first]"]
+        width = min(12, 58 // max(1, len(sizes)))
+        lines = [f"{self.title} [{self.unit}]"]
         lines.append(f"{self.size:<22}" + "".join(f"{size:>{width},}" for size in sizes))
         for solver, curve in self.times.items():
             first = curve[min(curve)]
-            cells = [
-                f"{significant(curve[size])} ({curve[size] / first:.2g})" if size in curve else "-"
-                for size in sizes
-            ]
+            cells = [significant(curve[size]) if size in curve else "-" for size in sizes]
             lines.append(f"{solver:<22}" + "".join(f"{cell:>{width}}" for cell in cells))
+            if len(sizes) > 1:
+                ratios = [f"{curve[size] / first:.2g}" if size in curve else "" for size in sizes]
+                lines.append(
+                    f"{'':<22}" + "".join(f"{'× ' + r if r else '':>{width}}" for r in ratios)
+                )
         return "\n".join(lines + [f"  {note}" for note in self.notes])
 
 
@@ -97,9 +99,7 @@ def grown(
             notes += _notes(entry)
             if entry.verdict is not None:
                 times.setdefault(entry.peer, {})[count] = entry.median / share(count)
-    return Growth(
-        title=title, unit=unit, size=size, times=times, notes=list(dict.fromkeys(notes))
-    )
+    return Growth(title=title, unit=unit, size=size, times=times, notes=list(dict.fromkeys(notes)))
 
 
 def _notes(entry: Entry) -> list[str]:
