@@ -20,7 +20,10 @@ LEAST, MOST = 4.0, 4e6  # of the axis [ns]; wider where figures ask for it
 
 
 def draw(path: Path, machine: str, entries: Sequence[Entry]) -> None:
-    """Write the picture; what was not measured is left out, an incomplete answer is crossed."""
+    """Write the picture: marks with their medians beside, an incomplete answer as a cross.
+
+    What was not measured is left out.
+    """
     measured = [entry for entry in entries if entry.verdict is not None]
     if not measured:
         return
@@ -50,6 +53,10 @@ def _panel(axis: Axes, name: str, entries: Sequence[Entry]) -> None:
     for entry in entries:
         place = peers.index(entry.peer) + 0.3 * (0.5 * (len(tables) - 1) - tables.index(entry.work))
         _mark(axis, place, entry, filled=entry.work == tables[-1])
+    for place, peer in enumerate(peers):
+        medians = [significant(entry.median) for entry in entries if entry.peer == peer]
+        beside = axis.get_yaxis_transform()
+        axis.text(1.01, place, "   ".join(medians), transform=beside, va="center", fontsize=7)
     axis.set_yticks(range(len(peers)), peers)
     axis.set_ylim(-0.7, len(peers) - 0.3)
     axis.set_xscale("log")
@@ -75,19 +82,10 @@ def _mark(axis: Axes, place: float, entry: Entry, *, filled: bool) -> None:
         color=colour,
         markerfacecolor=colour if filled else "white",
     )
-    if filled:
-        axis.annotate(
-            significant(entry.median),
-            (most, place),
-            xytext=(6, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize=7,
-        )
 
 
 def _title(name: str, tables: Sequence[str]) -> str:
     parts = [work.partition(", ")[2] for work in tables]
     if len(parts) == 1:
         return f"{name}, {parts[0]}"
-    return f"{name}: {', '.join(parts[:-1])} (hollow) and {parts[-1]} (filled, figure)"
+    return f"{name}: {', '.join(parts[:-1])} (hollow), {parts[-1]} (filled)"
