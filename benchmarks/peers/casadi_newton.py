@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import shutil
 import tempfile
 from importlib import import_module
@@ -107,5 +108,6 @@ def _options(compiled: bool) -> dict[str, Any]:
     if not compiled:
         return {}
     folder = tempfile.mkdtemp(prefix="casadi-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
     options = {"flags": ["-O3", "-march=native"], "directory": f"{folder}/"}
     return {"jit": True, "compiler": "shell", "jit_options": options}

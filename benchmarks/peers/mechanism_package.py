@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-from benchmarks.peers.dyad_linkage import Array, ComplexArray, DyadLinkage
+from benchmarks.peers.dyad_linkage import Array, ComplexArray, Dyad, DyadLinkage
 from benchmarks.peers.peer import Peer, Prepared
 from benchmarks.peers.rapier import RapierDrive
 from benchmarks.peers.work import Member, Work
 
 __all__ = ["MechanismPackage"]
-
-Loops = Callable[[Array, float], Array]
 
 
 class MechanismPackage(Peer):
@@ -27,9 +24,7 @@ class MechanismPackage(Peer):
     most_members = 5
 
     def cannot(self, work: Work) -> str:
-        if work.dyads:
-            return "" if len(work.dyads[0].dyads) <= 9 else "cannot: joints too far from its origin"
-        return "" if work.rapiers else "cannot: not written for it"
+        return "" if work.dyads or work.rapiers else "cannot: not written for it"
 
     def prepare(self, work: Work) -> Prepared:
         built = [_mechanism(member, work.inputs) for member in work.members]
@@ -56,81 +51,93 @@ def _mechanism(member: Member, inputs: Array) -> tuple[Any, Any, complex]:
 
 
 def _of_dyads(linkage: DyadLinkage, start: Array, inputs: Array) -> tuple[Any, Any, complex]:
-    package = import_module("mechanism")
-    joints = {name: package.Joint(name) for name in (*linkage.ground, linkage.pin)}
-    ground = {name: complex(np.reshape(p, -1)[0]) for name, p in linkage.ground.items()}
-    at = linkage.positions(inputs[:1])
-    origin = ground[linkage.pivot]
-    crank = package.Vector((joints[linkage.pivot], joints[linkage.pin]), r=float(linkage.radius))
-    vectors, frame = [crank], {}
-    for name, place in ground.items():
-        if name != linkage.pivot:
-            away = place - origin
-            frame[name] = package.Vector(
-                (joints[linkage.pivot], joints[name]), r=abs(away), theta=float(np.angle(away))
-            )
-            vectors.append(frame[name])
-    #: How each point is reached from the pivot: vectors with their unknown angle and a turn.
-    ways: dict[str, list[tuple[Any, int | None, float]]] = {linkage.pivot: []}
-    ways.update({name: [(vector, None, 0.0)] for name, vector in frame.items()})
-    crank_step: tuple[Any, int | None, float] = (crank, -1, 0.0)
-    ways[linkage.pin] = [crank_step]
-    bars: dict[tuple[str, str], int] = {}
-    closed: list[tuple[list[Any], list[Any]]] = []
-    unknowns = 0
-    for dyad in linkage.dyads:
-        joints[dyad.point] = package.Joint(dyad.point)
+    return _Vectors(linkage, inputs).mechanism(start)
+
+
+#: A vector, the number of its unknown angle (``INPUT`` the crank's, None fixed), and a turn added.
+Step = tuple[Any, int | None, float]
+INPUT = -1
+
+
+class _Vectors:
+    """The vectors of a crank and dyads, and how each point is reached from the crank's pivot."""
+
+    def __init__(self, linkage: DyadLinkage, inputs: Array) -> None:
+        self.package = import_module("mechanism")
+        self.linkage = linkage
+        self.inputs = inputs
+        at = linkage.positions(inputs[:1])
+        self.at = {name: complex(point.reshape(-1)[0]) for name, point in at.items()}
+        self.joints = {name: self.package.Joint(name) for name in self.at}
+        self.vectors: list[Any] = []
+        self.ways: dict[str, list[Step]] = {linkage.pivot: []}
+        self.angles: dict[tuple[str, str], int] = {}  # of bars by their ends
+        self.closed: list[tuple[list[Step], list[Step]]] = []
+        for name in linkage.ground:
+            if name != linkage.pivot:
+                away = self.at[name] - self.at[linkage.pivot]
+                self._go(linkage.pivot, name, abs(away), None, theta=float(np.angle(away)))
+        self._go(linkage.pivot, linkage.pin, linkage.radius, INPUT)
+        for dyad in linkage.dyads:
+            self._place(dyad)
+
+    def _place(self, dyad: Dyad) -> None:
         if dyad.rigid:
-            one, other, point = (
-                complex(at[n].reshape(-1)[0]) for n in (dyad.first, dyad.second, dyad.point)
-            )
+            one, other, point = (self.at[n] for n in (dyad.first, dyad.second, dyad.point))
             turn = float(np.angle((point - one) / (other - one)))
-            side = package.Vector(
-                (joints[dyad.first], joints[dyad.point]), r=float(dyad.first_length)
-            )
-            vectors.append(side)
-            angle = bars[dyad.first, dyad.second]
-            ways[dyad.point] = [*ways[dyad.first], (side, angle, turn)]
-            continue
-        one_bar = package.Vector(
-            (joints[dyad.first], joints[dyad.point]), r=float(dyad.first_length)
+            angle = self.angles[dyad.first, dyad.second]
+            self._go(dyad.first, dyad.point, dyad.first_length, angle, turn)
+            return
+        ends = ((dyad.first, dyad.first_length), (dyad.second, dyad.second_length))
+        for base, length in ends:
+            angle = self.angles[base, dyad.point] = len(self.angles)
+            self._go(base, dyad.point, length, angle)
+            if base == dyad.first:
+                there = self.ways[dyad.point]
+        self.closed.append((there, self.ways[dyad.point]))
+
+    def _go(
+        self,
+        base: str,
+        point: str,
+        length: float | Array,
+        angle: int | None,
+        turn: float = 0.0,
+        **fixed: float,
+    ) -> None:
+        """Add a vector; from now on the point is reached by it."""
+        ends = (self.joints[base], self.joints[point])
+        vector = self.package.Vector(ends, r=float(length), **fixed)
+        self.vectors.append(vector)
+        self.ways[point] = [*self.ways[base], (vector, angle, turn)]
+
+    def mechanism(self, start: Array) -> tuple[Any, Any, complex]:
+        """The mechanism, its traced joint, and where its origin lies."""
+        used = {id(step[0]) for pair in self.closed for way in pair for step in way}
+        last = [way[-1] for way in self.ways.values() if way]
+        outside = [step for step in last if id(step[0]) not in used]
+
+        def loops(x: Array, i: float) -> Array:
+            gaps = [_along(there, x, i) - _along(back, x, i) for there, back in self.closed]
+            _along(outside, x, i)  # calling a vector sets it, also outside all loops
+            return np.concatenate(gaps)
+
+        linkage = self.linkage
+        origin = self.joints[linkage.pivot]
+        mechanism = self.package.Mechanism(
+            vectors=self.vectors, origin=origin, loops=loops, pos=self.inputs, guess=(start,)
         )
-        other_bar = package.Vector(
-            (joints[dyad.second], joints[dyad.point]), r=float(dyad.second_length)
-        )
-        vectors += [one_bar, other_bar]
-        bars[dyad.first, dyad.point], bars[dyad.second, dyad.point] = unknowns, unknowns + 1
-        there = [*ways[dyad.first], (one_bar, unknowns, 0.0)]
-        ways[dyad.point] = [*ways[dyad.second], (other_bar, unknowns + 1, 0.0)]
-        closed.append((there, ways[dyad.point]))
-        unknowns += 2
-    loose = [(way[-1]) for point, way in ways.items() if way and _hangs(point, linkage)]
-
-    def loops(x: Array, i: float) -> Array:
-        def along(way: list[Any]) -> Array:
-            total = np.zeros(2)
-            for vector, angle, turn in way:
-                if angle is None:
-                    total += vector()
-                else:
-                    total += vector((i if angle < 0 else x[angle]) + turn)
-            return total
-
-        gaps = np.array([along(there) - along(back) for there, back in closed])
-        for vector, angle, turn in loose:  # outside all loops, set all the same
-            vector(x[angle] + turn)
-        return gaps.ravel()
-
-    mechanism = package.Mechanism(
-        vectors=vectors, origin=joints[linkage.pivot], loops=loops, pos=inputs, guess=(start,)
-    )
-    return mechanism, joints[linkage.traced], origin
+        return mechanism, self.joints[linkage.traced], self.at[linkage.pivot]
 
 
-def _hangs(point: str, linkage: DyadLinkage) -> bool:
-    """Whether a rigid point carries nothing further, so that no loop sets its vector."""
-    rigid = any(dyad.point == point and dyad.rigid for dyad in linkage.dyads)
-    return rigid and not any(point in (dyad.first, dyad.second) for dyad in linkage.dyads)
+def _along(way: list[Step], x: Array, i: float) -> Array:
+    total = np.zeros(2)
+    for vector, angle, turn in way:
+        if angle is None:
+            total += vector()
+        else:
+            total += vector((i if angle == INPUT else x[angle]) + turn)
+    return total
 
 
 def _of_rapier(drive: RapierDrive, start: Array, inputs: Array) -> tuple[Any, Any, complex]:
