@@ -236,7 +236,7 @@ def _plain(equations: LoopEquations, own: LoopEquations) -> LoopEquations:
         name: replace(path, terms=_plain_terms(path.terms))
         for name, path in equations.points.items()
     }
-    symbols = {name: _first(number) for name, number in equations.symbols.items()}
+    symbols = {name: _first(number).real for name, number in equations.symbols.items()}
     return replace(own, loops=loops, points=points, symbols=symbols)
 
 

@@ -17,7 +17,8 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterable
+import operator
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, NoReturn, cast
 
 import numpy as np
@@ -119,6 +120,13 @@ class Truths:
     def __or__(self, other: object) -> Truths:
         return Truths(self.values | _bare(other), self.consensus)
 
+    def __eq__(self, other: object) -> Any:
+        return Truths(self.values == _bare(other), self.consensus)
+
+    def __ne__(self, other: object) -> Any:
+        return Truths(self.values != _bare(other), self.consensus)
+
+    __hash__ = None  # type: ignore[assignment]
     __rand__ = __and__
     __ror__ = __or__
 
@@ -127,7 +135,6 @@ class Lanes:
     """One number, real or complex, in n designs: ``values`` (n,)."""
 
     __slots__ = ("consensus", "values")
-    __array_ufunc__ = None  # NumPy scalars leave arithmetic to this class
 
     def __init__(self, values: AnyArray, consensus: Consensus) -> None:
         self.values = values
@@ -142,6 +149,12 @@ class Lanes:
         return Truths(truths, self.consensus)
 
     # Arithmetic
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **_: object) -> Any:
+        """NumPy scalars compute with lanes as floats do; arrays do not."""
+        if ufunc not in _OPERATORS or method != "__call__":
+            raise NotElementwise
+        return _OPERATORS[ufunc](*(n.item() if isinstance(n, np.generic) else n for n in inputs))
 
     def __add__(self, other: object) -> Lanes:
         return self.like(self.values + _bare(other))
@@ -238,8 +251,20 @@ class Lanes:
     __floordiv__ = __mod__ = __rfloordiv__ = __rmod__ = __iter__ = _refuse
 
 
+_OPERATORS: dict[object, Callable[..., Any]] = {
+    np.add: operator.add, np.subtract: operator.sub, np.multiply: operator.mul,
+    np.true_divide: operator.truediv, np.power: operator.pow, np.equal: operator.eq,
+    np.not_equal: operator.ne, np.less: operator.lt, np.less_equal: operator.le,
+    np.greater: operator.gt, np.greater_equal: operator.ge,
+}  # fmt: skip
+
+
 def _bare(number: object) -> Any:
-    return number.values if isinstance(number, Lanes | Truths) else number
+    if isinstance(number, Lanes | Truths):
+        return number.values
+    if isinstance(number, np.ndarray):
+        raise NotElementwise  # its entries are no lanes
+    return number
 
 
 def _power(own: Lanes, base: Any, exponent: Any) -> Lanes:
@@ -351,7 +376,9 @@ def remainder(x: float, period: float) -> float:
 
 def degrees(angle: float) -> float:
     """Radians in degrees."""
-    return angle * (180.0 / math.pi) if many(angle) else math.degrees(angle)
+    if many(angle):
+        return _real(angle * (180.0 / math.pi))
+    return math.degrees(angle)
 
 
 def finite(x: float) -> bool:
