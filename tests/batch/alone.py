@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 
 import numpy as np
@@ -12,60 +13,67 @@ from linkwork.motion.model import Model
 
 __all__ = ["agree", "disagreement"]
 
-RELATIVE = 1e-14  # of the longest link; rounding of a few operations
+RELATIVE = 1e-14  # of the longest link or of a radian: rounding of a few operations
 
 
-def agree(designs: Designs) -> None:
+def agree(designs: Designs, relative: float = RELATIVE) -> None:
     """Every design is as it is by itself."""
-    found = {k: text for k in range(len(designs)) if (text := disagreement(designs, k))}
-    assert not found
+    told = ((k, disagreement(designs, k, relative)) for k in range(len(designs)))
+    assert not [(k, text) for k, text in told if text]
 
 
-def disagreement(designs: Designs, k: int) -> str:
+def disagreement(designs: Designs, k: int, relative: float = RELATIVE) -> str:
     """How the k-th design differs from the one built by itself; empty if it does not."""
+    kind = designs.problems[designs.problem[k]]
+    if kind:
+        arrays = (designs.loops, designs.linear, designs.points, designs.start, designs.link_angles)
+        if not all(np.isnan(array[k]).all() for array in arrays):
+            return f"has coefficients, and the problem {kind}"
     try:
         alone = designs.design(k)
     except LinkworkError as error:
-        return "" if designs.message(k) == str(error) else f"no problem, alone: {error}"
-    other = designs.message(k)
-    if other:
-        return "" if "another structure" in other and _differs(designs.base, alone) else other
-    return _coefficients(designs, k, alone)
+        same = re.fullmatch(re.escape(kind).replace("…", ".*"), str(error), re.DOTALL)
+        return "" if same and designs.message(k) == str(error) else f"{kind!r}, alone: {error}"
+    if kind:
+        other = "another structure" in kind and _other_structure(designs.base, alone)
+        return "" if other and designs.message(k) == kind else kind
+    return _other_numbers(designs, k, alone, relative)
 
 
-def _coefficients(designs: Designs, k: int, alone: Model) -> str:
+def _other_numbers(designs: Designs, k: int, alone: Model, relative: float) -> str:
     base, equations = designs.base, alone.equations
-    size = equations.length_scale
-    tolerance = RELATIVE * size
-    pairs = {
-        "length_scale": (designs.length_scale[k], size, tolerance),
-        "linear": (designs.linear[k], alone.compiled.table.linear.constant, 4 * tolerance),
-        "link_angles": (designs.link_angles[k], [a.constant for a in equations.links.values()], RELATIVE),
-        "start": (designs.start[k], equations.start, np.maximum(RELATIVE, RELATIVE * np.abs(equations.start))),
-        "numbers": (designs.numbers[k], list(equations.dimensions.values()), None),
-        "redundant": (designs.redundant[k], [r.length for r in equations.redundant], tolerance),
-    }  # fmt: skip
-    for name, (ours, theirs, allowed) in pairs.items():
-        theirs = np.asarray(theirs, dtype=float)
-        allowed = RELATIVE * np.abs(theirs) if allowed is None else allowed
-        if np.shape(ours) != theirs.shape or (np.abs(ours - theirs) > allowed).any():
-            return f"{name}: {ours} alone {theirs}"
-    for name, rows, own, values in (
-        ("loops", base.compiled.table.loops, alone.compiled.table.loops, designs.loops[k]),
-        ("points", base.compiled.points.rows, alone.compiled.points.rows, designs.points[k]),
+    angles = [angle.constant for angle in equations.links.values()]
+    lengths = [part.length for part in equations.redundant]
+    size, known = equations.length_scale, list(equations.dimensions.values())
+    for name, ours, theirs, scale in (
+        ("length_scale", designs.length_scale[k], size, size),
+        ("linear", designs.linear[k], alone.compiled.table.linear.constant, max(size, 4.0)),
+        ("link_angles", designs.link_angles[k], angles, 1.0),
+        ("start", designs.start[k], equations.start, np.maximum(np.abs(equations.start), 1.0)),
+        ("numbers", designs.numbers[k], known, np.abs(known)),
+        ("redundant", designs.redundant[k], lengths, size),
     ):
-        ours, theirs = _by_key(rows, values), _by_key(own, own.coefficient)
-        for key in ours.keys() | theirs.keys():
-            mine, its = _padded(ours[key], theirs[key])
-            if np.abs(mine - its).max(initial=0.0) > tolerance:
-                return f"{name} {key}: {mine} alone {its}"
+        gap = np.abs(ours - np.asarray(theirs, dtype=float))
+        if not (gap <= relative * np.asarray(scale)).all():
+            return f"{name}: {ours} alone {theirs}"
+    table, own = base.compiled, alone.compiled
+    for name, rows, values, other in (
+        ("loops", table.table.loops, designs.loops[k], own.table.loops),
+        ("points", table.points.rows, designs.points[k], own.points.rows),
+    ):
+        mine, its = _by_key(rows, values), _by_key(other, other.coefficient)
+        for key in mine.keys() | its.keys():
+            gap = _gap(mine[key], its[key])
+            if not gap <= relative * size:
+                return f"{name} {key}: {mine[key]} alone {its[key]}"
     return ""
 
 
 def _by_key(rows, values):
     """Coefficients by row, variable length and weighted angles; like ones are interchangeable."""
     phases = defaultdict(list)
-    for term, variable, weight in zip(rows.phase_term, rows.phase_variable, rows.phase_weight, strict=True):  # fmt: skip
+    entries = zip(rows.phase_term, rows.phase_variable, rows.phase_weight, strict=True)
+    for term, variable, weight in entries:
         phases[term].append((variable, weight))
     found = defaultdict(list)
     for term, value in enumerate(values):
@@ -74,19 +82,26 @@ def _by_key(rows, values):
     return found
 
 
-def _padded(ours, theirs):
+def _gap(ours, theirs):
+    """The largest difference of like coefficients; one that is not there is 0."""
     count = max(len(ours), len(theirs))
-    padded = [values + [0j] * (count - len(values)) for values in (ours, theirs)]
-    # sorted by a projection that tells different vectors of a mechanism apart
-    return [np.array(sorted(p, key=lambda z: z.real + 0.7310585 * z.imag)) for p in padded]
+    mine = ours + [0j] * (count - len(ours))
+    left = theirs + [0j] * (count - len(theirs))
+    worst = 0.0
+    for value in mine:
+        nearest = min(left, key=lambda z, value=value: abs(z - value))
+        left.remove(nearest)
+        worst = max(worst, abs(nearest - value))
+    return worst
 
 
-def _differs(base: Model, alone: Model) -> bool:
+def _other_structure(base: Model, alone: Model) -> bool:
     """Whether two models differ in what a family must share."""
     one, two = base.compiled.table, alone.compiled.table
-    if base.equations.labels != alone.equations.labels or one.variables != two.variables:
+    names = [[(v.symbol, v.kind) for v in model.equations.variables] for model in (base, alone)]
+    if base.equations.labels != alone.equations.labels or names[0] != names[1]:
         return True
-    keys = [set(_by_key(t.loops, t.loops.coefficient)) for t in (one, two)]
+    keys = [set(_by_key(table.loops, table.loops.coefficient)) for table in (one, two)]
     lines = [(t.linear.row, t.linear.variable, t.linear.weight) for t in (one, two)]
     if keys[0] != keys[1] or any(not np.array_equal(a, b) for a, b in zip(*lines, strict=True)):
         return True

@@ -211,7 +211,7 @@ def family_base(model: Model, varied: Sequence[Quantity]) -> tuple[Model, bool]:
     spoken = sum(which.speed is not None for which in description.inputs)
     if model.equations.surplus is not None or spoken > 1:
         return model, False
-    consensus = Consensus(1)
+    consensus = Consensus(1, widest=True)
     numbers = {q: consensus.lanes(np.array([q.of(description)])) for q in varied}
     try:
         with np.errstate(all="ignore"):

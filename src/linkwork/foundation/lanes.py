@@ -71,6 +71,8 @@ class Consensus:
         n lanes.
     leader : int
         The lane that decides. What is only shown (a sign in a printed equation) follows lane 0.
+    widest : bool
+        Whether what varies counts as there where it is 0: the terms of all lanes together.
 
     Attributes
     ----------
@@ -80,8 +82,9 @@ class Consensus:
         Lanes with another value of a number that has to be one for all, as a gear ratio.
     """
 
-    def __init__(self, count: int, leader: int = 0) -> None:
+    def __init__(self, count: int, leader: int = 0, *, widest: bool = False) -> None:
         self.leader = leader
+        self.widest = widest
         self.agreeing: BoolArray = np.ones(count, dtype=bool)
         self.apart: BoolArray = np.zeros(count, dtype=bool)
 
@@ -152,7 +155,8 @@ class Lanes:
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **_: object) -> Any:
         """NumPy scalars compute with lanes as floats do; arrays do not."""
-        if ufunc not in _OPERATORS or method != "__call__":
+        arrays = any(isinstance(number, np.ndarray) for number in inputs)
+        if arrays or ufunc not in _OPERATORS or method != "__call__":
             raise NotElementwise
         return _OPERATORS[ufunc](*(n.item() if isinstance(n, np.generic) else n for n in inputs))
 
@@ -426,8 +430,8 @@ def _extreme(numbers: list[float], default: float, *, most: bool) -> float:
 
 
 def kept(x: complex) -> bool:
-    """Whether something of this size is there: not 0, or a number that varies."""
-    return many(x) or bool(x)
+    """Whether something of this size is there."""
+    return (many(x) and x.consensus.widest) or bool(x)
 
 
 def shown_by(x: complex) -> complex:
