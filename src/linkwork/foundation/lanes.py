@@ -19,7 +19,7 @@ import cmath
 import math
 import operator
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, NoReturn, cast
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, cast
 
 import numpy as np
 
@@ -38,6 +38,7 @@ __all__ = [
     "choose",
     "copysign",
     "degrees",
+    "everywhere",
     "exponential",
     "finite",
     "hypot",
@@ -56,6 +57,9 @@ __all__ = [
     "turn",
     "vector",
 ]
+
+
+_Number = TypeVar("_Number", float, complex)
 
 
 class NotElementwise(Exception):
@@ -397,13 +401,21 @@ def broken(x: float) -> bool:
     return not float(x).is_integer()
 
 
-def choose(condition: bool, yes: float, no: float) -> float:
+def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
     """``yes`` where the condition holds, else ``no``; both are computed."""
     truths: object = condition
     if isinstance(truths, Truths):
-        chosen: Array = np.where(truths.values, _bare(yes), _bare(no))
-        return truths.consensus.lanes(chosen)
+        chosen: AnyArray = np.where(truths.values, _bare(yes), _bare(no))
+        return cast(_Number, Lanes(chosen, truths.consensus))
     return yes if condition else no
+
+
+def everywhere(condition: bool) -> bool:
+    """Whether it holds in all lanes that are left: no lane leaves for it."""
+    truths: object = condition
+    if isinstance(truths, Truths):
+        return bool((truths.values | ~truths.consensus.agreeing).all())
+    return condition
 
 
 def largest(numbers: Iterable[float], default: float = 0.0) -> float:

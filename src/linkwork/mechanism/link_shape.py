@@ -8,8 +8,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.foundation.lanes import choose, degrees, largest, phase, rect, sqrt, turn, vector
+from linkwork.foundation.lanes import (
+    choose,
+    degrees,
+    everywhere,
+    largest,
+    phase,
+    rect,
+    sqrt,
+    turn,
+    vector,
+)
+from linkwork.mechanism.least_norm import full_rank, least_norm
 
 __all__ = ["Distance", "LinkShape", "ShapeError", "VertexAngle", "place"]
 
@@ -279,26 +289,26 @@ def _together(
     """All dimensions at once, from the sketch, completed by measured distances."""
     rows: list[Given] = list(given)
     measured: list[Distance] = []
-    start = np.array([sketch[p] for p in points])
+    placed = {p: sketch[p] for p in points}
     for i in range(len(points)):
         for j in range(i + 1, len(points)):
             if len(rows) >= 2 * len(points) - 3:
                 break
             length = abs(sketch[points[j]] - sketch[points[i]])
             candidate = Distance(points[i], points[j], length)
-            extended = _slopes(points, start, [*rows, candidate])
-            if length and np.linalg.matrix_rank(extended, 1e-9) == len(rows) + 1:
+            if length and full_rank(_slopes(placed, [*rows, candidate]), 1e-9):
                 rows.append(candidate)
                 measured.append(candidate)
-    flat = np.concatenate([start.real, start.imag])
-    n = len(points)
     for _ in range(_MOST_STEPS):
-        z = flat[:n] + 1j * flat[n:]
-        errors = np.array([row.error(dict(zip(points, z, strict=True))) for row in rows])
-        if np.max(np.abs(errors)) <= 1e-14:
+        errors = [row.error(placed) for row in rows]
+        done = largest(abs(error) for error in errors) <= 1e-14
+        if everywhere(done):
             break
-        flat = flat - np.linalg.lstsq(_slopes(points, z, rows), errors, rcond=1e-12)[0]
-    placed = dict(zip(points, (complex(p) for p in flat[:n] + 1j * flat[n:]), strict=True))
+        step = least_norm(_slopes(placed, rows), errors)
+        placed = {
+            p: choose(done, z, z - vector(step[k], step[k + len(points)]))
+            for k, (p, z) in enumerate(placed.items())
+        }
     wrong = [row for row in given if not row.agrees(placed, _AGREE)]
     if wrong:
         raise ShapeError(
@@ -310,19 +320,17 @@ def _together(
     return placed, measured
 
 
-def _slopes(points: tuple[str, ...], z: ComplexArray, rows: Sequence[Given]) -> Array:
-    """Derivatives of the rows' errors by all coordinates (x first, then y), shape (rows, 2n)."""
-    scale = float(np.max(np.abs(z - z[0]))) or 1.0
-    h = 1e-7 * scale
-    n = len(points)
+def _slopes(z: Mapping[str, complex], rows: Sequence[Given]) -> list[list[float]]:
+    """Derivatives of the rows' errors by all coordinates, x first, then y: rows of 2n."""
+    first = next(iter(z.values()))
+    h = 1e-7 * (largest(abs(place - first) for place in z.values()) or 1.0)
     columns = []
-    for k in range(2 * n):
-        shift = np.zeros(n, dtype=complex)
-        shift[k % n] = h if k < n else 1j * h
-        plus = dict(zip(points, z + shift, strict=True))
-        minus = dict(zip(points, z - shift, strict=True))
-        columns.append([(row.error(plus) - row.error(minus)) / (2 * h) for row in rows])
-    return np.array(columns).T
+    for shift in (h, 1j * h):
+        for point in z:
+            plus = {**z, point: z[point] + shift}
+            minus = {**z, point: z[point] - shift}
+            columns.append([(row.error(plus) - row.error(minus)) / (2 * h) for row in rows])
+    return [list(row) for row in zip(*columns, strict=True)]
 
 
 def _upright(z: Mapping[str, complex], points: tuple[str, ...]) -> dict[str, complex]:
