@@ -101,7 +101,10 @@ def _other_structure(base: Model, alone: Model) -> bool:
     names = [[(v.symbol, v.kind) for v in model.equations.variables] for model in (base, alone)]
     if base.equations.labels != alone.equations.labels or names[0] != names[1]:
         return True
-    keys = [set(_by_key(table.loops, table.loops.coefficient)) for table in (one, two)]
+    keys = [
+        {key: len(terms) for key, terms in _by_key(t.loops, t.loops.coefficient).items()}
+        for t in (one, two)
+    ]
     lines = [(t.linear.row, t.linear.variable, t.linear.weight) for t in (one, two)]
     if keys[0] != keys[1] or any(not np.array_equal(a, b) for a, b in zip(*lines, strict=True)):
         return True

@@ -32,6 +32,7 @@ __all__ = [
     "Consensus",
     "Lanes",
     "NotElementwise",
+    "Rest",
     "Truths",
     "as_float",
     "broken",
@@ -49,6 +50,7 @@ __all__ = [
     "phase",
     "rect",
     "remainder",
+    "rest_of",
     "row_of",
     "settled",
     "shown_by",
@@ -416,6 +418,43 @@ def everywhere(condition: bool) -> bool:
     if isinstance(truths, Truths):
         return bool((truths.values | ~truths.consensus.agreeing).all())
     return condition
+
+
+class Rest:
+    """The lanes in which something is not done yet, by themselves, with the leader.
+
+    Work goes on with the numbers of these lanes only, led as before; :meth:`leave` tells the whole
+    which of them left meanwhile.
+    """
+
+    def __init__(self, done: Truths) -> None:
+        self.whole = done.consensus
+        wanted = ~done.values & self.whole.agreeing
+        wanted[self.whole.leader] = False
+        self.lanes = np.concatenate([[self.whole.leader], np.flatnonzero(wanted)])
+        self.part = Consensus(len(self.lanes))
+
+    def narrowed(self, number: _Number) -> _Number:
+        """A number in these lanes."""
+        if not many(number):
+            return number
+        return cast(_Number, Lanes(number.values[self.lanes], self.part))
+
+    def widened(self, whole: _Number, part: _Number) -> _Number:
+        """A number of all lanes with what has become of it in these."""
+        values = np.array(np.broadcast_to(_bare(whole), self.whole.agreeing.shape))
+        values[self.lanes] = _bare(part)
+        return cast(_Number, Lanes(values, self.whole))
+
+    def leave(self) -> None:
+        """Lanes that went another way leave the whole."""
+        self.whole.agreeing[self.lanes] &= self.part.agreeing
+
+
+def rest_of(done: bool) -> Rest | None:
+    """The lanes in which something is not done; ``None`` for a plain condition."""
+    truths: object = done
+    return Rest(truths) if isinstance(truths, Truths) else None
 
 
 def largest(numbers: Iterable[float], default: float = 0.0) -> float:

@@ -33,7 +33,7 @@ def least_norm(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Seq
         found: Array = np.linalg.lstsq(np.array(matrix), np.array(right), rcond=_CUT)[0]
         return [float(number) for number in found]
     a, b = _stacked(matrix, lanes), _stacked([right], lanes)[:, 0]
-    finite: BoolArray = np.isfinite(a).all((1, 2)) & np.isfinite(b).all(1)
+    finite: BoolArray = np.isfinite(np.concatenate([a, b[:, :, None]], axis=2)).all(axis=(1, 2))
     if lanes.holds(~finite):
         raise np.linalg.LinAlgError
     x = np.full((len(a), a.shape[2]), np.nan)

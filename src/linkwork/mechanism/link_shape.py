@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from linkwork.foundation.lanes import (
+    Rest,
     choose,
     degrees,
     everywhere,
     largest,
     phase,
     rect,
+    rest_of,
     sqrt,
     turn,
     vector,
@@ -25,6 +27,7 @@ __all__ = ["Distance", "LinkShape", "ShapeError", "VertexAngle", "place"]
 
 _AGREE = 1e-9
 _MOST_STEPS = 60
+_FIRST_STEPS = 6  # most shapes need four
 
 
 class ShapeError(Exception):
@@ -68,6 +71,9 @@ class Distance:
     def shown(self, z: Mapping[str, complex]) -> str:
         return f"|{self.a}{self.b}| = {abs(z[self.b] - z[self.a]):.12g}"
 
+    def narrowed(self, rest: Rest) -> Distance:
+        return replace(self, length=rest.narrowed(self.length))
+
 
 @dataclass(frozen=True)
 class VertexAngle:
@@ -102,6 +108,9 @@ class VertexAngle:
     def shown(self, z: Mapping[str, complex]) -> str:
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
         return f"an angle of {degrees(phase(rays)):.12g}° at {self.vertex}"
+
+    def narrowed(self, rest: Rest) -> VertexAngle:
+        return replace(self, angle=rest.narrowed(self.angle))
 
 
 Given = Distance | VertexAngle
@@ -299,16 +308,7 @@ def _together(
             if length and full_rank(_slopes(placed, [*rows, candidate]), 1e-9):
                 rows.append(candidate)
                 measured.append(candidate)
-    for _ in range(_MOST_STEPS):
-        errors = [row.error(placed) for row in rows]
-        done = largest(abs(error) for error in errors) <= 1e-14
-        if everywhere(done):
-            break
-        step = least_norm(_slopes(placed, rows), errors)
-        placed = {
-            p: choose(done, z, z - vector(step[k], step[k + len(points)]))
-            for k, (p, z) in enumerate(placed.items())
-        }
+    placed = _gauss_newton(placed, rows, _MOST_STEPS)
     wrong = [row for row in given if not row.agrees(placed, _AGREE)]
     if wrong:
         raise ShapeError(
@@ -318,6 +318,41 @@ def _together(
             wrong[0].key,
         )
     return placed, measured
+
+
+def _gauss_newton(
+    z: dict[str, complex], rows: Sequence[Given], steps: int, first: int = _FIRST_STEPS
+) -> dict[str, complex]:
+    """Points at which no row has an error, or where the last step led.
+
+    Of many designs those that are not done after ``first`` steps go on by themselves.
+    """
+    count = len(z)
+    for k in range(steps):
+        errors = [row.error(z) for row in rows]
+        done = largest(abs(error) for error in errors) <= 1e-14
+        if everywhere(done):
+            break
+        if k == first and (rest := rest_of(done)) is not None:
+            return _gone_on(z, rows, steps - k, rest)
+        step = least_norm(_slopes(z, rows), errors)
+        z = {
+            p: choose(done, place, place - vector(step[k], step[k + count]))
+            for k, (p, place) in enumerate(z.items())
+        }
+    return z
+
+
+def _gone_on(
+    z: Mapping[str, complex], rows: Sequence[Given], steps: int, rest: Rest
+) -> dict[str, complex]:
+    """Further steps of the designs that are not done."""
+    own = {point: rest.narrowed(place) for point, place in z.items()}
+    try:
+        found = _gauss_newton(own, [row.narrowed(rest) for row in rows], steps, first=steps)
+    finally:
+        rest.leave()
+    return {point: rest.widened(place, found[point]) for point, place in z.items()}
 
 
 def _slopes(z: Mapping[str, complex], rows: Sequence[Given]) -> list[list[float]]:
