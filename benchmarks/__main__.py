@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import sys
 
-from benchmarks import chain_growth, configuration_time, cycle_time, process_start
+from benchmarks import chain_growth, configuration_time, cycle_time, design_time, process_start
 
 MEASUREMENTS = {
     "start": process_start.measure,
     "cycle": cycle_time.measure,
     "configurations": configuration_time.measure,
     "chain": chain_growth.measure,
+    "designs": design_time.measure,
 }
 
 

@@ -59,6 +59,9 @@ class Uniform:
     low: float
     high: float
 
+    def __post_init__(self) -> None:
+        _range("Uniform", (self.low, self.high))
+
     def __call__(self, generator: np.random.Generator, count: int) -> Array:
         return generator.uniform(self.low, self.high, count)
 
@@ -69,6 +72,13 @@ class Normal:
 
     mean: float
     deviation: float
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.mean) and math.isfinite(self.deviation) and self.deviation >= 0):
+            raise InputError(
+                "Normal needs a finite mean and a deviation of 0 or more, "
+                f"got {self.mean} and {self.deviation}"
+            )
 
     def __call__(self, generator: np.random.Generator, count: int) -> Array:
         return generator.normal(self.mean, self.deviation, count)
@@ -117,6 +127,11 @@ class Plan(Mapping[str, Array]):
     def __len__(self) -> int:
         return len(self.names)
 
+    def __eq__(self, other: object) -> bool:
+        return self is other  # arrays have no single truth to compare by
+
+    __hash__ = object.__hash__
+
     def __repr__(self) -> str:
         chunks = f"{self.chunks} chunk{'s' if self.chunks != 1 else ''}"
         return f"<Plan of {self.count} designs in {chunks}: {', '.join(self.names)}>"
@@ -149,12 +164,12 @@ class _Random(Plan):
         self.seed = seed
 
     def _column(self, column: int, k: int) -> Array:
-        count = len(self._rows(k))
-        values = np.asarray(self.drawn[column](_generator(self.seed, column, k), count), float)
-        if values.shape != (count,):
+        drawn = self.drawn[column](_generator(self.seed, column, k), CHUNK)
+        values = np.asarray(drawn, dtype=np.float64)
+        if values.shape != (CHUNK,):
             name, got = self.names[column], " × ".join(map(str, values.shape)) or "one"
-            raise InputError(f'the distribution of "{name}" drew {got} values, not {count}')
-        return values
+            raise InputError(f'the distribution of "{name}" drew {got} values, not {CHUNK}')
+        return values[: len(self._rows(k))]  # a whole chunk is drawn whatever the count
 
 
 class _LatinHypercube(Plan):
@@ -205,8 +220,8 @@ def random(count: int, of: Mapping[str, Range | Distribution], seed: int) -> Pla
         A range has equally likely values; :class:`Normal`, :class:`Uniform` or any function of a
         NumPy generator and a count.
     seed : int
-        The same count, names, distributions and seed give the same plan; another count only cuts it
-        off elsewhere.
+        The same distributions in the same order and the same seed give the same plan; another count
+        only cuts it off elsewhere.
 
     Raises
     ------

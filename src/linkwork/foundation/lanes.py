@@ -179,9 +179,10 @@ class Lanes:
         return self.like(_bare(other) - self.values)
 
     def __mul__(self, other: object) -> Lanes:
-        if not isinstance(other, Lanes) and other == 1:
+        bare = _bare(other)
+        if not isinstance(bare, np.ndarray) and bare == 1:
             return self
-        return self.like(self.values * _bare(other))
+        return self.like(self.values * bare)
 
     __rmul__ = __mul__
 
