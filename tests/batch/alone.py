@@ -56,6 +56,8 @@ def _other_numbers(designs: Designs, k: int, alone: Model, relative: float) -> s
         gap = np.abs(ours - np.asarray(theirs, dtype=float))
         if not (gap <= relative * np.asarray(scale)).all():
             return f"{name}: {ours} alone {theirs}"
+    if _other_laws(base, alone):
+        return "other laws, and no problem"
     table, own = base.compiled, alone.compiled
     for name, rows, values, other in (
         ("loops", table.table.loops, designs.loops[k], own.table.loops),
@@ -108,6 +110,10 @@ def _other_structure(base: Model, alone: Model) -> bool:
     lines = [(t.linear.row, t.linear.variable, t.linear.weight) for t in (one, two)]
     if keys[0] != keys[1] or any(not np.array_equal(a, b) for a, b in zip(*lines, strict=True)):
         return True
+    return _other_laws(base, alone)
+
+
+def _other_laws(base: Model, alone: Model) -> bool:
     laws = zip(base.equations.laws, alone.equations.laws, strict=True)
     return any(
         (a.constant, a.offset) != (b.constant, b.offset)

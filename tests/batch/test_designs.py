@@ -305,11 +305,52 @@ def test_a_design_by_itself_is_an_ordinary_mechanism():
         designs.design(1)
 
 
-def test_ordinary_designs_are_not_built_one_at_a_time(monkeypatch):
+@pytest.fixture
+def never_alone(monkeypatch):
     def refuse(self, k):
         raise AssertionError(f"design {k} was built alone")
 
     monkeypatch.setattr(building.Builder, "_alone", refuse)
+
+
+@pytest.mark.usefixtures("never_alone")
+def test_sides_of_the_sketch_need_no_pass_of_their_own(monkeypatch):
+    monkeypatch.setattr(building, "_MOST_PASSES", 1)
+    rng = np.random.default_rng(2)
+    designs_of(_four_bar(), {"P.y": rng.normal(0, 90, 50), "A P": rng.uniform(60, 80, 50)})
+    designs_of(_slider_crank(5), {"s.offset": [3.0, -4.0], "A.y": [30.0, -30.0]})
+
+
+def test_shapes_that_do_not_converge_stop_no_others():
+    mechanism, rng = lw.example("rapier-drive-links"), np.random.default_rng(6)
+    chosen = [q for q in quantities(mechanism.description) if q.table == "lengths"]
+    designs = designs_of(mechanism, _varied(mechanism, chosen, 0.4, rng, 80))
+    assert 0 < np.count_nonzero(designs.problem) < 40
+    agree(designs, 1e-12)
+
+
+def test_coefficients_beyond_every_number_are_a_problem():
+    loops = lw.loops(
+        dimensions={"a": 2.0, "b": 4.0},
+        loops={"one": "a*b*e^(i*t) + 9*e^(i*u) = s"},
+        guess={"u": -30, "s": 4, "t": 60},
+        inputs=lw.Input(variable="t"),
+    )
+    designs = designs_of(loops, {"a": [2.0, 1e200], "b": [4.0, 1e200]})
+    assert designs.message(0) == ""
+    assert designs.message(1) == "its equations have no finite coefficients"
+    assert np.isnan(designs.loops[1]).all()
+
+
+def test_a_term_more_than_the_base_has_is_another_structure(monkeypatch):
+    monkeypatch.setattr("linkwork.batch.designs.family_base", lambda model, varied: (model, False))
+    designs = designs_of(_slider_crank(), {"s.offset": [0.0, 3.0]})
+    assert [bool(p) for p in designs.problem] == [False, True]
+    agree(designs)
+
+
+@pytest.mark.usefixtures("never_alone")
+def test_ordinary_designs_are_not_built_one_at_a_time():
     rng = np.random.default_rng(2)
     mechanism = lw.example("jansen-leg")
     chosen = [q for q in quantities(mechanism.description) if q.table == "lengths"]
