@@ -12,6 +12,7 @@ from linkwork.batch import building
 from linkwork.batch.designs import designs_of
 from linkwork.batch.quantities import quantities
 from linkwork.foundation.errors import InputError, MechanismError, UnknownNameError
+from linkwork.mechanism import link_shape
 from tests.batch.alone import agree
 
 FOUR_BAR = {
@@ -327,6 +328,13 @@ def test_shapes_that_do_not_converge_stop_no_others():
     designs = designs_of(mechanism, _varied(mechanism, chosen, 0.4, rng, 80))
     assert 0 < np.count_nonzero(designs.problem) < 40
     agree(designs, 1e-12)
+
+
+def test_shapes_that_go_on_by_themselves_are_the_same(monkeypatch):
+    monkeypatch.setattr(link_shape._gauss_newton, "__defaults__", (1,))
+    mechanism, rng = lw.example("watt-linkage"), np.random.default_rng(6)
+    chosen = [q for q in quantities(mechanism.description) if q.table == "lengths"]
+    agree(designs_of(mechanism, _varied(mechanism, chosen, 0.1, rng, 20)), 1e-13)
 
 
 def test_coefficients_beyond_every_number_are_a_problem():

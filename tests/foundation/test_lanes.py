@@ -127,6 +127,21 @@ def _outcome(tree, names, text):
         return str(error)
 
 
+def test_what_is_not_done_goes_on_with_the_leader_and_comes_back():
+    consensus = Consensus(5, leader=1)
+    x = consensus.lanes(np.array([1.0, 2.0, 3.0, 4.0, 5.0]))
+    assert x < 4.5  # the last lane leaves
+    rest = lanes.rest_of(x < 2.5)
+    assert rest.lanes.tolist() == [1, 2, 3]
+    part = rest.narrowed(x)
+    assert part < 3.5  # and the fourth
+    rest.leave()
+    assert rest.widened(x, 10.0 * part).values.tolist() == [1.0, 20.0, 30.0, 40.0, 5.0]
+    assert consensus.agreeing.tolist() == [True, True, True, False, False]
+    assert rest.narrowed(7.0) == 7.0
+    assert lanes.rest_of(True) is None
+
+
 def test_least_norm_solutions_in_lanes_are_those_of_each_lane():
     matrices = RNG.normal(size=(6, 3, 5))
     matrices[2, 2] = matrices[2, 0] + matrices[2, 1]  # dependent rows
