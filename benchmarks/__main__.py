@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 
-from benchmarks import chain_growth, configuration_time, cycle_time, process_start
+from benchmarks import chain_growth, configuration_time, cycle_time, design_time, process_start
 from benchmarks.single_thread import run_alone
 
 MEASUREMENTS = {
@@ -16,6 +16,7 @@ MEASUREMENTS = {
     "cycle": cycle_time.measure,
     "configurations": configuration_time.measure,
     "chain": chain_growth.measure,
+    "designs": design_time.measure,
 }
 PROGRAMS = {"peers": "benchmarks.peers", "scaling": "benchmarks.scaling"}
 

@@ -211,7 +211,7 @@ def family_base(model: Model, varied: Sequence[Quantity]) -> tuple[Model, bool]:
     spoken = sum(which.speed is not None for which in description.inputs)
     if model.equations.surplus is not None or spoken > 1:
         return model, False
-    consensus = Consensus(1)
+    consensus = Consensus(1, widest=True)
     numbers = {q: consensus.lanes(np.array([q.of(description)])) for q in varied}
     try:
         with np.errstate(all="ignore"):
@@ -236,7 +236,7 @@ def _plain(equations: LoopEquations, own: LoopEquations) -> LoopEquations:
         name: replace(path, terms=_plain_terms(path.terms))
         for name, path in equations.points.items()
     }
-    symbols = {name: _first(number) for name, number in equations.symbols.items()}
+    symbols = {name: _first(number).real for name, number in equations.symbols.items()}
     return replace(own, loops=loops, points=points, symbols=symbols)
 
 

@@ -129,7 +129,7 @@ class Designs:
             self.design(k)
         except (LinkworkError, ArithmeticError) as error:
             return str(error)
-        return self.problems[self.problem[k]]
+        return self.problems[int(self.problem[k])]
 
 
 def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -> Designs:
@@ -140,9 +140,9 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
     mechanism : Model, or an object with one
     dimensions : Mapping[str, number or (B,)]
         What varies, everyday units: a name of ``[dimensions]``; an entry of ``[lengths]``
-        (``"O2 A"``) or ``[angles]`` (``"B A P"``); a coordinate (``"O4.x"``); the offset of a slider
-        (``"s16.offset"``); in loops and plain equations a name of ``[guess]``. A plain number
-        holds for all designs.
+        (``"O2 A"``) or ``[angles]`` (``"B A P"``); a coordinate (``"O4.x"``); the offset of a
+        slider (``"s16.offset"``); in loops and plain equations a name of ``[guess]``. A plain
+        number holds for all designs.
 
     Raises
     ------

@@ -17,8 +17,9 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, NoReturn, cast
+import operator
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, cast
 
 import numpy as np
 
@@ -31,12 +32,14 @@ __all__ = [
     "Consensus",
     "Lanes",
     "NotElementwise",
+    "Rest",
     "Truths",
     "as_float",
     "broken",
     "choose",
     "copysign",
     "degrees",
+    "everywhere",
     "exponential",
     "finite",
     "hypot",
@@ -47,6 +50,7 @@ __all__ = [
     "phase",
     "rect",
     "remainder",
+    "rest_of",
     "row_of",
     "settled",
     "shown_by",
@@ -55,6 +59,9 @@ __all__ = [
     "turn",
     "vector",
 ]
+
+
+_Number = TypeVar("_Number", float, complex)
 
 
 class NotElementwise(Exception):
@@ -70,6 +77,8 @@ class Consensus:
         n lanes.
     leader : int
         The lane that decides. What is only shown (a sign in a printed equation) follows lane 0.
+    widest : bool
+        Whether what varies counts as there where it is 0: the terms of all lanes together.
 
     Attributes
     ----------
@@ -79,8 +88,9 @@ class Consensus:
         Lanes with another value of a number that has to be one for all, as a gear ratio.
     """
 
-    def __init__(self, count: int, leader: int = 0) -> None:
+    def __init__(self, count: int, leader: int = 0, *, widest: bool = False) -> None:
         self.leader = leader
+        self.widest = widest
         self.agreeing: BoolArray = np.ones(count, dtype=bool)
         self.apart: BoolArray = np.zeros(count, dtype=bool)
 
@@ -119,6 +129,13 @@ class Truths:
     def __or__(self, other: object) -> Truths:
         return Truths(self.values | _bare(other), self.consensus)
 
+    def __eq__(self, other: object) -> Any:
+        return Truths(self.values == _bare(other), self.consensus)
+
+    def __ne__(self, other: object) -> Any:
+        return Truths(self.values != _bare(other), self.consensus)
+
+    __hash__ = None  # type: ignore[assignment]
     __rand__ = __and__
     __ror__ = __or__
 
@@ -127,7 +144,6 @@ class Lanes:
     """One number, real or complex, in n designs: ``values`` (n,)."""
 
     __slots__ = ("consensus", "values")
-    __array_ufunc__ = None  # NumPy scalars leave arithmetic to this class
 
     def __init__(self, values: AnyArray, consensus: Consensus) -> None:
         self.values = values
@@ -143,6 +159,13 @@ class Lanes:
 
     # Arithmetic
 
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **_: object) -> Any:
+        """NumPy scalars compute with lanes as floats do; arrays do not."""
+        arrays = any(isinstance(number, np.ndarray) for number in inputs)
+        if arrays or ufunc not in _OPERATORS or method != "__call__":
+            raise NotElementwise
+        return _OPERATORS[ufunc](*(n.item() if isinstance(n, np.generic) else n for n in inputs))
+
     def __add__(self, other: object) -> Lanes:
         return self.like(self.values + _bare(other))
 
@@ -156,9 +179,10 @@ class Lanes:
         return self.like(_bare(other) - self.values)
 
     def __mul__(self, other: object) -> Lanes:
-        if not isinstance(other, Lanes) and other == 1:
+        bare = _bare(other)
+        if not isinstance(bare, np.ndarray) and bare == 1:
             return self
-        return self.like(self.values * _bare(other))
+        return self.like(self.values * bare)
 
     __rmul__ = __mul__
 
@@ -238,8 +262,20 @@ class Lanes:
     __floordiv__ = __mod__ = __rfloordiv__ = __rmod__ = __iter__ = _refuse
 
 
+_OPERATORS: dict[object, Callable[..., Any]] = {
+    np.add: operator.add, np.subtract: operator.sub, np.multiply: operator.mul,
+    np.true_divide: operator.truediv, np.power: operator.pow, np.equal: operator.eq,
+    np.not_equal: operator.ne, np.less: operator.lt, np.less_equal: operator.le,
+    np.greater: operator.gt, np.greater_equal: operator.ge,
+}  # fmt: skip
+
+
 def _bare(number: object) -> Any:
-    return number.values if isinstance(number, Lanes | Truths) else number
+    if isinstance(number, Lanes | Truths):
+        return number.values
+    if isinstance(number, np.ndarray):
+        raise NotElementwise  # its entries are no lanes
+    return number
 
 
 def _power(own: Lanes, base: Any, exponent: Any) -> Lanes:
@@ -351,7 +387,9 @@ def remainder(x: float, period: float) -> float:
 
 def degrees(angle: float) -> float:
     """Radians in degrees."""
-    return angle * (180.0 / math.pi) if many(angle) else math.degrees(angle)
+    if many(angle):
+        return _real(angle * (180.0 / math.pi))
+    return math.degrees(angle)
 
 
 def finite(x: float) -> bool:
@@ -366,13 +404,58 @@ def broken(x: float) -> bool:
     return not float(x).is_integer()
 
 
-def choose(condition: bool, yes: float, no: float) -> float:
+def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
     """``yes`` where the condition holds, else ``no``; both are computed."""
     truths: object = condition
     if isinstance(truths, Truths):
-        chosen: Array = np.where(truths.values, _bare(yes), _bare(no))
-        return truths.consensus.lanes(chosen)
+        chosen: AnyArray = np.where(truths.values, _bare(yes), _bare(no))
+        return cast(_Number, Lanes(chosen, truths.consensus))
     return yes if condition else no
+
+
+def everywhere(condition: bool) -> bool:
+    """Whether it holds in all lanes that are left: no lane leaves for it."""
+    truths: object = condition
+    if isinstance(truths, Truths):
+        return bool((truths.values | ~truths.consensus.agreeing).all())
+    return condition
+
+
+class Rest:
+    """The lanes in which something is not done yet, by themselves, with the leader.
+
+    Work goes on with the numbers of these lanes only, led as before; :meth:`leave` tells the whole
+    which of them left meanwhile.
+    """
+
+    def __init__(self, done: Truths) -> None:
+        self.whole = done.consensus
+        wanted = ~done.values & self.whole.agreeing
+        wanted[self.whole.leader] = False
+        self.lanes = np.concatenate([[self.whole.leader], np.flatnonzero(wanted)])
+        self.part = Consensus(len(self.lanes))
+
+    def narrowed(self, number: _Number) -> _Number:
+        """A number in these lanes."""
+        if not many(number):
+            return number
+        return cast(_Number, Lanes(number.values[self.lanes], self.part))
+
+    def widened(self, whole: _Number, part: _Number) -> _Number:
+        """A number of all lanes with what has become of it in these."""
+        values = np.array(np.broadcast_to(_bare(whole), self.whole.agreeing.shape))
+        values[self.lanes] = _bare(part)
+        return cast(_Number, Lanes(values, self.whole))
+
+    def leave(self) -> None:
+        """Lanes that went another way leave the whole."""
+        self.whole.agreeing[self.lanes] &= self.part.agreeing
+
+
+def rest_of(done: bool) -> Rest | None:
+    """The lanes in which something is not done; ``None`` for a plain condition."""
+    truths: object = done
+    return Rest(truths) if isinstance(truths, Truths) else None
 
 
 def largest(numbers: Iterable[float], default: float = 0.0) -> float:
@@ -399,8 +482,8 @@ def _extreme(numbers: list[float], default: float, *, most: bool) -> float:
 
 
 def kept(x: complex) -> bool:
-    """Whether something of this size is there: not 0, or a number that varies."""
-    return many(x) or bool(x)
+    """Whether something of this size is there."""
+    return (many(x) and x.consensus.widest) or bool(x)
 
 
 def shown_by(x: complex) -> complex:
