@@ -1,24 +1,36 @@
-"""The place of Linkwork's compiled families; skipped while there are none."""
+"""Linkwork's families: all mechanisms of one structure in one call, the kernels warm."""
 
 from __future__ import annotations
 
-import linkwork as lw
+import numpy as np
+
+from benchmarks.peers.dyad_linkage import ComplexArray
+from benchmarks.peers.linkwork_sweep import family_of
 from benchmarks.peers.peer import Peer, Prepared
 from benchmarks.peers.work import Work
+from linkwork.batch import FamilyMotion
 
 __all__ = ["LinkworkFamily"]
 
 
 class LinkworkFamily(Peer):
-    """Many mechanisms of one structure in one compiled call."""
+    """``family.sweep`` with or without proof, on one core; designs are built beforehand."""
 
-    name = "linkwork family"
     distribution = "linkwork"
     module = "linkwork"
 
-    def missing(self) -> str:
-        return "" if hasattr(lw, "family") else "not there yet (linkwork.family)"
+    def __init__(self, *, certify: bool) -> None:
+        self.certify = certify
+        self.name = "linkwork family, certified" if certify else "linkwork family"
 
     def prepare(self, work: Work) -> Prepared:
-        """Raises until the call is written here: the report then says so."""
-        raise NotImplementedError("linkwork.family exists: call it in linkwork_family.py")
+        family = family_of(work)
+
+        def run() -> FamilyMotion:
+            return family.sweep(certify=self.certify, threads=1)
+
+        return Prepared(run=run, read=self._read)
+
+    def _read(self, motion: FamilyMotion) -> ComplexArray:
+        proved = motion.certified | (not self.certify)
+        return np.where(proved, motion.trace("T"), np.nan)

@@ -19,7 +19,8 @@ __all__ = ["PEERS", "chosen"]
 PEERS: tuple[Peer, ...] = (
     LinkworkSweep(certify=True),
     LinkworkSweep(certify=False),
-    LinkworkFamily(),
+    LinkworkFamily(certify=True),
+    LinkworkFamily(certify=False),
     PylinkageStepFast(),
     PylinkageEnsemble(),
     NumpyDyads(),

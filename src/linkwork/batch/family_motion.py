@@ -81,7 +81,7 @@ class FamilyMotion:
     @property
     def found(self) -> BoolArray:
         """Which rows hold a position, (D, R)."""
-        found: BoolArray = Status.CONVERGED.code == self.rows.status.T
+        found: BoolArray = np.isin(self.rows.status.T, Status.CONVERGED.code)
         return found
 
     @property
@@ -92,7 +92,7 @@ class FamilyMotion:
     @property
     def certified(self) -> BoolArray:
         """Which rows are proved, (D, R)."""
-        proved: BoolArray = Certification.CERTIFIED.code == self.rows.certification.T
+        proved: BoolArray = np.isin(self.rows.certification.T, Certification.CERTIFIED.code)
         return proved
 
     @property

@@ -228,7 +228,7 @@ class _March:
     def _settled(self, t: Array, reached: BoolArray, limits: Array) -> BoolArray:
         """Designs of which no row is missing that lies within their limits, (S,)."""
         low, high = limits
-        settled: BoolArray = ~np.isnan(limits).any(axis=0)
+        settled: BoolArray = np.logical_not(np.isnan(limits).any(axis=0))
         most = int((t[-1] - t[0]) / FULL_TURN) + 2 if self.free else 0
         for turns in range(-most, most + 1):
             moved = t[:, None] + turns * FULL_TURN

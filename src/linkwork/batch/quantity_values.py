@@ -69,8 +69,8 @@ class QuantityValues:
                 return self._output(own).T
             case axis:
                 place = self._point(own)
-                coordinate: Array = (place.real if axis == "x" else place.imag).T
-                return coordinate
+                coordinates: Array = place.real.T if axis == "x" else place.imag.T
+                return coordinates
 
     def unit(self, name: str) -> str:
         """The everyday unit of a quantity, "" for none."""
@@ -107,7 +107,8 @@ class QuantityValues:
             raise UnknownNameError(
                 f'there is no point "{point}" {choices("points", self.equations.points, point)}'
             )
-        return self._point(own).T
+        places: ComplexArray = self._point(own).T
+        return places
 
     def _shown(self, value: Array, kind: Kind) -> Array:
         shown: Array = value.T / self.model.units.scale(kind)
