@@ -1,24 +1,34 @@
-"""Run the measurements: ``python -m benchmarks [name …]``; every figure is a ratio in one run."""
+"""Run the measurements: ``python -m benchmarks [name …]``; every figure is a ratio in one run.
+
+``python -m benchmarks peers`` and ``python -m benchmarks scaling`` are programs of their own, with
+options (``--help``) and without bars.
+"""
 
 from __future__ import annotations
 
 import sys
 
-from benchmarks import chain_growth, configuration_time, cycle_time, process_start
+from benchmarks import chain_growth, configuration_time, cycle_time, design_time, process_start
+from benchmarks.single_thread import run_alone
 
 MEASUREMENTS = {
     "start": process_start.measure,
     "cycle": cycle_time.measure,
     "configurations": configuration_time.measure,
     "chain": chain_growth.measure,
+    "designs": design_time.measure,
 }
+PROGRAMS = {"peers": "benchmarks.peers", "scaling": "benchmarks.scaling"}
 
 
 def main(names: list[str]) -> int:
     """Print one table per measurement; exit 1 if a bar is missed."""
+    if names and names[0] in PROGRAMS:
+        return run_alone(PROGRAMS[names[0]], names[1:])
     unknown = [name for name in names if name not in MEASUREMENTS]
     if unknown:
-        print(f"unknown: {', '.join(unknown)} (there are: {', '.join(MEASUREMENTS)})")
+        known = ", ".join([*MEASUREMENTS, *PROGRAMS])
+        print(f"unknown: {', '.join(unknown)} (there are: {known})")
         return 2
     passed = [MEASUREMENTS[name]() for name in names or MEASUREMENTS]
     return 0 if all(passed) else 1

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from linkwork import drawing, motion, textfile
+from linkwork import batch, drawing, motion, textfile
 from linkwork import equations as closure
 from linkwork.foundation.errors import (
     InputError,
@@ -25,6 +25,7 @@ from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
 if TYPE_CHECKING:
+    from linkwork.batch.family import Family
     from linkwork.results.check import CheckReport
     from linkwork.results.circuits import Circuits
     from linkwork.results.classification import Inversion
@@ -229,6 +230,17 @@ class Mechanism:
     ) -> Circuits:
         """All circuits with their branches; see :func:`linkwork.motion.circuits`."""
         return motion.circuits(self.model, certify=certify, progress=progress)
+
+    def family(self, dimensions: Mapping[str, object]) -> Family:
+        """Many designs of the mechanism at once; see :func:`linkwork.batch.designs_of`.
+
+        Parameters
+        ----------
+        dimensions : Mapping[str, number or (D,)]
+            What varies, everyday units: dimensions, lengths (``"O2 A"``), angles, coordinates
+            (``"O4.x"``); a plan of :mod:`linkwork.batch`.
+        """
+        return batch.family_of(self.model, dimensions)
 
     def scene(
         self,

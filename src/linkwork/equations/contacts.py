@@ -22,6 +22,7 @@ from linkwork.equations.outline import Outline
 from linkwork.equations.wheels import wheels_in_mesh
 from linkwork.expression.tree import Name
 from linkwork.foundation.arrays import ComplexArray
+from linkwork.foundation.lanes import settled
 from linkwork.foundation.names import canonical
 from linkwork.kernels.piecewise import Piecewise
 from linkwork.mechanism.contacts import Cam, Curve
@@ -95,12 +96,12 @@ class Contacts:
             LawEquation(
                 label=cam.name,
                 terms=tuple((canonical(name), weight) for name, weight in weights.items()),
-                constant=constant,
+                constant=settled(constant),
                 law=motion.times(found.sign),
                 shown=cam.name,
                 meaning=_motion_text(cam, found.sign),
                 inner=tuple((canonical(name), weight) for name, weight in turned.items()),
-                offset=at - start,
+                offset=settled(at - start),
                 kind="length" if found.length else "angle",
             )
         )

@@ -6,7 +6,6 @@ is a sum of terms: a fixed vector, and for slots and sliders a variable length a
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -14,6 +13,7 @@ from dataclasses import dataclass, field
 from linkwork.equations.model import LinkAngle, Redundant, Term
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, Node
+from linkwork.foundation.lanes import choose, copysign, degrees, kept, phase, remainder, turn
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.contacts import Weld
 from linkwork.mechanism.description import Problems
@@ -87,10 +87,10 @@ class Frames:
         s, t = (linkage.shapes.local[body][p] for p in line)
         along = (t - s) / abs(t - s)
         terms = [self.turned(along, None, body, own)]
-        if offset:
+        if kept(offset):
             name = canonical(symbol)
             self.symbols[name] = abs(offset)
-            sideways = 1j * along * math.copysign(1.0, offset)
+            sideways = 1j * along * copysign(1.0, offset)
             terms.append(self.turned(sideways * abs(offset), Name(name, name), body))
         self.places[body][point] = Place(s, tuple(terms), base=line[0])
         self.lengths.append(own)
@@ -104,7 +104,7 @@ class Frames:
         self.bodies.append(name)
         self.angle[name] = LinkAngle(variable=turning, constant=0.0)
         span = self.linkage.sketched(b) - self.linkage.sketched(a)
-        self.start[turning] = cmath.phase(span)
+        self.start[turning] = phase(span)
         if length is None:
             rod = self.turned(1.0 + 0j, None, name, name)
             self.lengths.append(name)
@@ -143,9 +143,9 @@ class Frames:
     def turned(self, z: complex, shown: Node | None, body: str, length: str | None = None) -> Term:
         """A vector of the body's frame as a term."""
         angle = self.angle[body]
-        phase = ((canonical(angle.variable), 1.0),) if angle.variable is not None else ()
+        turning = ((canonical(angle.variable), 1.0),) if angle.variable is not None else ()
         symbol = None if length is None else canonical(length)
-        return Term.vector(z * cmath.exp(1j * angle.constant), shown, symbol, phase)
+        return Term.vector(z * turn(angle.constant), shown, symbol, turning)
 
     def between(self, body: str, start: str, end: str) -> list[Term]:
         """The vector from one point to another across a body, as terms."""
@@ -187,7 +187,7 @@ class _Orientation:
                 problems.add(
                     ("sliders", k),
                     f'"{slider.link}" cannot keep its angle against "{slider.on}": '
-                    f"other sliders turn it by {math.degrees(gap):.6g}° from there",
+                    f"other sliders turn it by {degrees(gap):.6g}° from there",
                 )
         for k, weld in enumerate(linkage.welds):
             first, second = weld.links
@@ -196,7 +196,7 @@ class _Orientation:
                 problems.add(
                     ("welds", k),
                     f'"{second}" cannot keep its angle against "{first}": '
-                    f"other joints turn it by {math.degrees(gap):.6g}° from there",
+                    f"other joints turn it by {degrees(gap):.6g}° from there",
                 )
         driven = {w.link for w in linkage.inputs if w.link}
         self._name: dict[str, str] = {}
@@ -231,7 +231,7 @@ class _Orientation:
         a, offset_a = self._find(link)
         b, offset_b = self._find(on)
         if a == b:
-            gap = math.remainder(offset_a - offset_b - constant, 2 * math.pi)
+            gap = remainder(offset_a - offset_b - constant, 2 * math.pi)
             return gap if abs(gap) > 1e-9 else 0.0
         self._parent[a] = (b, constant + offset_b - offset_a)
         return 0.0
@@ -247,19 +247,19 @@ class _Orientation:
         """The link's angle minus the carrier's, from the line and the sliding points."""
         linkage = self.linkage
         s, t = (linkage.shapes.local[slider.on][p] for p in slider.line)
-        line = cmath.phase(t - s)
+        line = phase(t - s)
         local = linkage.shapes.local[slider.link]
         if len(slider.points) == 2:
-            own = cmath.phase(local[slider.points[1]] - local[slider.points[0]])
+            own = phase(local[slider.points[1]] - local[slider.points[0]])
             d, e, a, b = (linkage.sketched(p) for p in (*slider.points, *slider.line))
             along = ((e - d) * (b - a).conjugate()).real >= 0
-            return line - own + (0.0 if along else math.pi)
+            return line - own + choose(along, 0.0, math.pi)
         if slider.angle is not None:
             return line + linkage.numbers(slider.angle) * linkage.angle.radians
         if slider.link != GROUND and len(linkage.links[slider.link]) < 2:
             return line
         a, b = (linkage.sketched(p) for p in slider.line)
-        return line + self.sketched_angle(slider.link) - cmath.phase(b - a)
+        return line + self.sketched_angle(slider.link) - phase(b - a)
 
     def angle_of(self, body: str) -> LinkAngle:
         """The body's angle: its group's variable plus a constant; ground stands at zero."""
@@ -274,13 +274,11 @@ class _Orientation:
         if body == GROUND or len(self.linkage.links[body]) < 2:
             return 0.0
         first, second = self.linkage.links[body][:2]
-        return cmath.phase(self.linkage.sketched(second) - self.linkage.sketched(first))
+        return phase(self.linkage.sketched(second) - self.linkage.sketched(first))
 
 
 def _tidy(angle: float) -> float:
     """Into (-π, π], with rounding next to a multiple of a right angle removed."""
-    reduced = math.remainder(angle, 2 * math.pi)
-    quarter = round(reduced / (math.pi / 2))
-    if abs(reduced - quarter * math.pi / 2) < 1e-15:
-        return quarter * math.pi / 2
-    return reduced
+    reduced = remainder(angle, 2 * math.pi)
+    square = round(reduced / (math.pi / 2)) * math.pi / 2
+    return choose(abs(reduced - square) < 1e-15, square, reduced)

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import cmath
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-
-import numpy as np
 
 from linkwork.equations.contacts import Contacts
 from linkwork.equations.frames import Frames
@@ -26,6 +22,7 @@ from linkwork.equations.redundancy import Bar, released_links
 from linkwork.equations.structure import Node, Structure, StructureBlock
 from linkwork.expression.tree import Name
 from linkwork.foundation.errors import MechanismError, Problem
+from linkwork.foundation.lanes import hypot, largest, phase, row_of, smallest, turn
 from linkwork.foundation.names import canonical, pretty
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.linkage import GROUND, Linkage
@@ -107,7 +104,7 @@ class _Writer:
             outlines=contacts.outlines,
             symbols=dict(frames.symbols),
             dimensions=dict(linkage.numbers.known),
-            start=np.array([self.start[v.name] for v in variables]),
+            start=row_of(self.start[v.name] for v in variables),
             points=self.points,
             links={b: frames.angle[b] for b in linkage.links if b != GROUND},
             sliders={name: name for name in frames.lengths},
@@ -164,7 +161,7 @@ class _Writer:
             if part.variable is not None:
                 terms.append((canonical(part.variable), sign))
                 value += sign * self.frames.start[part.variable]
-        wrapped = cmath.phase(cmath.exp(1j * value))
+        wrapped = phase(turn(value))
         constant = angle.constant - base.constant + wrapped - value  # off by whole turns
         self.linear.append(
             LinearEquation(label=f"{link} against {against}", terms=tuple(terms), constant=constant)
@@ -341,5 +338,5 @@ def _longest(linkage: Linkage) -> float:
     for local in linkage.shapes.local.values():
         x = [z.real for z in local.values()]
         y = [z.imag for z in local.values()]
-        extents.append(math.hypot(max(x) - min(x), max(y) - min(y)))
-    return max(extents, default=0.0) or 1.0
+        extents.append(hypot(largest(x) - smallest(x), largest(y) - smallest(y)))
+    return largest(extents) or 1.0

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-import numpy as np
-
 from linkwork.equations.model import (
     LoopEquation,
     LoopEquations,
@@ -20,6 +18,7 @@ from linkwork.equations.phasors import Monomial, PhasorReader
 from linkwork.expression.grammar import CONSTANTS, parse, parse_equation
 from linkwork.expression.tree import Binary, Name, Negative, Node, names_in
 from linkwork.foundation.errors import ExpressionError, choices
+from linkwork.foundation.lanes import kept, largest, row_of, shown_by
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.loops import Loops, PlainEquations
@@ -51,8 +50,8 @@ def read_loops(mechanism: Loops) -> LoopEquations:
             loops.append(
                 LoopEquation(
                     label=label,
-                    left=tuple(_term(m, text) for m in left if m.value),
-                    right=tuple(_term(m, text) for m in right if m.value),
+                    left=tuple(_term(m, text) for m in left if kept(m.value)),
+                    right=tuple(_term(m, text) for m in right if kept(m.value)),
                 )
             )
         except ExpressionError as error:
@@ -79,8 +78,8 @@ def read_loops(mechanism: Loops) -> LoopEquations:
         loops=tuple(loops),
         symbols=_symbols(mechanism, loops),
         dimensions=dict(numbers.known),
-        start=np.array(
-            [values[n] * (mechanism.angle.radians if kinds[n] == "angle" else 1) for n in order]
+        start=row_of(
+            values[n] * (mechanism.angle.radians if kinds[n] == "angle" else 1) for n in order
         ),
         points=points,
         sliders={spelling[n]: n for n in spelling if kinds[n] == "length"},
@@ -105,7 +104,8 @@ def _term(m: Monomial, text: str) -> Term:
     sign = -1 if isinstance(m.shown, Negative) else 1
     shown = m.shown.operand if isinstance(m.shown, Negative) else m.shown
     turn = 0.0
-    if shown is not None and abs(m.value.real) <= 1e-15 * abs(m.value.imag):
+    seen = shown_by(m.value)
+    if shown is not None and abs(seen.real) <= 1e-15 * abs(seen.imag):
         found, rest = _without_i(shown)
         if found:
             shown, turn = rest, math.pi / 2
@@ -164,7 +164,7 @@ def _read_points(
             if state[name] == "open" and not missing:  # else the other point is reported
                 monomials = reader.read(tree, text)
                 reader.points[name] = monomials
-                terms = tuple(_term(m, text) for m in monomials if m.value)
+                terms = tuple(_term(m, text) for m in monomials if kept(m.value))
                 done[spelling[name]] = PointPath(parent=None, terms=terms)
         except ExpressionError as error:
             if not any(p.key == ("points", spelling[name]) for p in problems):
@@ -229,7 +229,7 @@ def _symbols(mechanism: Loops | PlainEquations, loops: list[LoopEquation]) -> di
 def _longest(loops: list[LoopEquation]) -> float:
     """The longest fixed vector; 1 if there is none."""
     sizes = [abs(t.value) for loop in loops for t in loop.terms if t.length is None]
-    return max(sizes, default=0.0) or 1.0
+    return largest(sizes) or 1.0
 
 
 def read_plain_equations(mechanism: PlainEquations) -> LoopEquations:
@@ -272,7 +272,7 @@ def read_plain_equations(mechanism: PlainEquations) -> LoopEquations:
         real=tuple(equations),
         symbols={n: v for n, v in numbers.known.items() if n in occurring},
         dimensions=dict(numbers.known),
-        start=np.array([values[n] for n in [*unknown_names, *driven]]),
+        start=row_of(values[n] for n in [*unknown_names, *driven]),
         outputs=outputs,
     )
 

@@ -13,6 +13,7 @@ from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.errors import Problem
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.lanes import shown_by
 from linkwork.kernels.piecewise import Piecewise
 
 __all__ = [
@@ -83,10 +84,11 @@ class Term:
         phase: tuple[tuple[str, float], ...] = (),
     ) -> Term:
         """A fixed vector in a turning frame: modulus shown by ``shown``, direction as turn."""
-        turn = cmath.phase(z) if z else 0.0
+        seen = shown_by(z)
+        turn = cmath.phase(seen) if seen else 0.0
         sign = 1
         if turn > np.pi / 2 + 1e-12 or turn < -np.pi / 2 + 1e-12:
-            sign, turn = -1, cmath.phase(-z)
+            sign, turn = -1, cmath.phase(-seen)
         if abs(turn) < 1e-15:
             turn = 0.0
         return cls(value=z, magnitude=shown, sign=sign, turn=turn, length=length, phase=phase)

@@ -7,15 +7,16 @@ an angle and what a length follows from where a name stands.
 
 from __future__ import annotations
 
-import cmath
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from linkwork.expression.grammar import CONSTANTS
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
 from linkwork.expression.values import value
+from linkwork.foundation import lanes
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import ExpressionError, choices
+from linkwork.foundation.lanes import exponential, settled, shown_by, vector
 
 __all__ = ["Monomial", "PhasorReader"]
 
@@ -124,7 +125,7 @@ class PhasorReader:
 
     def _name(self, node: Name) -> list[Monomial]:
         if node.name in self.numbers:
-            return [Monomial(complex(self.numbers[node.name]), node)]
+            return [Monomial(vector(self.numbers[node.name], 0.0), node)]
         if node.name in self.points:
             return self.points[node.name]
         if self.variables(node.name):
@@ -179,7 +180,7 @@ class PhasorReader:
             )
         b, p = sum(m.value for m in base), sum(m.value for m in exponent)
         try:
-            return [Monomial(complex(b**p), node)]
+            return [Monomial(b**p + 0j, node)]
         except (ZeroDivisionError, OverflowError):
             raise self._error(node, "this power is not a finite number") from None
 
@@ -187,7 +188,7 @@ class PhasorReader:
         terms = _joined(self._sum(exponent))
         if all(m.constant and m.value.imag == 0 for m in terms):
             try:
-                return [Monomial(cmath.exp(sum(m.value for m in terms)), node)]
+                return [Monomial(exponential(sum(m.value for m in terms)), node)]
             except OverflowError:
                 raise self._error(node, "this power is not a finite number") from None
         return self._rotation(node, terms, exponent)
@@ -209,18 +210,18 @@ class PhasorReader:
                     node, "the exponent has a part without i: a rotation is e^(i*angle)"
                 )
             if m.factors:
-                weights[m.factors[0]] = weights.get(m.factors[0], 0.0) + m.value.imag
+                weight = settled(m.value.imag)
+                weights[m.factors[0]] = weights.get(m.factors[0], 0.0) + weight
             else:
                 turn += m.value.imag * self.unit.radians
         phase = tuple((name, weight) for name, weight in weights.items() if weight)
         if not phase:
-            return [Monomial(cmath.exp(1j * turn), node)]
+            return [Monomial(lanes.turn(turn), node)]
         if turn == 0.0:
             return [Monomial(1.0 + 0j, None, (), phase)]
-        constant = Binary(
-            "^", Name("e", "e"), Binary("*", Name("i", "i"), Number(turn / self.unit.radians))
-        )
-        return [Monomial(cmath.exp(1j * turn), constant, (), phase)]
+        angle = shown_by(turn).real / self.unit.radians
+        constant = Binary("^", Name("e", "e"), Binary("*", Name("i", "i"), Number(angle)))
+        return [Monomial(lanes.turn(turn), constant, (), phase)]
 
     def _function(self, node: Call) -> list[Monomial]:
         for used in names_in(node):
@@ -231,7 +232,7 @@ class PhasorReader:
                     f"equation: write e^(i*{used.spelling}), or use [equations]",
                 )
         number = value(node, self.numbers, self.unit, self.text)
-        return [Monomial(complex(number), node)]
+        return [Monomial(vector(number, 0.0), node)]
 
 
 def _negated(m: Monomial) -> Monomial:

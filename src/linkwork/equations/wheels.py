@@ -11,6 +11,7 @@ from fractions import Fraction
 
 from linkwork.equations.frames import Frames
 from linkwork.equations.model import LinearEquation
+from linkwork.foundation.lanes import choose, copysign, largest, led, many, settled
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.contacts import Belt, Gear, Rack, Rolling
 from linkwork.mechanism.description import Problems
@@ -70,7 +71,7 @@ class _Wheels:
     ) -> None:
         """Σ weight · angle of body (+ weight · length) = total, as it is in the sketch if open."""
         frames = self.frames
-        weights, constant = frames.angles_of(turns)
+        weights, constant = frames.angles_of((body, settled(weight)) for body, weight in turns)
         now = sum(weight * frames.start[name] for name, weight in weights.items())
         if length is not None:
             weights[length[0]] = length[1]
@@ -100,14 +101,14 @@ class _Wheels:
         linkage = self.frames.linkage
         a, b, p = (linkage.sketched(q) for q in (*line, point))
         away = ((p - a) * (b - a).conjugate()).imag / abs(b - a)
-        if abs(away) <= 1e-9 * max(abs(b - a), abs(p - a)):
+        if abs(away) <= 1e-9 * largest((abs(b - a), abs(p - a))):
             self.problems.add(
                 key,
                 f"{point} lies on the line {' '.join(line)} of {body}: sketch it on the side on "
                 "which it is",
             )
             return 1.0
-        return math.copysign(1.0, away)
+        return copysign(1.0, away)
 
     def roll_on_line(self, rolling: Rolling, key: Key) -> None:
         assert rolling.line is not None
@@ -140,6 +141,12 @@ def _ratio(first: float, second: float, *, whole: bool = False) -> tuple[float, 
 
     With whole numbers a whole number of turns of one wheel is exactly one of the other.
     """
+    if many(first) or many(second):
+        p, q = _ratio(led(first), led(second), whole=whole)
+        if q == 1.0 and not whole:
+            return settled(first / second), q
+        same = abs(q * first - p * second) <= _RATIO * abs(q * first)
+        return settled(choose(same, p, math.nan)), q
     if whole:
         fraction = Fraction(int(first), int(second))
     else:

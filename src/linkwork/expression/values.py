@@ -6,9 +6,11 @@ import math
 from collections.abc import Callable, Mapping
 
 from linkwork.expression.grammar import CONSTANTS
+from linkwork.expression.lane_functions import applied
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import ExpressionError, choices
+from linkwork.foundation.lanes import as_float, broken, finite, many
 
 __all__ = ["value"]
 
@@ -46,7 +48,7 @@ def value(node: Node, names: Mapping[str, float], unit: AngleUnit, text: str = "
         result = _value(node, names, unit, text)
     except OverflowError:
         raise ExpressionError("the value is too large", text, 1) from None
-    if not math.isfinite(result):
+    if not finite(result):
         raise ExpressionError("the value is too large", text, 1)
     return result
 
@@ -92,24 +94,27 @@ def _combined(node: Binary, left: float, right: float, text: str) -> float:
             message = "division by zero"
         case "/":
             return left / right
-        case _ if left < 0 and not float(right).is_integer():
+        case _ if (left < 0) & broken(right):
             message = f"{left:g}^{right:g} is not a real number"
-        case _ if left == 0 and right < 0:
+        case _ if (left == 0) & (right < 0):
             message = "division by zero"
         case _:
-            return float(left**right)
+            return as_float(left**right)
     raise ExpressionError(f"column {node.column}: {message}", text, node.column)
 
 
 def _applied(node: Call, arguments: list[float], unit: AngleUnit, text: str) -> float:
     name = node.function
+    lanes = any(map(many, arguments))
     try:
         if name in _OF_ANGLE:
-            return _OF_ANGLE[name](arguments[0] * unit.radians)
+            angle = arguments[0] * unit.radians
+            return applied(name, [angle]) if lanes else _OF_ANGLE[name](angle)
         if name in _TO_ANGLE:
-            return _TO_ANGLE[name](*arguments) / unit.radians
+            found = applied(name, arguments) if lanes else _TO_ANGLE[name](*arguments)
+            return found / unit.radians
         if name in _PLAIN:
-            return float(_PLAIN[name](*arguments))
+            return applied(name, arguments) if lanes else float(_PLAIN[name](*arguments))
     except ValueError:
         shown = ", ".join(f"{a:g}" for a in arguments)
         message = f"{name}({shown}) is not a real number"

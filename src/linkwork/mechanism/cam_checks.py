@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from linkwork.foundation.errors import choices
+from linkwork.foundation.lanes import vector
 from linkwork.mechanism.contacts import Cam, Curve
 from linkwork.mechanism.followers import guide_named, swinging_frames
 from linkwork.mechanism.motion_laws import LAWS
@@ -163,7 +164,7 @@ class CamChecks(PartChecks):
             x, y = (
                 self.linkage.numbers.check_number(self.problems.add, (*key, k), n) for n in pair
             )
-            places.append(complex(x, y))
+            places.append(vector(x, y))
         if closed and places[0] == places[-1]:
             self.problems.add(key, "closes by itself: leave out the last point, it is the first")
         for k in range(1, len(places)):

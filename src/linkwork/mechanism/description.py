@@ -281,7 +281,7 @@ def _check_rows(description: Description, which: Input, key: Key, problems: Prob
         missing = []  # held at one value
     if lengthy and missing:
         problems.add((*key, missing[0]), "is missing: a length has no natural range")
-    if (lengthy and missing) or any(map(math.isnan, amounts)):
+    if (lengthy and missing) or any(amount != amount for amount in amounts):  # NaN
         return
     start, stop, step = description._range(which)
     if start != stop and (step == 0 or (stop > start) != (step > 0)):

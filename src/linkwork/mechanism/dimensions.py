@@ -10,6 +10,7 @@ from linkwork.expression.tree import Name, names_in
 from linkwork.expression.values import value
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import ExpressionError, choices
+from linkwork.foundation.lanes import as_float, finite
 from linkwork.foundation.names import canonical
 
 __all__ = ["Numbers"]
@@ -49,10 +50,10 @@ class Numbers:
         if isinstance(number, str):
             return value(parse(number), self.known, self.unit, number)
         try:
-            plain = float(number)
+            plain = as_float(number)
         except OverflowError:  # a whole number beyond every float
             plain = math.inf
-        if not math.isfinite(plain) or isinstance(number, bool):
+        if not finite(plain) or isinstance(number, bool):
             shown = str(number if isinstance(number, bool) else plain)
             raise ExpressionError(f"must be a finite number, got {shown}", shown, 1)
         return plain

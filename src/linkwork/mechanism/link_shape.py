@@ -2,19 +2,32 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.lanes import (
+    Rest,
+    choose,
+    degrees,
+    everywhere,
+    largest,
+    phase,
+    rect,
+    rest_of,
+    sqrt,
+    turn,
+    vector,
+)
+from linkwork.mechanism.least_norm import full_rank, least_norm
 
 __all__ = ["Distance", "LinkShape", "ShapeError", "VertexAngle", "place"]
 
 _AGREE = 1e-9
 _MOST_STEPS = 60
+_FIRST_STEPS = 6  # most shapes need four
 
 
 class ShapeError(Exception):
@@ -58,6 +71,9 @@ class Distance:
     def shown(self, z: Mapping[str, complex]) -> str:
         return f"|{self.a}{self.b}| = {abs(z[self.b] - z[self.a]):.12g}"
 
+    def narrowed(self, rest: Rest) -> Distance:
+        return replace(self, length=rest.narrowed(self.length))
+
 
 @dataclass(frozen=True)
 class VertexAngle:
@@ -79,19 +95,22 @@ class VertexAngle:
 
     @property
     def amount_text(self) -> str:
-        return f"{math.degrees(self.angle):.12g}°"
+        return f"{degrees(self.angle):.12g}°"
 
     def error(self, z: Mapping[str, complex]) -> float:
         """Disagreement with placed points [rad], within half a turn."""
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
-        return cmath.phase(rays * cmath.exp(-1j * self.angle)) if rays else math.inf
+        return phase(rays * turn(-self.angle)) if rays else math.inf
 
     def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
         return abs(self.error(z)) <= tolerance
 
     def shown(self, z: Mapping[str, complex]) -> str:
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
-        return f"an angle of {math.degrees(cmath.phase(rays)):.12g}° at {self.vertex}"
+        return f"an angle of {degrees(phase(rays)):.12g}° at {self.vertex}"
+
+    def narrowed(self, rest: Rest) -> VertexAngle:
+        return replace(self, angle=rest.narrowed(self.angle))
 
 
 Given = Distance | VertexAngle
@@ -134,9 +153,9 @@ class _Placing:
             if v.vertex not in self.z:
                 continue
             if v.b == point and v.a in self.z:
-                return v.vertex, cmath.phase(self.z[v.a] - self.z[v.vertex]) + v.angle
+                return v.vertex, phase(self.z[v.a] - self.z[v.vertex]) + v.angle
             if v.a == point and v.b in self.z:
-                return v.vertex, cmath.phase(self.z[v.b] - self.z[v.vertex]) - v.angle
+                return v.vertex, phase(self.z[v.b] - self.z[v.vertex]) - v.angle
         return None
 
     def place_next(self, measure: int) -> bool:
@@ -149,7 +168,7 @@ class _Placing:
                 vertex, direction = seen
                 length = self.distance(vertex, point, measure >= 1)
                 if length is not None:
-                    self.z[point] = self.z[vertex] + cmath.rect(length, direction)
+                    self.z[point] = self.z[vertex] + rect(length, direction)
                     return True
             centres = [q for q in self.z if frozenset((q, point)) in self.distances]
             if len(centres) + measure < 2:
@@ -168,26 +187,25 @@ class _Placing:
         assert r2 is not None
         base = self.z[second] - self.z[first]
         d = abs(base)
-        if d <= _AGREE * max(r1, r2):
+        if d <= _AGREE * largest((r1, r2)):
             raise ShapeError(
                 f"{first} and {second} are at the same place: "
                 f"{point} cannot be placed by its distances from both"
             )
         x = (r1 * r1 - r2 * r2 + d * d) / (2.0 * d)
         square = r1 * r1 - x * x
-        tolerance = _AGREE * max(r1, r2, d) ** 2
-        if square < -tolerance:
+        size = largest((r1, r2, d)) ** 2
+        if square < -_AGREE * size:
             raise ShapeError(
                 f"no triangle has |{first}{second}| = {d:.12g}, |{first}{point}| = {r1:.12g} "
                 f"and |{second}{point}| = {r2:.12g}"
             )
-        y = math.sqrt(square) if square > 1e-14 * max(r1, r2, d) ** 2 else 0.0
+        y = sqrt(choose(square > 1e-14 * size, square, 0.0))
         sketched = (self.sketch[point] - self.sketch[first]) * (
             self.sketch[second] - self.sketch[first]
         ).conjugate()
-        if sketched.imag < 0:
-            y = -y
-        return self.z[first] + complex(x, y) * base / d
+        y = choose(sketched.imag < 0, -y, y)
+        return self.z[first] + vector(x, y) * base / d
 
 
 def place(
@@ -224,7 +242,7 @@ def place(
     a, b = _base(points, distances, vertices)
     length = state.distance(a, b, measure=True)
     assert length is not None
-    state.z = {a: 0j, b: complex(length)}
+    state.z = {a: 0j, b: length + 0j}
     while len(state.z) < len(points):
         if not (state.place_next(0) or state.place_next(1)):
             state.place_next(2)
@@ -280,26 +298,17 @@ def _together(
     """All dimensions at once, from the sketch, completed by measured distances."""
     rows: list[Given] = list(given)
     measured: list[Distance] = []
-    start = np.array([sketch[p] for p in points])
+    placed = {p: sketch[p] for p in points}
     for i in range(len(points)):
         for j in range(i + 1, len(points)):
             if len(rows) >= 2 * len(points) - 3:
                 break
             length = abs(sketch[points[j]] - sketch[points[i]])
             candidate = Distance(points[i], points[j], length)
-            extended = _slopes(points, start, [*rows, candidate])
-            if length and np.linalg.matrix_rank(extended, 1e-9) == len(rows) + 1:
+            if length and full_rank(_slopes(placed, [*rows, candidate]), 1e-9):
                 rows.append(candidate)
                 measured.append(candidate)
-    flat = np.concatenate([start.real, start.imag])
-    n = len(points)
-    for _ in range(_MOST_STEPS):
-        z = flat[:n] + 1j * flat[n:]
-        errors = np.array([row.error(dict(zip(points, z, strict=True))) for row in rows])
-        if np.max(np.abs(errors)) <= 1e-14:
-            break
-        flat = flat - np.linalg.lstsq(_slopes(points, z, rows), errors, rcond=1e-12)[0]
-    placed = dict(zip(points, (complex(p) for p in flat[:n] + 1j * flat[n:]), strict=True))
+    placed = _gauss_newton(placed, rows, _MOST_STEPS)
     wrong = [row for row in given if not row.agrees(placed, _AGREE)]
     if wrong:
         raise ShapeError(
@@ -311,19 +320,52 @@ def _together(
     return placed, measured
 
 
-def _slopes(points: tuple[str, ...], z: ComplexArray, rows: Sequence[Given]) -> Array:
-    """Derivatives of the rows' errors by all coordinates (x first, then y), shape (rows, 2n)."""
-    scale = float(np.max(np.abs(z - z[0]))) or 1.0
-    h = 1e-7 * scale
-    n = len(points)
+def _gauss_newton(
+    z: dict[str, complex], rows: Sequence[Given], steps: int, first: int = _FIRST_STEPS
+) -> dict[str, complex]:
+    """Points at which no row has an error, or where the last step led.
+
+    Of many designs those that are not done after ``first`` steps go on by themselves.
+    """
+    count = len(z)
+    for k in range(steps):
+        errors = [row.error(z) for row in rows]
+        done = largest(abs(error) for error in errors) <= 1e-14
+        if everywhere(done):
+            break
+        if k == first and (rest := rest_of(done)) is not None:
+            return _gone_on(z, rows, steps - k, rest)
+        step = least_norm(_slopes(z, rows), errors)
+        z = {
+            p: choose(done, place, place - vector(step[k], step[k + count]))
+            for k, (p, place) in enumerate(z.items())
+        }
+    return z
+
+
+def _gone_on(
+    z: Mapping[str, complex], rows: Sequence[Given], steps: int, rest: Rest
+) -> dict[str, complex]:
+    """Further steps of the designs that are not done."""
+    own = {point: rest.narrowed(place) for point, place in z.items()}
+    try:
+        found = _gauss_newton(own, [row.narrowed(rest) for row in rows], steps, first=steps)
+    finally:
+        rest.leave()
+    return {point: rest.widened(place, found[point]) for point, place in z.items()}
+
+
+def _slopes(z: Mapping[str, complex], rows: Sequence[Given]) -> list[list[float]]:
+    """Derivatives of the rows' errors by all coordinates, x first, then y: rows of 2n."""
+    first = next(iter(z.values()))
+    h = 1e-7 * (largest(abs(place - first) for place in z.values()) or 1.0)
     columns = []
-    for k in range(2 * n):
-        shift = np.zeros(n, dtype=complex)
-        shift[k % n] = h if k < n else 1j * h
-        plus = dict(zip(points, z + shift, strict=True))
-        minus = dict(zip(points, z - shift, strict=True))
-        columns.append([(row.error(plus) - row.error(minus)) / (2 * h) for row in rows])
-    return np.array(columns).T
+    for shift in (h, 1j * h):
+        for point in z:
+            plus = {**z, point: z[point] + shift}
+            minus = {**z, point: z[point] - shift}
+            columns.append([(row.error(plus) - row.error(minus)) / (2 * h) for row in rows])
+    return [list(row) for row in zip(*columns, strict=True)]
 
 
 def _upright(z: Mapping[str, complex], points: tuple[str, ...]) -> dict[str, complex]:
@@ -331,5 +373,6 @@ def _upright(z: Mapping[str, complex], points: tuple[str, ...]) -> dict[str, com
     axis = z[points[1]] - z[points[0]]
     if axis == 0:
         raise ShapeError(f"{points[0]} and {points[1]} coincide: a link's angle needs two places")
-    turned = {p: (z[p] - z[points[0]]) * axis.conjugate() / abs(axis) for p in points}
-    return {**turned, points[0]: 0j, points[1]: complex(abs(axis))}
+    size = abs(axis)
+    turned = {p: (z[p] - z[points[0]]) * axis.conjugate() / size for p in points[2:]}
+    return {points[0]: 0j, points[1]: size + 0j, **turned}

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
 
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.lanes import vector
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.contacts import Belt, Cam, Curve, Gear, Rack, Rolling, Weld
 from linkwork.mechanism.description import Description, Problems
@@ -60,6 +60,8 @@ class Linkage(Description):
     cams: tuple[Cam, ...] = ()
     curves: tuple[Curve, ...] = ()
     sketch: bool = False
+    #: The exact shape of every link, as local coordinates, and what was measured.
+    shapes: Shapes = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -75,31 +77,26 @@ class Linkage(Description):
         set_(self, "points", FrozenDict({n: tuple(p) for n, p in self.points.items()}))
         links = {name: tuple(map(same, points)) for name, points in self.links.items()}
         set_(self, "links", FrozenDict(links))
-        for field in ("lengths", "angles"):
-            table = getattr(self, field)
+        for which in ("lengths", "angles"):
+            table = getattr(self, which)
             folded = {" ".join(map(same, key.split())): number for key, number in table.items()}
-            set_(self, field, FrozenDict(folded if len(folded) == len(table) else table))
-        for field in PART_KINDS:
-            same_kind = getattr(self, field)
+            set_(self, which, FrozenDict(folded if len(folded) == len(table) else table))
+        for kind in PART_KINDS:
+            same_kind = getattr(self, kind)
             renamed = (replaced_names(part, spelled, canonical) for part in same_kind)
-            set_(self, field, tuple(renamed))
-        inputs = tuple(_spelled_input(which, same) for which in self.inputs)
+            set_(self, kind, tuple(renamed))
+        inputs = tuple(_spelled_input(driven, same) for driven in self.inputs)
         set_(self, "inputs", inputs)
         set_(self, "trace", tuple(map(same, self.trace)))
         problems = Problems()
-        check_linkage(self, problems)
+        shapes = check_linkage(self, problems)
         problems.raise_any(f'mechanism "{self.name}"')
-
-    @cached_property
-    def shapes(self) -> Shapes:
-        """The exact shape of every link, as local coordinates, and what was measured."""
-        problems = Problems()
-        return Shapes.of(self, problems)
+        set_(self, "shapes", shapes)
 
     def sketched(self, point: str) -> complex:
         """The point's coordinates in ``points`` as x + iy."""
         x, y = self.points[point]
-        return complex(self.numbers(x), self.numbers(y))
+        return vector(self.numbers(x), self.numbers(y))
 
     def bodies_at(self, point: str) -> Iterator[str]:
         """The links that carry a point, in the file's order."""

@@ -25,8 +25,8 @@ _LARGEST = 1e100  # so that squares and quotients of lengths stay numbers
 _SMALLEST = 1e-100
 
 
-def check_linkage(linkage: Linkage, problems: Problems) -> None:
-    """Add every problem of the linkage to ``problems``."""
+def check_linkage(linkage: Linkage, problems: Problems) -> Shapes:
+    """Add every problem of the linkage to ``problems``; the links' shapes if there is none."""
     linkage.check_common(
         problems,
         [
@@ -63,10 +63,10 @@ def check_linkage(linkage: Linkage, problems: Problems) -> None:
     for k, point in enumerate(linkage.trace):
         if point not in linkage.points:
             problems.add(("trace", "points", k), _no_point(linkage, point))
-    if not problems:
-        shapes = Shapes.of(linkage, problems)
+    shapes = Shapes() if problems else Shapes.of(linkage, problems)
     if not problems:
         check_distances(linkage, shapes, problems)
+    return shapes
 
 
 def _no_point(linkage: Linkage, point: str) -> str:

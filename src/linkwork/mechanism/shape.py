@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from linkwork.foundation.lanes import many
 from linkwork.mechanism.link_shape import Distance, LinkShape, ShapeError, VertexAngle, place
 
 if TYPE_CHECKING:
@@ -99,10 +100,16 @@ def _check_ground(
 ) -> None:
     """Ground coordinates are exact: a dimension that disagrees is an error."""
     named: dict[complex, str] = {}
+    varying: list[str] = []
     for point, place_ in sketch.items():
-        other = named.setdefault(place_, point)
-        if other != point:
-            raise ShapeError(f"{other} and {point} of ground are the same point: give it one name")
+        if many(place_):
+            varying.append(point)
+        elif (other := named.setdefault(place_, point)) != point:
+            raise _same_point(other, point)
+    for k, point in enumerate(varying):
+        for other in (*named.values(), *varying[:k]):
+            if sketch[other] == sketch[point]:
+                raise _same_point(*sorted((other, point), key=list(sketch).index))
     dimensions: list[Distance | VertexAngle] = [*distances, *vertices]
     for given in dimensions:
         if not given.agrees(sketch, _AGREE):
@@ -112,6 +119,10 @@ def _check_ground(
                 given.table,
                 given.key,
             )
+
+
+def _same_point(first: str, second: str) -> ShapeError:
+    return ShapeError(f"{first} and {second} of ground are the same point: give it one name")
 
 
 def _measured(link: str, shape: LinkShape, linkage: Linkage, problems: Problems) -> list[Measured]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from linkwork.foundation.errors import choices
+from linkwork.foundation.lanes import largest
 from linkwork.mechanism.contacts import Belt, Gear, Rack, Rolling
 from linkwork.mechanism.part_checks import AGREE, Key, PartChecks
 from linkwork.mechanism.parts import Number
@@ -61,7 +62,7 @@ class WheelChecks(PartChecks):
         sizes = [self.positive(number, (*key, field), field) for number in given]
         if field == "teeth" and any(size != round(size) for size in sizes if size > 0):
             self.problems.add((*key, "teeth"), "must be whole numbers")
-        elif field == "teeth" and max(sizes) > _MOST_TEETH:
+        elif field == "teeth" and largest(sizes) > _MOST_TEETH:
             self.problems.add((*key, "teeth"), f"are too many: at most {_MOST_TEETH}")
         ring = isinstance(pair, Gear) and pair.internal
         if ring and sizes[0] == sizes[1] and sizes[0] > 0:
@@ -162,7 +163,7 @@ def check_distances(linkage: Linkage, shapes: Shapes, problems: Problems) -> Non
                 )
             continue
         wanted = abs(first - second) if pair.internal else first + second
-        if abs(distance - wanted) > AGREE * max(distance, wanted):
+        if abs(distance - wanted) > AGREE * largest((distance, wanted)):
             how = "differ by" if pair.internal else "add up to"
             problems.add(
                 (*key, "radii"),

@@ -1,0 +1,36 @@
+"""Linkwork's families: all mechanisms of one structure in one call, the kernels warm."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from benchmarks.peers.dyad_linkage import ComplexArray
+from benchmarks.peers.linkwork_sweep import family_of
+from benchmarks.peers.peer import Peer, Prepared
+from benchmarks.peers.work import Work
+from linkwork.batch import FamilyMotion
+
+__all__ = ["LinkworkFamily"]
+
+
+class LinkworkFamily(Peer):
+    """``family.sweep`` with or without proof, on one core; designs are built beforehand."""
+
+    distribution = "linkwork"
+    module = "linkwork"
+
+    def __init__(self, *, certify: bool) -> None:
+        self.certify = certify
+        self.name = "linkwork family, certified" if certify else "linkwork family"
+
+    def prepare(self, work: Work) -> Prepared:
+        family = family_of(work)
+
+        def run() -> FamilyMotion:
+            return family.sweep(certify=self.certify, threads=1)
+
+        return Prepared(run=run, read=self._read)
+
+    def _read(self, motion: FamilyMotion) -> ComplexArray:
+        proved = motion.certified | (not self.certify)
+        return np.where(proved, motion.trace("T"), np.nan)

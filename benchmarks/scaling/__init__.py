@@ -1,0 +1,1 @@
+"""How time grows: with rows, loops, dyads, and from a cold start."""

@@ -1,0 +1,248 @@
+"""The equations of many designs: the builder of one design, run on lanes.
+
+A pass builds all designs that are left, with one of them in the lead (the mechanism itself in the
+first pass); what it finds holds for the designs in which every decision is the leader's. Most
+families need one pass. Designs for which the builder has no lanes (cams, shapes that only
+Gauss-Newton finds) are built one at a time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+
+import numpy as np
+
+from linkwork.batch.pattern import Coefficients, Pattern
+from linkwork.batch.quantities import Quantity, with_numbers
+from linkwork.equations.compiling import compile_equations
+from linkwork.equations.from_linkage import write_loops
+from linkwork.equations.from_loops import read_loops, read_plain_equations
+from linkwork.equations.model import LoopEquations, Term
+from linkwork.foundation.arrays import AnyArray, Array, IndexArray
+from linkwork.foundation.errors import LinkworkError
+from linkwork.foundation.lanes import Consensus, NotElementwise, many
+from linkwork.mechanism.description import Description
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loops import Loops, PlainEquations
+from linkwork.motion.model import Model, model_of
+
+__all__ = ["Builder", "built", "family_base"]
+
+_BLOCK = 1 << 14  # designs built together: their lanes stay in the processor's cache
+_MOST_PASSES = 100
+_COMPLEX = ("loops", "points")
+
+
+def _equations(description: Description) -> LoopEquations:
+    match description:
+        case Linkage():
+            return write_loops(description)
+        case Loops():
+            return read_loops(description)
+        case PlainEquations():
+            return read_plain_equations(description)
+        case _:
+            raise TypeError(f"no equations are known for {type(description).__name__}")
+
+
+@dataclass
+class Builder:
+    """Builds designs into arrays.
+
+    Parameters
+    ----------
+    base : Model
+        The family's structure; see :func:`family_base`.
+    values : Mapping[Quantity, (B,)]
+        What varies, everyday units.
+    together : bool
+        Whether designs can be built in passes; else one at a time.
+
+    Attributes
+    ----------
+    arrays : dict[str, (B, ...)]
+        The fields of :class:`Coefficients`; NaN where there is a problem.
+    problem : (B,)
+        Which of ``problems`` a design has; 0 for none.
+    """
+
+    base: Model
+    values: Mapping[Quantity, Array]
+    together: bool
+    arrays: dict[str, AnyArray] = field(default_factory=dict)
+    problem: IndexArray = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+    problems: list[str] = field(default_factory=lambda: [""])
+
+    def __post_init__(self) -> None:
+        equations = self.base.equations
+        self.pattern = Pattern.of(equations)
+        own = self.pattern.coefficients(equations)
+        assert own is not None
+        count = len(next(iter(self.values.values())))
+        for name, values in _named(own).items():
+            kind = complex if name in _COMPLEX else float
+            # one coefficient of all designs after the other, as passes write them
+            self.arrays[name] = np.full((len(values), count), np.nan, dtype=kind).T
+        self.problem = np.zeros(count, dtype=np.intp)
+        self._number = {"": 0}
+        self._numbers_of_base = {q: q.of(self.base.description) for q in self.values}
+
+    def run(self) -> None:
+        """Build every design."""
+        count = len(self.problem)
+        for start in range(0, count, _BLOCK):
+            left = np.arange(start, min(start + _BLOCK, count))
+            passes = 0
+            while self.together and left.size and passes < _MOST_PASSES:
+                left = self._pass(left, first=passes == 0)
+                passes += 1
+            for k in left:
+                self._alone(int(k))
+        self._check_finite()
+
+    def _pass(self, rows: IndexArray, *, first: bool) -> IndexArray:
+        """Build the designs that go the leader's way; returns the others."""
+        consensus = Consensus(1 + len(rows), leader=0 if first else 1)
+        numbers = {
+            quantity: consensus.lanes(
+                np.concatenate([[self._numbers_of_base[quantity]], values[rows]])
+            )
+            for quantity, values in self.values.items()
+        }
+        found: Coefficients | None = None
+        problem = self._another_structure
+        alone = False
+        with np.errstate(all="ignore"):
+            try:
+                equations = _equations(with_numbers(self.base.description, numbers))
+                found = self.pattern.coefficients(equations)
+            except NotElementwise:
+                alone = True
+            except LinkworkError as error:
+                problem = str(error)
+        agreeing, apart = consensus.agreeing[1:], consensus.apart[1:]
+        if alone:
+            for k in rows[agreeing]:
+                self._alone(int(k))
+        elif found is None:
+            self._mark(rows[agreeing], problem)
+        else:
+            self._write(rows, agreeing & ~apart, found)
+            self._mark(rows[agreeing & apart], self._another_structure)
+        return rows[~agreeing]
+
+    def _alone(self, k: int) -> None:
+        """Build one design by itself."""
+        numbers = {quantity: float(values[k]) for quantity, values in self.values.items()}
+        rows = np.array([k])
+        try:
+            model = built(with_numbers(self.base.description, numbers))
+        except (LinkworkError, ArithmeticError) as error:
+            self._mark(rows, str(error))
+            return
+        found = self.pattern.coefficients(model.equations)
+        if found is None:
+            self._mark(rows, self._another_structure)
+        else:
+            self._write(rows, np.ones(1, dtype=bool), found)
+
+    def _write(self, rows: IndexArray, which: AnyArray, found: Coefficients) -> None:
+        """Enter the coefficients of the designs ``rows[which]``."""
+        whole = bool(which.all()) and len(rows) == rows[-1] - rows[0] + 1
+        at: slice | IndexArray = slice(rows[0], rows[-1] + 1) if whole else rows[which]
+        for name, values in _named(found).items():
+            columns = self.arrays[name].T
+            for column, value in zip(columns, values, strict=True):
+                if not many(value):
+                    column[at] = value
+                else:
+                    own = value.values[1:]
+                    column[at] = own if whole else own[which]
+
+    def _mark(self, rows: IndexArray, problem: str) -> None:
+        if not rows.size:
+            return
+        if problem not in self._number:
+            self._number[problem] = len(self.problems)
+            self.problems.append(problem)
+        self.problem[rows] = self._number[problem]
+
+    @property
+    def _another_structure(self) -> str:
+        return (
+            f"has another structure than {self.base.description.name}: other terms, ratios or laws"
+        )
+
+    def _check_finite(self) -> None:
+        """What has no finite coefficients is looked at by itself, and refused if it stays so."""
+        odd = np.flatnonzero(~self._finite() & (self.problem == 0))
+        for k in odd:
+            self._alone(int(k))
+        odd = odd[~self._finite()[odd] & (self.problem[odd] == 0)]
+        self._mark(odd, "its equations have no finite coefficients")
+        for array in self.arrays.values():
+            array[self.problem != 0] = np.nan
+
+    def _finite(self) -> AnyArray:
+        finite = np.ones(len(self.problem), dtype=bool)
+        for array in self.arrays.values():
+            for column in array.T:
+                finite &= np.isfinite(column)
+        return finite
+
+
+def _named(found: Coefficients) -> dict[str, Sequence[object]]:
+    return {part.name: getattr(found, part.name) for part in fields(found)}
+
+
+def built(description: Description) -> Model:
+    """The model of one design, as for any mechanism."""
+    return model_of(description)
+
+
+def family_base(model: Model, varied: Sequence[Quantity]) -> tuple[Model, bool]:
+    """The structure of a family, and whether designs can be built in passes.
+
+    The structure is the mechanism's own, but that what varies keeps its term where it is 0, as the
+    offset of a slider.
+    """
+    description = model.description
+    spoken = sum(which.speed is not None for which in description.inputs)
+    if model.equations.surplus is not None or spoken > 1:
+        return model, False
+    consensus = Consensus(1, widest=True)
+    numbers = {q: consensus.lanes(np.array([q.of(description)])) for q in varied}
+    try:
+        with np.errstate(all="ignore"):
+            equations = _equations(with_numbers(description, numbers))
+    except NotElementwise:
+        return model, True
+    own, wider = Pattern.of(model.equations), Pattern.of(equations)
+    if (own.loops, own.points) == (wider.loops, wider.points):
+        return model, True
+    plain = _plain(equations, model.equations)
+    compiled = compile_equations(plain, f'mechanism "{description.name}"')
+    return Model(description, plain, compiled, model.skeleton, model.branch), True
+
+
+def _plain(equations: LoopEquations, own: LoopEquations) -> LoopEquations:
+    """The mechanism's own equations with the terms of these."""
+    loops = tuple(
+        replace(loop, left=_plain_terms(loop.left), right=_plain_terms(loop.right))
+        for loop in equations.loops
+    )
+    points = {
+        name: replace(path, terms=_plain_terms(path.terms))
+        for name, path in equations.points.items()
+    }
+    symbols = {name: _first(number).real for name, number in equations.symbols.items()}
+    return replace(own, loops=loops, points=points, symbols=symbols)
+
+
+def _plain_terms(terms: Sequence[Term]) -> tuple[Term, ...]:
+    return tuple(replace(term, value=_first(term.value)) for term in terms)
+
+
+def _first(number: complex) -> complex:
+    return number.values[0].item() if many(number) else number

@@ -1,0 +1,223 @@
+"""A family: many designs of one topology as arrays of coefficients."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Protocol
+
+import numpy as np
+
+from linkwork.batch.building import Builder, built, family_base
+from linkwork.batch.quantities import Quantity, quantity_named, with_numbers
+from linkwork.foundation.arrays import AnyArray, Array, ComplexArray, IndexArray
+from linkwork.foundation.errors import InputError, LinkworkError
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.mechanism.description import Description
+from linkwork.motion.model import Model
+
+__all__ = ["Designs", "designs_of"]
+
+
+class _HasModel(Protocol):
+    @property
+    def model(self) -> Model: ...
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Designs:
+    """B designs of one topology as arrays.
+
+    Every array has its coefficients one after the other in memory (Fortran order): a coefficient
+    of all designs is contiguous. Rows of designs with a problem are NaN.
+
+    Parameters
+    ----------
+    base : Model
+        The mechanism itself: structure, blocks, names. What varies keeps its term even where it is
+        0 in the mechanism, as the offset of a slider.
+    dimensions : Mapping[str, (B,)]
+        What varies, everyday units, by the name asked.
+    quantities : tuple of Quantity
+        The same as numbers of the description, in the same order.
+    loops : (B, T) complex
+        Coefficients of ``base.compiled.table.loops``, in the order of its terms, [length].
+    linear : (B, R)
+        Constants of ``base.compiled.table.linear``, [rad] or [length].
+    points : (B, P) complex
+        Coefficients of ``base.compiled.points.rows``, [length].
+    link_angles : (B, links)
+        Constants of ``base.equations.links``, [rad].
+    start : (B, N)
+        Guess of the unknowns, then the inputs that it belongs to, [rad] or [length].
+    numbers : (B, D)
+        All named dimensions, in the order of ``base.equations.dimensions``, everyday units: for
+        outputs, and the constants of plain equations.
+    redundant : (B, r)
+        Lengths of ``base.equations.redundant``.
+    length_scale : (B,)
+        The longest link.
+    problem : (B,)
+        Which of ``problems`` a design has; 0 for none.
+    problems : tuple of str
+        Distinct problems, the first one empty. Numbers in them are left out where they differ from
+        design to design: :meth:`message` has those of one design.
+    """
+
+    base: Model
+    dimensions: Mapping[str, Array]
+    quantities: tuple[Quantity, ...]
+    loops: ComplexArray
+    linear: Array
+    points: ComplexArray
+    link_angles: Array
+    start: Array
+    numbers: Array
+    redundant: Array
+    length_scale: Array
+    problem: IndexArray
+    problems: tuple[str, ...] = ("",)
+
+    def __len__(self) -> int:
+        return len(self.problem)
+
+    def __repr__(self) -> str:
+        bad = int(np.count_nonzero(self.problem))
+        varied = ", ".join(self.dimensions)
+        return (
+            f'<Designs of "{self.base.description.name}": {len(self)} with their own {varied}; '
+            f"{bad} with a problem>"
+        )
+
+    def take(self, index: IndexArray | slice) -> Designs:
+        """Some of the designs, in the order of ``index`` (integers, a mask or a slice)."""
+        rows: dict[str, AnyArray] = {
+            part.name: array[index]
+            for part in fields(self)
+            if isinstance(array := getattr(self, part.name), np.ndarray)
+        }
+        dimensions = {name: values[index] for name, values in self.dimensions.items()}
+        return replace(self, dimensions=FrozenDict(dimensions), **rows)  # type: ignore[arg-type]
+
+    def description(self, k: int) -> Description:
+        """The k-th design as it would be described by itself.
+
+        Raises
+        ------
+        MechanismError
+            If it has a problem that shows in its description.
+        """
+        columns = zip(self.quantities, self.dimensions.values(), strict=True)
+        numbers = {quantity: float(values[k]) for quantity, values in columns}
+        return with_numbers(self.base.description, numbers)
+
+    def design(self, k: int) -> Model:
+        """The k-th design by itself, made ready as any mechanism is.
+
+        Raises
+        ------
+        MechanismError
+            If it has a problem.
+        """
+        return built(self.description(k))
+
+    def message(self, k: int) -> str:
+        """What is wrong with the k-th design, with its own numbers; empty for nothing."""
+        if not self.problem[k]:
+            return ""
+        try:
+            self.design(k)
+        except (LinkworkError, ArithmeticError) as error:
+            return str(error)
+        return self.problems[int(self.problem[k])]
+
+
+def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -> Designs:
+    """Designs that differ in some numbers from a mechanism.
+
+    Parameters
+    ----------
+    mechanism : Model, or an object with one
+    dimensions : Mapping[str, number or (B,)]
+        What varies, everyday units: a name of ``[dimensions]``; an entry of ``[lengths]``
+        (``"O2 A"``) or ``[angles]`` (``"B A P"``); a coordinate (``"O4.x"``); the offset of a
+        slider (``"s16.offset"``); in loops and plain equations a name of ``[guess]``. A plain
+        number holds for all designs.
+
+    Raises
+    ------
+    UnknownNameError
+        For a name that is no number of the mechanism.
+    InputError
+        If what is given is no number, or arrays differ in length.
+
+    Notes
+    -----
+    A design that cannot be built has a problem and raises nothing. The equations are those that
+    the design has by itself, to rounding. A mechanism that names a configuration gives its start
+    to all designs: looking for the configuration of that name in each would take long.
+    """
+    model = mechanism if isinstance(mechanism, Model) else mechanism.model
+    quantities = tuple(quantity_named(model.description, name) for name in dimensions)
+    _check_different(dict(zip(dimensions, quantities, strict=True)))
+    columns = _columns(dimensions)
+    base, together = family_base(model, quantities)
+    builder = Builder(base, dict(zip(quantities, columns.values(), strict=True)), together)
+    builder.run()
+    arrays = builder.arrays
+    if model.description.configuration:
+        arrays["start"][builder.problem == 0] = model.equations.start
+    return Designs(
+        base=base,
+        dimensions=FrozenDict(columns),
+        quantities=quantities,
+        loops=arrays["loops"],
+        linear=arrays["linear"],
+        points=arrays["points"],
+        link_angles=arrays["link_angles"],
+        start=arrays["start"],
+        numbers=arrays["numbers"],
+        redundant=arrays["redundant"],
+        length_scale=arrays["length_scale"][:, 0],
+        problem=builder.problem,
+        problems=tuple(builder.problems),
+    )
+
+
+def _check_different(named: Mapping[str, Quantity]) -> None:
+    if not named:
+        raise InputError("a family needs something that varies: name a dimension and its values")
+    first: dict[Quantity, str] = {}
+    for name, quantity in named.items():
+        if first.setdefault(quantity, name) != name:
+            raise InputError(f'"{first[quantity]}" and "{name}" are the same number: give it once')
+
+
+def _columns(dimensions: Mapping[str, object]) -> dict[str, Array]:
+    """Every entry as an array (B,), read-only."""
+    given = {name: _numeric(name, values) for name, values in dimensions.items()}
+    lengths = {name: len(values) for name, values in given.items() if values.ndim}
+    if len(set(lengths.values())) > 1:
+        told = ", ".join(f"{name}: {count}" for name, count in lengths.items())
+        raise InputError(f"arrays of a family need equal lengths, got {told}")
+    count = max(lengths.values(), default=1)
+    return {name: np.broadcast_to(values, (count,)) for name, values in given.items()}
+
+
+def _numeric(name: str, values: object) -> Array:
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise InputError(f'"{name}" needs a number or an array of numbers, got rows') from None
+    if array.dtype.kind not in "iuf":
+        shown = repr(values)
+        raise InputError(
+            f'"{name}" needs a number or an array of numbers, got '
+            f"{shown if len(shown) <= 40 else f'an array of {array.dtype}'}"
+        )
+    if array.ndim > 1:
+        shape = " × ".join(map(str, array.shape))
+        raise InputError(f'"{name}" needs a number or an array of one axis, got {shape} numbers')
+    found = np.array(array, dtype=np.float64)
+    found.flags.writeable = False
+    return found

@@ -1,0 +1,181 @@
+"""A family: one mechanism in many designs, solved together."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+
+import numpy as np
+
+from linkwork.batch.designs import Designs, designs_of
+from linkwork.batch.family_motion import FamilyMotion
+from linkwork.batch.lane_rows import design_rows
+from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.errors import InputError
+from linkwork.motion.model import Model
+
+__all__ = ["Family", "Reduction", "family_of"]
+
+#: A reduction by name, or a function of values (D, R) that gives (D,); NaN marks missing positions.
+Reduction = str | Callable[[Array], Array]
+
+_MOST_BYTES = 4 << 30  # of unknowns that one call may hold in memory
+_PART = 16_384  # designs reduced at a time
+
+
+class Family:
+    """Designs of one mechanism; made by ``mechanism.family({"a2": array, …})``.
+
+    Parameters
+    ----------
+    designs : Designs
+    """
+
+    def __init__(self, designs: Designs) -> None:
+        self.designs = designs
+
+    def __len__(self) -> int:
+        return len(self.designs)
+
+    def __repr__(self) -> str:
+        varied = ", ".join(self.designs.dimensions)
+        name = self.designs.base.description.name
+        return f'<Family of "{name}": {len(self)} designs with their own {varied}>'
+
+    @property
+    def dimensions(self) -> Mapping[str, Array]:
+        """What varies, (D,) each, everyday units."""
+        return self.designs.dimensions
+
+    def take(self, index: IndexArray | slice) -> Family:
+        """Some of the designs (integers, a mask or a slice)."""
+        return Family(self.designs.take(index))
+
+    def sweep(self, *, certify: bool = True, threads: int | None = None) -> FamilyMotion:
+        """Every design at every row of the mechanism's table, each on the branch of its start.
+
+        Positions, statuses and proofs are those that each design has by itself.
+
+        Parameters
+        ----------
+        certify : bool
+            Prove every position and the motion to it.
+        threads : int, optional
+            How many cores work; all of them by default.
+
+        Raises
+        ------
+        InputError
+            If the result would not fit into memory: use :meth:`parts` or :meth:`reduced`.
+        """
+        model = self.designs.base
+        count = len(self) * len(model.rows) * (len(model.equations.unknowns) + 1)
+        if 8 * count > _MOST_BYTES:
+            raise InputError(
+                f"{len(self)} designs × {len(model.rows)} rows take {8 * count / 2**30:.0f} GiB: "
+                "go through family.parts(), or ask for family.reduced({...})"
+            )
+        rows = design_rows(self.designs, certify=certify, threads=threads or _cores())
+        return FamilyMotion(designs=self.designs, inputs=model.everyday_rows, rows=rows)
+
+    def parts(
+        self, designs: int = _PART, *, certify: bool = True, threads: int | None = None
+    ) -> Iterator[FamilyMotion]:
+        """The motions of so many designs at a time, in order; memory stays bounded."""
+        if designs < 1:
+            raise InputError(f"a part needs at least one design, got {designs}")
+        for first in range(0, len(self), designs):
+            part = self.take(slice(first, first + designs))
+            yield part.sweep(certify=certify, threads=threads)
+
+    def reduced(
+        self,
+        wanted: Mapping[str, Reduction | tuple[Reduction, ...]],
+        *,
+        certify: bool = True,
+        threads: int | None = None,
+    ) -> dict[str, Array]:
+        """One number per design and quantity over all its rows.
+
+        Parameters
+        ----------
+        wanted : Mapping
+            Quantity → ``min``, ``max``, ``mean``, ``stroke`` (largest less smallest), a function
+            of values (D, R) to (D,), or several of these. Missing positions are NaN; the named
+            reductions leave them out.
+
+        Returns
+        -------
+        dict
+            ``"mu.min"`` and so on, (D,) each, with ``found`` and ``certified``: how many rows hold
+            a position, and how many are proved.
+
+        Raises
+        ------
+        InputError, UnknownNameError
+            For a reduction or a quantity that does not exist.
+        """
+        columns = [
+            (name, f"{name}.{_word(reduction)}", _function(reduction))
+            for name, several in wanted.items()
+            for reduction in (several if isinstance(several, tuple) else (several,))
+        ]
+        found: dict[str, list[Array]] = {key: [] for _, key, _ in columns}
+        found |= {"found": [], "certified": []}
+        for part in self.parts(certify=certify, threads=threads):
+            for name, key, function in columns:
+                value = np.asarray(function(part[name]), dtype=float)
+                if value.shape != (len(part),):
+                    raise InputError(
+                        f"{key} needs one number per design ({len(part)},), got {value.shape}"
+                    )
+                found[key].append(value)
+            found["found"].append(part.found.sum(axis=1))
+            found["certified"].append(part.certified.sum(axis=1))
+        return {key: np.concatenate(values) for key, values in found.items()}
+
+
+def family_of(model: Model, dimensions: Mapping[str, object]) -> Family:
+    """The family of a mechanism; see :func:`linkwork.batch.designs_of` for what may vary."""
+    return Family(designs_of(model, dimensions))
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _least(values: Array) -> Array:
+    found: Array = np.fmin.reduce(values, axis=1)
+    return found
+
+
+def _most(values: Array) -> Array:
+    found: Array = np.fmax.reduce(values, axis=1)
+    return found
+
+
+def _mean(values: Array) -> Array:
+    there = ~np.isnan(values)
+    with np.errstate(invalid="ignore"):
+        mean: Array = np.where(there, values, 0.0).sum(axis=1) / there.sum(axis=1)
+    return mean
+
+
+_NAMED: dict[str, Callable[[Array], Array]] = {
+    "min": _least,
+    "max": _most,
+    "mean": _mean,
+    "stroke": lambda values: _most(values) - _least(values),
+}
+
+
+def _function(reduction: Reduction) -> Callable[[Array], Array]:
+    if callable(reduction):
+        return reduction
+    if reduction not in _NAMED:
+        raise InputError(f'there is no reduction "{reduction}" (there are: {", ".join(_NAMED)})')
+    return _NAMED[reduction]
+
+
+def _word(reduction: Reduction) -> str:
+    return reduction if isinstance(reduction, str) else getattr(reduction, "__name__", "value")

@@ -1,0 +1,274 @@
+"""Designs over a table of inputs by the compiled march; what it leaves open, one by one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.batch.designs import Designs
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray, StatusArray
+from linkwork.foundation.certification import Certification
+from linkwork.foundation.errors import LinkworkError
+from linkwork.foundation.status import Status
+from linkwork.kernels.lanes.closure import BlockPart
+from linkwork.kernels.lanes.folding import dead_points
+from linkwork.kernels.lanes.lane_kernel import LaneKernel, LaneRows, Steps
+from linkwork.motion import sweep
+from linkwork.motion.drive import Drive
+from linkwork.motion.lock_step import lock_step
+from linkwork.motion.model import Model
+from linkwork.motion.tracking import turns_freely
+
+__all__ = ["DesignRows", "design_rows"]
+
+_ON_PATH = 1e-12
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DesignRows:
+    """D designs over R rows of inputs, internal units.
+
+    ``v`` (n, R, D): unknowns, NaN where there is no position. ``status``, ``certification``
+    (R, D): codes. ``radius`` (R, D): of the proof, weighted; NaN without one.
+    ``dead_points`` (2, D): between which values of t a design moves, where the march found them.
+    ``alone`` (D,): designs that were computed one at a time.
+    """
+
+    v: Array
+    status: StatusArray
+    certification: StatusArray
+    radius: Array
+    dead_points: Array
+    alone: BoolArray
+
+    @classmethod
+    def blank(cls, unknowns: int, rows: int, designs: int, certify: bool) -> DesignRows:
+        """No positions yet; unknowns are left as they come."""
+        none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
+        return cls(
+            v=np.empty((unknowns, rows, designs)),
+            status=np.full((rows, designs), Status.NO_START.code, dtype=np.int8),
+            certification=np.full((rows, designs), none.code, dtype=np.int8),
+            radius=np.full((rows, designs), np.nan),
+            dead_points=np.full((2, designs), np.nan),
+            alone=np.zeros(designs, dtype=bool),
+        )
+
+
+def design_rows(designs: Designs, *, certify: bool, threads: int = 1) -> DesignRows:
+    """Every design over the rows of the mechanism's table, on the branch of its own start.
+
+    The compiled march serves equations of loops and lines; designs that it cannot lead through
+    all rows (dead points, change points, no position at the start) and mechanisms with other
+    equations are swept one at a time, so that every row has the status that it has by itself.
+    """
+    model = designs.base
+    found = DesignRows.blank(model.compiled.solver.unknowns, len(model.rows), len(designs), certify)
+    left = designs.problem == 0
+    march = _Path.of(model)
+    if march is None:
+        found.v[:] = np.nan
+    else:
+        left &= ~march.fill(designs, found, certify, threads)
+    for k in np.flatnonzero(left):
+        _alone(designs, int(k), found, certify)
+    return found
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Path:
+    """The straight line through the table's inputs: u = origin + rate t."""
+
+    model: Model
+    lead: int
+    origin: Array
+    rate: Array
+
+    @classmethod
+    def of(cls, model: Model) -> _Path | None:
+        """``None`` where the compiled march does not serve."""
+        table = model.compiled.table
+        if table.functions or model.equations.redundant or not len(model.equations.inputs):
+            return None
+        lead, rate = lock_step(model.rows)
+        drive = Drive.through(model, model.rows[0], rate, lead)
+        return cls(model=model, lead=lead, origin=drive.path.origin, rate=drive.path.rate)
+
+    def fill(self, designs: Designs, found: DesignRows, certify: bool, threads: int) -> BoolArray:
+        """Designs that went through all rows are filled in; which they are, (D,)."""
+        n = self.model.compiled.solver.unknowns
+        inputs = designs.start[:, n:]
+        start = inputs[:, self.lead]
+        away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
+        served = (designs.problem == 0) & (away <= _ON_PATH * np.maximum(1.0, np.abs(inputs))).all(
+            axis=1
+        )
+        t = self.model.rows[:, self.lead]
+        way = slice(None, None, -1 if t[-1] < t[0] else 1)
+        march = _March(self, designs, served, certify, threads)
+        whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
+        found.v[:, ~reached[way]] = np.nan
+        found.status[:, whole] = Status.OUT_OF_REACH.code
+        found.status[reached[way]] = Status.CONVERGED.code
+        if certify:
+            found.certification[reached[way]] = Certification.CERTIFIED.code
+        else:
+            found.radius[:] = np.nan
+        found.dead_points[:] = march.dead_points
+        return whole
+
+
+class _March:
+    """The compiled march of a family, and what becomes of designs that stop at dead points."""
+
+    def __init__(
+        self, path: _Path, designs: Designs, served: BoolArray, certify: bool, threads: int
+    ) -> None:
+        self.path, self.certify, self.threads = path, certify, threads
+        compiled, model = path.model.compiled, path.model
+        n = compiled.solver.unknowns
+        self.coefficients = _coefficients(path, designs)
+        self.zeros = {name for name, values in self.coefficients.items() if not values.any()}
+        parts = [
+            BlockPart(equations=block.equations, unknowns=tuple(block.unknowns.tolist()))
+            for block in compiled.solver.blocks
+        ]
+        self.kernel = LaneKernel(compiled.table, parts, self.zeros, certify)
+        self.guess = np.where(served, designs.start[:, :n].T, np.nan)  # else not found
+        self.start = designs.start[:, n + path.lead].copy()
+        self.free = turns_freely(model)
+        self.dead_points = np.full((2, len(designs)), np.nan)
+
+    def through(self, t: Array, v: Array, radius: Array) -> tuple[BoolArray, BoolArray]:
+        """March through increasing values of t.
+
+        Returns
+        -------
+        done, reached : (D,), (R, D)
+            Which designs need nothing more: each row is reached, or lies beyond a dead point.
+        """
+        rows = self._marched(t, v, radius, slice(None))
+        reached = rows.reached
+        done: BoolArray = np.logical_and.reduce(reached, axis=0)
+        stopped = np.flatnonzero(rows.found & ~done)
+        if not len(stopped) or len(self.path.rate) > 1:
+            return done, reached
+        limits = np.repeat([[-np.inf], [np.inf]], len(stopped), axis=1)
+        self._limit(limits, rows.take(stopped), stopped)
+        for turns in (-1, 1) if self.free else ():
+            self._wind(t, turns, v, radius, reached, stopped, limits)
+        settled = self._settled(t, reached[:, stopped], limits)
+        done[stopped[settled]] = True
+        self.dead_points[:, stopped] = np.where(np.isinf(limits), np.nan, limits)
+        return done, reached
+
+    def _marched(self, t: Array, v: Array, radius: Array, where: IndexArray | slice) -> LaneRows:
+        found = LaneRows.over(v, radius if self.certify else radius[:0], self.kernel)
+        coefficients = {name: values[where] for name, values in self.coefficients.items()}
+        self.kernel.run(
+            coefficients,
+            self.guess[:, where],
+            self.start[where],
+            t,
+            Steps(),
+            found,
+            self.threads,
+        )
+        return found
+
+    def _limit(self, limits: Array, rows: LaneRows, mine: IndexArray) -> None:
+        """Note between which values of t designs can move, where rows say that they were stopped.
+
+        ``limits`` (2, S): infinite where nothing has stopped them; NaN where what did is no dead
+        point that was found.
+        """
+        for way in range(2):
+            ended = np.flatnonzero(~np.isnan(rows.stopped[way]) & np.isinf(limits[way]))
+            if not len(ended):
+                continue
+            folds = dead_points(
+                self.path.model.compiled.table,
+                self.zeros,
+                {name: values[mine[ended]] for name, values in self.coefficients.items()},
+                self.kernel.last_nodes(rows, way, ended),
+                way,
+                self.certify,
+            )
+            limits[way, ended] = np.where(folds.found, folds.t, np.nan)
+
+    def _wind(
+        self,
+        t: Array,
+        turns: int,
+        v: Array,
+        radius: Array,
+        reached: BoolArray,
+        stopped: IndexArray,
+        limits: Array,
+    ) -> None:
+        """Fill the rows that designs reach so many turns away."""
+        moved = t + turns * FULL_TURN
+        inside = (moved[:, None] >= limits[0]) & (moved[:, None] <= limits[1])
+        those = np.flatnonzero((~reached[:, stopped] & inside).any(axis=0))
+        if not len(those):
+            return
+        mine = stopped[those]
+        own, radii = np.empty((len(v), len(t), len(mine))), np.empty((len(t), len(mine)))
+        further = self._marched(moved, own, radii, mine)
+        row, column = np.nonzero(further.reached & ~reached[:, mine])
+        v[:, row, mine[column]] = own[:, row, column]
+        radius[row, mine[column]] = radii[row, column]
+        reached[row, mine[column]] = True
+        known = limits[:, those]
+        self._limit(known, further, mine)
+        limits[:, those] = known
+
+    def _settled(self, t: Array, reached: BoolArray, limits: Array) -> BoolArray:
+        """Designs of which no row is missing that lies within their limits, (S,)."""
+        low, high = limits
+        settled: BoolArray = np.logical_not(np.isnan(limits).any(axis=0))
+        most = int((t[-1] - t[0]) / FULL_TURN) + 2 if self.free else 0
+        for turns in range(-most, most + 1):
+            moved = t[:, None] + turns * FULL_TURN
+            settled &= ~(~reached & (moved >= low) & (moved <= high)).any(axis=0)
+        return settled
+
+
+def _coefficients(path: _Path, designs: Designs) -> dict[str, Array]:
+    """What the programs of a family read, by register, (D,) each."""
+    found: dict[str, Array] = {}
+    for term in range(designs.loops.shape[1]):
+        column = designs.loops[:, term]
+        found[f"c{term}.re"] = np.ascontiguousarray(column.real)
+        found[f"c{term}.im"] = np.ascontiguousarray(column.imag)
+    for row in range(designs.linear.shape[1]):
+        found[f"k{row}"] = np.ascontiguousarray(designs.linear[:, row])
+    for k, turns in enumerate(path.model.compiled.table.turns):
+        if not turns:
+            found[f"scale{k}"] = designs.length_scale
+    for j, (origin, rate) in enumerate(zip(path.origin, path.rate, strict=True)):
+        found[f"u{j}.origin"] = np.full(len(designs), origin)
+        found[f"u{j}.rate"] = np.full(len(designs), rate)
+    return found
+
+
+def _alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
+    """One design by the ordinary sweep."""
+    found.alone[k] = True
+    try:
+        motion = sweep(designs.design(k), certify=certify)
+    except LinkworkError:  # what is wrong with it is told by ``designs.message``
+        found.v[:, :, k] = found.radius[:, k] = np.nan
+        found.status[:, k] = Status.NO_START.code
+        none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
+        found.certification[:, k] = none.code
+        return
+    asked = ~motion.added
+    found.v[:, :, k] = motion.q[asked].T
+    found.status[:, k] = [s.code for s, a in zip(motion.status, asked, strict=True) if a]
+    found.certification[:, k] = [
+        c.code for c, a in zip(motion.certification, asked, strict=True) if a
+    ]
+    found.radius[:, k] = motion.radius[asked]

@@ -1,0 +1,120 @@
+"""The numbers of a mechanism that a family can vary, and the names they are asked by."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from linkwork.foundation.errors import UnknownNameError, choices
+from linkwork.foundation.names import canonical
+from linkwork.mechanism.description import Description
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loops import Loops, PlainEquations
+from linkwork.mechanism.parts import Number
+
+__all__ = ["Quantity", "quantities", "quantity_named", "with_numbers"]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number of a description: the table it stands in, its key there, and its name.
+
+    ``axis`` is 0 for the x and 1 for the y of a point.
+    """
+
+    name: str
+    table: str  # dimensions | lengths | angles | points | sliders | guess
+    key: str
+    axis: int = 0
+
+    def of(self, description: Description) -> float:
+        """Its value in a description, everyday units."""
+        return description.numbers(self._written(description))
+
+    def _written(self, description: Description) -> Number:
+        table: Any = getattr(description, self.table)
+        if self.table == "points":
+            number: Number = table[self.key][self.axis]
+        elif self.table == "sliders":
+            number = next(part.offset for part in table if part.name == self.key)
+        else:
+            number = table[self.key]
+        return number
+
+
+def quantities(description: Description) -> Iterator[Quantity]:
+    """Every number that can vary."""
+    for name in description.dimensions:
+        yield Quantity(name, "dimensions", name)
+    if isinstance(description, Loops | PlainEquations):
+        for name in description.guess:
+            yield Quantity(name, "guess", name)
+    if isinstance(description, Linkage):
+        for table in ("lengths", "angles"):
+            for key in getattr(description, table):
+                yield Quantity(key, table, key)
+        for point in description.points:
+            for axis, letter in enumerate("xy"):
+                yield Quantity(f"{point}.{letter}", "points", point, axis)
+        for slider in description.sliders:
+            yield Quantity(f"{slider.name}.offset", "sliders", slider.name)
+
+
+def quantity_named(description: Description, name: str) -> Quantity:
+    """The number that a name means: ``a2``, ``O2 A``, ``B A P``, ``O4.x`` or ``s16.offset``.
+
+    The two points of a length may be given in either order.
+
+    Raises
+    ------
+    UnknownNameError
+        With the numbers that there are, those with similar names first.
+    """
+    found = {_folded(quantity.name): quantity for quantity in quantities(description)}
+    words = _folded(name).split()
+    wanted = " ".join(words)
+    if wanted not in found and len(words) == 2:
+        wanted = " ".join(reversed(words))
+    if wanted not in found:
+        names = [quantity.name for quantity in found.values()]
+        raise UnknownNameError(
+            f'"{name}" is no number of {description.name} that can vary '
+            f"{choices('numbers', names, name)}"
+        )
+    return found[wanted]
+
+
+def _folded(name: str) -> str:
+    return " ".join(canonical(name).split())
+
+
+def with_numbers(description: Description, numbers: Mapping[Quantity, Number]) -> Description:
+    """A copy with some numbers replaced.
+
+    Raises
+    ------
+    MechanismError
+        With every problem found.
+    """
+    tables: dict[str, dict[str, Any]] = {}
+    for quantity, number in numbers.items():
+        changed = tables.setdefault(quantity.table, {})
+        if quantity.table == "points":
+            assert isinstance(description, Linkage)
+            place = list(changed.get(quantity.key, description.points[quantity.key]))
+            place[quantity.axis] = number
+            changed[quantity.key] = tuple(place)
+        else:
+            changed[quantity.key] = number
+    return replace(description, **{t: _changed(description, t, new) for t, new in tables.items()})
+
+
+def _changed(description: Description, table: str, changes: Mapping[str, Any]) -> Any:
+    if table != "sliders":
+        return {**getattr(description, table), **changes}
+    assert isinstance(description, Linkage)
+    return tuple(
+        replace(part, offset=changes[part.name]) if part.name in changes else part
+        for part in description.sliders
+    )

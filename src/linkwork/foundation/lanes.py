@@ -1,0 +1,519 @@
+"""Numbers of many designs at once, for code that was written for one design.
+
+The code that builds a mechanism computes with floats and complex numbers. :class:`Lanes` stand for
+such a number in n designs; arithmetic goes lane by lane. Where the code asks *whether* something
+holds (``if``, ``and``, ``max``), one lane leads: the answer is the leader's, and the lanes in which
+it is another one leave the :class:`Consensus`. What is computed is right for the lanes that are
+left; the others are built anew, with a leader of their own. So every design goes exactly the way
+that it would have gone alone.
+
+Lanes pass through functions that are annotated for ``float`` and ``complex``, as a number would.
+The functions below take plain numbers and lanes alike; a plain number takes the path it took before
+there were lanes. Everything else that wants a plain number (``float``, ``math``, arrays) gets a
+:class:`NotElementwise` from lanes.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+import operator
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, cast
+
+import numpy as np
+
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray
+
+if TYPE_CHECKING:
+    from typing import TypeGuard
+
+__all__ = [
+    "Consensus",
+    "Lanes",
+    "NotElementwise",
+    "Rest",
+    "Truths",
+    "as_float",
+    "broken",
+    "choose",
+    "copysign",
+    "degrees",
+    "everywhere",
+    "exponential",
+    "finite",
+    "hypot",
+    "kept",
+    "largest",
+    "led",
+    "many",
+    "phase",
+    "rect",
+    "remainder",
+    "rest_of",
+    "row_of",
+    "settled",
+    "shown_by",
+    "smallest",
+    "sqrt",
+    "turn",
+    "vector",
+]
+
+
+_Number = TypeVar("_Number", float, complex)
+
+
+class NotElementwise(Exception):
+    """Something that is done with one number only was asked of many."""
+
+
+class Consensus:
+    """Which lanes went the leader's way.
+
+    Parameters
+    ----------
+    count : int
+        n lanes.
+    leader : int
+        The lane that decides. What is only shown (a sign in a printed equation) follows lane 0.
+    widest : bool
+        Whether what varies counts as there where it is 0: the terms of all lanes together.
+
+    Attributes
+    ----------
+    agreeing : (n,) bool
+        Lanes in which every decision was the leader's.
+    apart : (n,) bool
+        Lanes with another value of a number that has to be one for all, as a gear ratio.
+    """
+
+    def __init__(self, count: int, leader: int = 0, *, widest: bool = False) -> None:
+        self.leader = leader
+        self.widest = widest
+        self.agreeing: BoolArray = np.ones(count, dtype=bool)
+        self.apart: BoolArray = np.zeros(count, dtype=bool)
+
+    def decide(self, truths: BoolArray) -> bool:
+        """The leader's answer; lanes with another one leave."""
+        answer = bool(truths[self.leader])
+        self.agreeing &= truths if answer else ~truths
+        return answer
+
+    def settle(self, values: AnyArray) -> Any:
+        """The leader's value; lanes with another one stand apart."""
+        value = values[self.leader]
+        self.apart |= values != value
+        return value.item()
+
+    def lanes(self, values: AnyArray) -> float:
+        """Values (n,) as one number."""
+        return cast(float, Lanes(values, self))
+
+
+class Truths:
+    """Whether something holds, lane by lane; as a condition the leader's answer."""
+
+    __slots__ = ("consensus", "values")
+
+    def __init__(self, values: BoolArray, consensus: Consensus) -> None:
+        self.values = values
+        self.consensus = consensus
+
+    def __bool__(self) -> bool:
+        return self.consensus.decide(self.values)
+
+    def __and__(self, other: object) -> Truths:
+        return Truths(self.values & _bare(other), self.consensus)
+
+    def __or__(self, other: object) -> Truths:
+        return Truths(self.values | _bare(other), self.consensus)
+
+    def __eq__(self, other: object) -> Any:
+        return Truths(self.values == _bare(other), self.consensus)
+
+    def __ne__(self, other: object) -> Any:
+        return Truths(self.values != _bare(other), self.consensus)
+
+    __hash__ = None  # type: ignore[assignment]
+    __rand__ = __and__
+    __ror__ = __or__
+
+
+class Lanes:
+    """One number, real or complex, in n designs: ``values`` (n,)."""
+
+    __slots__ = ("consensus", "values")
+
+    def __init__(self, values: AnyArray, consensus: Consensus) -> None:
+        self.values = values
+        self.consensus = consensus
+
+    def like(self, values: AnyArray) -> Lanes:
+        """Other values of the same lanes."""
+        return Lanes(values, self.consensus)
+
+    def holds(self, truths: BoolArray) -> Truths:
+        """Whether something holds in the same lanes."""
+        return Truths(truths, self.consensus)
+
+    # Arithmetic
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **_: object) -> Any:
+        """NumPy scalars compute with lanes as floats do; arrays do not."""
+        arrays = any(isinstance(number, np.ndarray) for number in inputs)
+        if arrays or ufunc not in _OPERATORS or method != "__call__":
+            raise NotElementwise
+        return _OPERATORS[ufunc](*(n.item() if isinstance(n, np.generic) else n for n in inputs))
+
+    def __add__(self, other: object) -> Lanes:
+        return self.like(self.values + _bare(other))
+
+    def __radd__(self, other: object) -> Lanes:
+        return self.like(_bare(other) + self.values)
+
+    def __sub__(self, other: object) -> Lanes:
+        return self.like(self.values - _bare(other))
+
+    def __rsub__(self, other: object) -> Lanes:
+        return self.like(_bare(other) - self.values)
+
+    def __mul__(self, other: object) -> Lanes:
+        bare = _bare(other)
+        if not isinstance(bare, np.ndarray) and bare == 1:
+            return self
+        return self.like(self.values * bare)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: object) -> Lanes:
+        return self.like(self.values / _bare(other))
+
+    def __rtruediv__(self, other: object) -> Lanes:
+        return self.like(_bare(other) / self.values)
+
+    def __pow__(self, other: object) -> Lanes:
+        return _power(self, self.values, _bare(other))
+
+    def __rpow__(self, other: object) -> Lanes:
+        return _power(self, _bare(other), self.values)
+
+    def __neg__(self) -> Lanes:
+        return self.like(-self.values)
+
+    def __abs__(self) -> Lanes:
+        return self.like(np.abs(self.values))
+
+    def __round__(self) -> Lanes:
+        return self.like(np.rint(self.values))
+
+    def conjugate(self) -> Lanes:
+        """The complex conjugate."""
+        return self.like(self.values.conjugate())
+
+    @property
+    def real(self) -> Lanes:
+        """The real part."""
+        return self.like(self.values.real)
+
+    @property
+    def imag(self) -> Lanes:
+        """The imaginary part."""
+        return self.like(self.values.imag)
+
+    # Questions
+
+    def __eq__(self, other: object) -> Any:
+        return self.holds(self.values == _bare(other))
+
+    def __ne__(self, other: object) -> Any:
+        return self.holds(self.values != _bare(other))
+
+    def __lt__(self, other: object) -> Truths:
+        return self.holds(self.values < _bare(other))
+
+    def __le__(self, other: object) -> Truths:
+        return self.holds(self.values <= _bare(other))
+
+    def __gt__(self, other: object) -> Truths:
+        return self.holds(self.values > _bare(other))
+
+    def __ge__(self, other: object) -> Truths:
+        return self.holds(self.values >= _bare(other))
+
+    def __bool__(self) -> bool:
+        return self.consensus.decide(self.values != 0)
+
+    # Text stands for the number of any lane
+
+    def __format__(self, spec: str) -> str:
+        return "…"
+
+    def __repr__(self) -> str:
+        return "…"
+
+    # What wants a single number
+
+    def _refuse(self, *_: object, **__: object) -> NoReturn:
+        raise NotElementwise
+
+    __float__ = __int__ = __complex__ = __index__ = __hash__ = _refuse
+    __array__ = __floor__ = __ceil__ = __trunc__ = _refuse
+    __floordiv__ = __mod__ = __rfloordiv__ = __rmod__ = __iter__ = _refuse
+
+
+_OPERATORS: dict[object, Callable[..., Any]] = {
+    np.add: operator.add, np.subtract: operator.sub, np.multiply: operator.mul,
+    np.true_divide: operator.truediv, np.power: operator.pow, np.equal: operator.eq,
+    np.not_equal: operator.ne, np.less: operator.lt, np.less_equal: operator.le,
+    np.greater: operator.gt, np.greater_equal: operator.ge,
+}  # fmt: skip
+
+
+def _bare(number: object) -> Any:
+    if isinstance(number, Lanes | Truths):
+        return number.values
+    if isinstance(number, np.ndarray):
+        raise NotElementwise  # its entries are no lanes
+    return number
+
+
+def _power(own: Lanes, base: Any, exponent: Any) -> Lanes:
+    """base ** exponent with the exceptions of plain numbers."""
+    found = np.asarray(base**exponent)
+    wrong = ~np.isfinite(found)
+    if wrong.any():
+        if own.consensus.decide(wrong & np.broadcast_to(base == 0, wrong.shape)):
+            raise ZeroDivisionError
+        if own.consensus.decide(wrong & np.isfinite(base) & np.isfinite(exponent)):
+            raise OverflowError
+    return own.like(found)
+
+
+def many(number: object) -> TypeGuard[Lanes]:
+    """Whether a number is one of many designs."""
+    return isinstance(number, Lanes)
+
+
+def _real(number: Lanes) -> float:
+    return cast(float, number)
+
+
+def _complex(number: Lanes) -> complex:
+    return cast(complex, number)
+
+
+def _first_of_many(numbers: Iterable[object]) -> Lanes | None:
+    return next((number for number in numbers if isinstance(number, Lanes)), None)
+
+
+# Functions of plain numbers and lanes
+
+
+def vector(x: float, y: float) -> complex:
+    """x + iy."""
+    lanes = _first_of_many((x, y))
+    if lanes is None:
+        return complex(x, y)
+    values = np.empty(len(lanes.values), dtype=complex)
+    values.real, values.imag = _bare(x), _bare(y)
+    return _complex(lanes.like(values))
+
+
+def phase(z: complex) -> float:
+    """The direction of a vector, in (-π, π]."""
+    if many(z):
+        return _real(z.like(np.angle(z.values)))
+    return cmath.phase(z)
+
+
+def turn(angle: float) -> complex:
+    """e^(i angle)."""
+    if many(angle):
+        return vector(
+            _real(angle.like(np.cos(angle.values))), _real(angle.like(np.sin(angle.values)))
+        )
+    return cmath.exp(1j * angle)
+
+
+def exponential(z: complex) -> complex:
+    """e^z; raises OverflowError where it is too large, as ``cmath`` does."""
+    if not many(z):
+        return cmath.exp(z)
+    found = np.exp(z.values)
+    if (wrong := ~np.isfinite(found)).any() and z.consensus.decide(wrong):
+        raise OverflowError
+    return _complex(z.like(found))
+
+
+def rect(length: float, angle: float) -> complex:
+    """length · e^(i angle)."""
+    if _first_of_many((length, angle)) is None:
+        return cmath.rect(length, angle)
+    return length * turn(angle)
+
+
+def sqrt(x: float) -> float:
+    """The square root; NaN in lanes where it is not real."""
+    return _real(x.like(np.sqrt(x.values))) if many(x) else math.sqrt(x)
+
+
+def hypot(x: float, y: float) -> float:
+    """√(x² + y²)."""
+    lanes = _first_of_many((x, y))
+    if lanes is None:
+        return math.hypot(x, y)
+    return _real(lanes.like(np.hypot(_bare(x), _bare(y))))
+
+
+def copysign(size: float, sign: float) -> float:
+    """A plain size with the sign of a number."""
+    return (
+        _real(sign.like(np.copysign(size, sign.values)))
+        if many(sign)
+        else math.copysign(size, sign)
+    )
+
+
+def remainder(x: float, period: float) -> float:
+    """x less whole periods, at most half a period in size; exact."""
+    if not many(x):
+        return math.remainder(x, period)
+    rest = np.fmod(x.values, period)
+    size, odd = np.abs(rest), np.trunc(x.values / period) % 2 == 1
+    over = (size > period / 2) | ((size == period / 2) & odd)
+    return _real(x.like(np.where(over, rest - np.copysign(period, rest), rest)))
+
+
+def degrees(angle: float) -> float:
+    """Radians in degrees."""
+    if many(angle):
+        return _real(angle * (180.0 / math.pi))
+    return math.degrees(angle)
+
+
+def finite(x: float) -> bool:
+    """Whether a number is neither NaN nor infinite."""
+    return cast(bool, x.holds(np.isfinite(x.values))) if many(x) else math.isfinite(x)
+
+
+def broken(x: float) -> bool:
+    """Whether a number is no whole number."""
+    if many(x):
+        return cast(bool, x.holds(x.values != np.floor(x.values)))
+    return not float(x).is_integer()
+
+
+def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
+    """``yes`` where the condition holds, else ``no``; both are computed."""
+    truths: object = condition
+    if isinstance(truths, Truths):
+        chosen: AnyArray = np.where(truths.values, _bare(yes), _bare(no))
+        return cast(_Number, Lanes(chosen, truths.consensus))
+    return yes if condition else no
+
+
+def everywhere(condition: bool) -> bool:
+    """Whether it holds in all lanes that are left: no lane leaves for it."""
+    truths: object = condition
+    if isinstance(truths, Truths):
+        return bool((truths.values | ~truths.consensus.agreeing).all())
+    return condition
+
+
+class Rest:
+    """The lanes in which something is not done yet, by themselves, with the leader.
+
+    Work goes on with the numbers of these lanes only, led as before; :meth:`leave` tells the whole
+    which of them left meanwhile.
+    """
+
+    def __init__(self, done: Truths) -> None:
+        self.whole = done.consensus
+        wanted = ~done.values & self.whole.agreeing
+        wanted[self.whole.leader] = False
+        self.lanes = np.concatenate([[self.whole.leader], np.flatnonzero(wanted)])
+        self.part = Consensus(len(self.lanes))
+
+    def narrowed(self, number: _Number) -> _Number:
+        """A number in these lanes."""
+        if not many(number):
+            return number
+        return cast(_Number, Lanes(number.values[self.lanes], self.part))
+
+    def widened(self, whole: _Number, part: _Number) -> _Number:
+        """A number of all lanes with what has become of it in these."""
+        values = np.array(np.broadcast_to(_bare(whole), self.whole.agreeing.shape))
+        values[self.lanes] = _bare(part)
+        return cast(_Number, Lanes(values, self.whole))
+
+    def leave(self) -> None:
+        """Lanes that went another way leave the whole."""
+        self.whole.agreeing[self.lanes] &= self.part.agreeing
+
+
+def rest_of(done: bool) -> Rest | None:
+    """The lanes in which something is not done; ``None`` for a plain condition."""
+    truths: object = done
+    return Rest(truths) if isinstance(truths, Truths) else None
+
+
+def largest(numbers: Iterable[float], default: float = 0.0) -> float:
+    """The largest of numbers, lane by lane."""
+    return _extreme(list(numbers), default, most=True)
+
+
+def smallest(numbers: Iterable[float], default: float = 0.0) -> float:
+    """The smallest of numbers, lane by lane."""
+    return _extreme(list(numbers), default, most=False)
+
+
+def _extreme(numbers: list[float], default: float, *, most: bool) -> float:
+    lanes = _first_of_many(numbers)
+    if lanes is None:
+        return max(numbers, default=default) if most else min(numbers, default=default)
+    plain = [number for number in numbers if not many(number)]
+    found: Any = (max(plain) if most else min(plain)) if plain else None
+    for number in numbers:
+        if many(number):
+            better = np.fmax if most else np.fmin
+            found = number.values if found is None else better(found, number.values)
+    return _real(lanes.like(found))
+
+
+def kept(x: complex) -> bool:
+    """Whether something of this size is there."""
+    return (many(x) and x.consensus.widest) or bool(x)
+
+
+def shown_by(x: complex) -> complex:
+    """The plain number by which something is shown."""
+    return complex(x.values[0]) if many(x) else x
+
+
+def as_float(x: float) -> float:
+    """A float of any plain number; lanes as they are."""
+    if many(x):
+        return _real(x)
+    return float(x)
+
+
+def led(x: float) -> float:
+    """The leader's number."""
+    return cast(float, x.values[x.consensus.leader].item()) if many(x) else x
+
+
+def settled(x: float) -> float:
+    """A number that has to be one for all designs, as a weight of an angle."""
+    return cast(float, x.consensus.settle(x.values)) if many(x) else x
+
+
+def row_of(numbers: Iterable[float]) -> Array:
+    """Numbers as an array (k,); with lanes among them, of objects."""
+    found = list(numbers)
+    if _first_of_many(found) is None:
+        return np.array(found)
+    row = np.empty(len(found), dtype=object)
+    for k, number in enumerate(found):
+        row[k] = number
+    return cast(Array, row)

@@ -1,0 +1,1 @@
+"""Arithmetic for many mechanisms at once: straight-line programs over lanes of numbers."""

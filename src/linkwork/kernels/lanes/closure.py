@@ -1,0 +1,256 @@
+"""The loop-closure equations of one block as recorded arithmetic: F, J, Newton's step, rates.
+
+Everything stands by name in registers: ``v3`` the fourth variable, ``c5.re`` a coefficient,
+``k0`` the constant of a linear row, ``r3`` a variable's derivative by the path.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence, Set
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import IndexArray
+from linkwork.kernels.lanes.program import Recorder, Value
+from linkwork.kernels.loop_table import LoopTable
+
+__all__ = ["BlockPart", "Closure", "Linear", "Phase", "solved"]
+
+Pair = tuple[Value | float, Value | float]
+#: Variables with their weights; empty for a fixed direction.
+Phase = tuple[tuple[int, float], ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BlockPart:
+    """A block of a loop table: which equations (as in ``table.pattern``) it solves for what.
+
+    ``equations``: numbers of loops and linear rows; ``unknowns``: variables of the whole table.
+    """
+
+    equations: tuple[int, ...]
+    unknowns: tuple[int, ...]
+
+
+class Closure:
+    """The equations of one block over registers.
+
+    Parameters
+    ----------
+    table : LoopTable
+        Without function rows.
+    part : BlockPart
+    recorder : Recorder
+    variables : sequence of Value
+        All N variables of the table.
+    zeros : set of str
+        Coefficients that are zero in every design: nothing is computed with them.
+    """
+
+    def __init__(
+        self,
+        table: LoopTable,
+        part: BlockPart,
+        recorder: Recorder,
+        variables: Sequence[Value],
+        zeros: Set[str] = frozenset(),
+    ) -> None:
+        self.table, self.part, self.rec, self.v = table, part, recorder, variables
+        self.zeros = zeros
+        loops = table.loops
+        self.loops = [k for k in part.equations if k < loops.rows]
+        self.lines = [k - loops.rows for k in part.equations if k >= loops.rows]
+        self.terms = {k: np.flatnonzero(loops.row == k).tolist() for k in self.loops}
+        self.phases = _phases(loops.phase_term, loops.phase_variable, loops.phase_weight)
+        self._phasors: dict[Phase, Pair] = {}
+
+    def phasor(self, term: int) -> Pair:
+        """Cosine and sine of a term's phase."""
+        phase = self.phases.get(term, ())
+        if phase not in self._phasors:
+            self._phasors[phase] = self._turned(phase)
+        return self._phasors[phase]
+
+    def _turned(self, phase: Phase) -> Pair:
+        if not phase:
+            return 1.0, 0.0
+        if len(phase) == 1 and phase[0][1] in (1.0, -1.0):
+            ((variable, weight),) = phase
+            sine, cosine = self.rec.sin_cos(self.v[variable])
+            return cosine, sine if weight > 0 else -sine
+        angle = self.rec.total([self.v[k] * weight for k, weight in phase])
+        sine, cosine = self.rec.sin_cos(angle)
+        return cosine, sine
+
+    def coefficient(self, term: int) -> Pair:
+        """A term's complex coefficient; parts that are zero in every design are left out."""
+        real, imag = f"c{term}.re", f"c{term}.im"
+        return (
+            0.0 if real in self.zeros else self.rec.input(real),
+            0.0 if imag in self.zeros else self.rec.input(imag),
+        )
+
+    def bare(self, term: int) -> tuple[Value, Value]:
+        """c e^{iψ}, without a variable length."""
+        (cr, ci), (x, y) = self.coefficient(term), self.phasor(term)
+        rec = self.rec
+        real = rec.subtract(rec.multiply(cr, x), rec.multiply(ci, y))
+        imag = rec.add(rec.multiply(cr, y), rec.multiply(ci, x))
+        return real, imag
+
+    def whole(self, term: int) -> tuple[Value, Value]:
+        """c s e^{iψ}."""
+        real, imag = self.bare(term)
+        length = int(self.table.loops.length[term])
+        return (real, imag) if length < 0 else (real * self.v[length], imag * self.v[length])
+
+    def residual(self) -> list[Value]:
+        """F, real parts of the block's loops, imaginary parts, linear rows."""
+        rec = self.rec
+        sums = {k: [self.whole(t) for t in self.terms[k]] for k in self.loops}
+        real = [rec.total([x for x, _ in sums[k]]) for k in self.loops]
+        imag = [rec.total([y for _, y in sums[k]]) for k in self.loops]
+        return [*real, *imag, *[self._line(row) for row in self.lines]]
+
+    def entries(self, row: int) -> list[tuple[int, float]]:
+        """Variables and weights of a linear row."""
+        linear = self.table.linear
+        mine = np.flatnonzero(linear.row == row)
+        return [(int(linear.variable[k]), float(linear.weight[k])) for k in mine]
+
+    def _line(self, row: int) -> Value:
+        parts: list[Value | float] = [self.v[k] * weight for k, weight in self.entries(row)]
+        name = f"k{row}"
+        return self.rec.total([*parts, 0.0 if name in self.zeros else self.rec.input(name)])
+
+    def jacobian(self, variables: Sequence[int]) -> list[list[Value | float]]:
+        """dF/dv by some variables."""
+        columns = [self._column(k) for k in variables]
+        return [list(row) for row in zip(*columns, strict=True)]
+
+    def _column(self, variable: int) -> list[Value | float]:
+        rec, real, imag = self.rec, [], []
+        for k in self.loops:
+            x: Value | float = 0.0
+            y: Value | float = 0.0
+            for term in self.terms[k]:
+                weight = dict(self.phases.get(term, ())).get(variable, 0.0)
+                if weight:
+                    a, b = self.whole(term)
+                    x, y = rec.subtract(x, weight * b), rec.add(y, weight * a)
+                if int(self.table.loops.length[term]) == variable:
+                    a, b = self.bare(term)
+                    x, y = rec.add(x, a), rec.add(y, b)
+            real.append(x)
+            imag.append(y)
+        linear = self.table.linear
+        lines = [
+            float(linear.weight[(linear.row == row) & (linear.variable == variable)].sum())
+            for row in self.lines
+        ]
+        return [*real, *imag, *lines]
+
+    def known(self) -> list[int]:
+        """The variables behind the block's unknowns that its equations contain."""
+        found: set[int] = set()
+        for k in self.loops:
+            for term in self.terms[k]:
+                found.update(variable for variable, _ in self.phases.get(term, ()))
+                if self.table.loops.length[term] >= 0:
+                    found.add(int(self.table.loops.length[term]))
+        for row in self.lines:
+            found.update(self.table.linear.variable[self.table.linear.row == row].tolist())
+        return sorted(found - set(self.part.unknowns))
+
+
+def _phases(terms: IndexArray, variables: IndexArray, weights: np.ndarray) -> dict[int, Phase]:
+    found: dict[int, dict[int, float]] = {}
+    for t, k, w in zip(terms.tolist(), variables.tolist(), weights.tolist(), strict=True):
+        phase = found.setdefault(t, {})
+        phase[k] = phase.get(k, 0.0) + w
+    return {t: tuple(sorted((k, w) for k, w in p.items() if w)) for t, p in found.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """The solution of J X = R for several right-hand sides, and the sign of det J."""
+
+    columns: list[list[Value]]
+    determinant: Value
+
+
+#: Entries of a matrix by rows.
+Row = Sequence[Value | float]
+
+
+def solved(rec: Recorder, matrix: Sequence[Row], sides: Sequence[Row]) -> Linear:
+    """Solve small linear systems lane by lane.
+
+    One and two unknowns in closed form; more by elimination with the largest pivot of each
+    column, chosen by swapping rows under masks, so that all lanes do the same.
+
+    Parameters
+    ----------
+    matrix : n rows of n
+    sides : right-hand sides of n numbers each
+    """
+    n = len(matrix)
+    if n == 1:
+        pivot = rec.add(matrix[0][0], 0.0)
+        return Linear([[rec.divide(side[0], pivot)] for side in sides], pivot)
+    if n == 2:
+        return _by_cramer(rec, matrix, sides)
+    return _by_elimination(rec, matrix, sides)
+
+
+def _by_cramer(rec: Recorder, m: Sequence[Row], sides: Sequence[Row]) -> Linear:
+    (a, b), (c, d) = m
+    determinant = rec.subtract(rec.multiply(a, d), rec.multiply(b, c))
+    inverse = rec.divide(1.0, determinant)
+    columns = []
+    for p, q in sides:
+        x = rec.subtract(rec.multiply(d, p), rec.multiply(b, q))
+        y = rec.subtract(rec.multiply(a, q), rec.multiply(c, p))
+        columns.append([x * inverse, y * inverse])
+    return Linear(columns, determinant)
+
+
+def _by_elimination(rec: Recorder, matrix: Sequence[Row], sides: Sequence[Row]) -> Linear:
+    n = len(matrix)
+    rows: list[list[Value | float]] = [
+        [*row, *[side[k] for side in sides]] for k, row in enumerate(matrix)
+    ]
+    determinant: Value = rec.constant(1.0)
+    inverses: list[Value] = []
+    for k in range(n):
+        for i in range(k + 1, n):
+            if rec.is_zero(rows[i][k]):
+                continue
+            if rec.is_zero(rows[k][k]):
+                rows[k], rows[i] = rows[i], rows[k]
+                determinant = -determinant
+                continue
+            larger = rec.at_most(rec.absolute(rows[i][k]), rec.absolute(rows[k][k]))
+            upper = [rec.where(larger, x, y) for x, y in zip(rows[k], rows[i], strict=True)]
+            rows[i] = [rec.where(larger, y, x) for x, y in zip(rows[k], rows[i], strict=True)]
+            rows[k] = [*upper]
+            determinant = rec.where(larger, determinant, -determinant)
+        determinant = rec.multiply(determinant, rows[k][k])
+        inverses.append(rec.divide(1.0, rows[k][k]))
+        for i in range(k + 1, n):
+            factor = rec.multiply(rows[i][k], inverses[k])
+            rows[i] = [
+                0.0 if j <= k else rec.subtract(x, rec.multiply(factor, rows[k][j]))
+                for j, x in enumerate(rows[i])
+            ]
+    columns = []
+    for s in range(len(sides)):
+        x: list[Value] = [rec.constant(0.0)] * n
+        for k in range(n - 1, -1, -1):
+            rest = rows[k][n + s]
+            for j in range(k + 1, n):
+                rest = rec.subtract(rest, rec.multiply(rows[k][j], x[j]))
+            x[k] = rec.multiply(rest, inverses[k])
+        columns.append(x)
+    return Linear(columns, determinant)

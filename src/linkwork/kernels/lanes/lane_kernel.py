@@ -1,0 +1,215 @@
+"""The march of one topology, ready to run: programs in one array, registers by number."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence, Set
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.kernels.lanes.closure import BlockPart
+from linkwork.kernels.lanes.folding import LastNodes
+from linkwork.kernels.lanes.machine import LANES
+from linkwork.kernels.lanes.march_programs import march_programs
+from linkwork.kernels.lanes.marching import begin, march
+from linkwork.kernels.loop_table import LoopTable
+
+__all__ = ["LaneKernel", "LaneRows", "Steps"]
+
+_COMMON = ("t", "t1", "t0", "active", "good", "first", "radius")
+_PART = 4096  # designs that one thread works on at a time
+
+
+@dataclass(frozen=True, kw_only=True)
+class Steps:
+    """How lanes step: sizes in t, tolerances as weighted changes.
+
+    ``tolerance``: below it a Newton-Raphson step is the last one; the error left is about its
+    square. ``most_correction``, ``most_drift``: without proofs, the largest first correction and
+    change of rates times step that are trusted.
+    """
+
+    first: float = 0.05
+    largest: float = 0.6
+    smallest: float = 2e-4
+    tolerance: float = 1e-8
+    most_turn: float = float(np.radians(40.0))
+    most_correction: float = 0.1
+    most_drift: float = 0.5
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LaneRows:
+    """Where the march of D designs over R rows leaves what it finds.
+
+    ``v`` (n, R, D): unknowns, untouched where not reached. ``radius`` (R, D): of the proof,
+    weighted ((0, D) without). ``reached`` (R, D). ``found`` (D,): the start. ``stopped`` (2, D):
+    the last value of t downwards and upwards where a design could go no further, NaN where it went
+    through; ``last`` (2, S, D): the node there, see :meth:`LaneKernel.last_nodes`.
+    """
+
+    v: Array
+    radius: Array
+    reached: BoolArray
+    found: BoolArray
+    stopped: Array
+    last: Array
+
+    @classmethod
+    def over(cls, v: Array, radius: Array, kernel: LaneKernel) -> LaneRows:
+        """Nothing found yet; ``v`` and ``radius`` are written to."""
+        _, rows, count = v.shape
+        return cls(
+            v=v,
+            radius=radius,
+            reached=np.zeros((rows, count), dtype=bool),
+            found=np.zeros(count, dtype=bool),
+            stopped=np.full((2, count), np.nan),
+            last=np.empty((2, len(kernel.node), count)),
+        )
+
+    def take(self, where: IndexArray) -> LaneRows:
+        """Some of the designs."""
+        return LaneRows(
+            v=self.v[:, :, where],
+            radius=self.radius[:, where],
+            reached=self.reached[:, where],
+            found=self.found[where],
+            stopped=self.stopped[:, where],
+            last=self.last[:, :, where],
+        )
+
+
+class LaneKernel:
+    """Programs and registers for one loop table.
+
+    Parameters
+    ----------
+    table : LoopTable
+        Without function rows.
+    parts : sequence of BlockPart
+        In the order in which blocks are solved.
+    zeros : set of str
+        Coefficients that are zero in every design, by register.
+    certified : bool
+        Whether every step is proved.
+    """
+
+    def __init__(
+        self, table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str], certified: bool
+    ) -> None:
+        self.table, self.certified = table, certified
+        programs = march_programs(table, parts, zeros, certified)
+        self.registers = reg = programs.registers
+        sections = [
+            programs.predict,
+            programs.judge,
+            programs.take,
+            programs.stand,
+            *programs.begin,
+            *programs.damped,
+            *programs.iterate,
+            *programs.prove,
+        ]
+        ends = np.cumsum([len(section.code) for section in sections])
+        self.code = np.ascontiguousarray(np.concatenate([section.code for section in sections]))
+        self.spans = np.stack([np.concatenate([[0], ends[:-1]]), ends], axis=1)
+        n, blocks = table.unknowns, range(len(parts))
+        self.unknowns = reg.all_of([f"v{k}" for k in range(n)])
+        nodes = [f"{name}{k}" for name in "wqsp" for k in range(n)]
+        nodes += [f"x{k}" for k in range(n)] if certified else [f"sign{b}" for b in blocks]
+        self.node = reg.all_of([*nodes, "t1"])
+        self.guess = reg.all_of([*nodes[: 4 * n], "t1"])
+        self.common = reg.all_of(_COMMON)
+        self.live = reg.all_of([f"live{b}" for b in blocks])
+        self.height = max(programs.height, reg.count)
+
+    def run(
+        self,
+        coefficients: Mapping[str, Array],
+        guess: Array,
+        start: Array,
+        rows: Array,
+        steps: Steps,
+        found: LaneRows,
+        threads: int = 1,
+    ) -> None:
+        """March D designs through R rows.
+
+        Parameters
+        ----------
+        coefficients : Mapping[str, (D,)]
+            By register; names that no program uses are left out.
+        guess : (n, D)
+            Of the unknowns, at ``start`` (D,).
+        rows : (R,)
+            Increasing values of t.
+        found : LaneRows
+            Filled.
+        """
+        named = self.registers.named
+        used = [name for name in coefficients if name in named]
+        count, n = len(start), self.table.unknowns
+        design = np.array([coefficients[name] for name in used]).reshape(len(used), count)
+        places = np.array([named[name] for name in used], dtype=np.intp)
+        given = np.zeros((len(self.guess), count))
+        given[:n] = given[n : 2 * n] = guess
+        given[-1] = start
+
+        def one(first: int) -> None:
+            part = slice(first, first + _PART)
+            self._part(places, design[:, part], given[:, part], rows, steps, found, part)
+
+        firsts = range(0, count, _PART)
+        if threads > 1 and len(firsts) > 1:
+            with ThreadPoolExecutor(threads) as pool:
+                list(pool.map(one, firsts))
+        else:
+            for first in firsts:
+                one(first)
+
+    def last_nodes(self, found: LaneRows, way: int, where: IndexArray) -> LastNodes:
+        """The nodes at which some designs stopped, downwards (0) or upwards (1)."""
+        n, last = self.table.unknowns, found.last[way][:, where]
+        w, q, s, p = (last[k * n : (k + 1) * n] for k in range(4))
+        x = last[4 * n : 5 * n] if self.certified else np.zeros_like(w)
+        return LastNodes(t=found.stopped[way, where], w=w, s=s, q=q, p=p, x=x)
+
+    def _part(
+        self,
+        places: IndexArray,
+        design: Array,
+        given: Array,
+        rows: Array,
+        steps: Steps,
+        found: LaneRows,
+        part: slice,
+    ) -> None:
+        space = self.registers.filled(self.height, LANES)
+        for name, value in (
+            ("tolerance", steps.tolerance),
+            ("most_turn", steps.most_turn),
+            ("most_correction", steps.most_correction),
+            ("most_drift", steps.most_drift),
+        ):
+            if name in self.registers.named:
+                space[self.registers.named[name]] = value
+        design = np.ascontiguousarray(design)
+        given = np.ascontiguousarray(given)
+        count = design.shape[1]
+        node = np.empty((len(self.node), count))
+        begun = np.zeros(count, dtype=bool)
+        begin(
+            self.code, self.spans, space, self.common, self.live,
+            places, design, self.guess, given, self.node, node, begun,
+        )  # fmt: skip
+        found.found[part] = begun
+        march(
+            self.code, self.spans, space, self.common, self.live,
+            places, design, self.node, node, begun,
+            rows, np.array([steps.first, steps.largest, steps.smallest]), self.unknowns,
+            found.v[:, :, part], found.radius[:, part], found.reached[:, part],
+            found.stopped[:, part], found.last[:, :, part],
+        )  # fmt: skip

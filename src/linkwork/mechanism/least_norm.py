@@ -1,0 +1,84 @@
+"""Small underdetermined linear systems in plain numbers, or in those of many designs at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray
+from linkwork.foundation.lanes import Lanes, many
+
+__all__ = ["full_rank", "least_norm"]
+
+_CUT = 1e-12  # relative: smaller singular values count as none
+_REGULAR = 1e-8  # the determinant of the Gram matrix of rows of length 1
+
+
+def least_norm(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Sequence[float]:
+    """The shortest least-squares solution of m equations in k unknowns, m <= k.
+
+    Parameters
+    ----------
+    matrix : m rows of k numbers
+    right : m numbers
+
+    Raises
+    ------
+    LinAlgError
+        If the numbers are not finite.
+    """
+    lanes = _lanes_in(matrix, right)
+    if lanes is None:
+        found: Array = np.linalg.lstsq(np.array(matrix), np.array(right), rcond=_CUT)[0]
+        return [float(number) for number in found]
+    a, b = _stacked(matrix, lanes), _stacked([right], lanes)[:, 0]
+    finite: BoolArray = np.isfinite(np.concatenate([a, b[:, :, None]], axis=2)).all(axis=(1, 2))
+    if lanes.holds(~finite):
+        raise np.linalg.LinAlgError
+    x = np.full((len(a), a.shape[2]), np.nan)
+    regular, rows, sizes = _regular(a)
+    gram = rows @ rows.swapaxes(1, 2)
+    y = np.linalg.solve(gram[regular], (b / sizes)[regular][:, :, None])
+    x[regular] = (rows[regular].swapaxes(1, 2) @ y)[:, :, 0]
+    others = np.flatnonzero(~regular & finite)
+    x[others] = (np.linalg.pinv(a[others], rcond=_CUT) @ b[others][:, :, None])[:, :, 0]
+    return [lanes.consensus.lanes(column) for column in x.T]
+
+
+def full_rank(matrix: Sequence[Sequence[float]], tolerance: float) -> bool:
+    """Whether m rows are independent: all singular values exceed a tolerance."""
+    lanes = _lanes_in(matrix, ())
+    if lanes is None:
+        return bool(np.linalg.matrix_rank(np.array(matrix), tolerance) == len(matrix))
+    a = _stacked(matrix, lanes)
+    regular, _, sizes = _regular(a)
+    # then no singular value is below the shortest row times the root of the determinant / m^(m-1)
+    least = sizes.min(axis=1) * np.sqrt(_REGULAR / len(matrix) ** (len(matrix) - 1))
+    full = regular & (least > tolerance)
+    others = np.flatnonzero(~full & np.isfinite(a).all((1, 2)))
+    full[others] = np.linalg.matrix_rank(a[others], tolerance) == len(matrix)
+    return bool(lanes.holds(full))
+
+
+def _lanes_in(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Lanes | None:
+    numbers: list[object] = [number for row in (*matrix, right) for number in row]
+    return next((number for number in numbers if isinstance(number, Lanes)), None)
+
+
+def _stacked(matrix: Sequence[Sequence[float]], lanes: Lanes) -> Array:
+    """One matrix per lane, (n, m, k)."""
+    found = np.empty((len(lanes.values), len(matrix), len(matrix[0])))
+    for i, row in enumerate(matrix):
+        for j, number in enumerate(row):
+            found[:, i, j] = number.values if many(number) else number
+    return found
+
+
+def _regular(a: Array) -> tuple[BoolArray, Array, Array]:
+    """Which lanes have clearly independent rows; all rows with length 1; their lengths."""
+    sizes: Array = np.linalg.norm(a, axis=2)
+    rows: AnyArray = a / sizes[:, :, None]
+    gram = rows @ rows.swapaxes(1, 2)
+    regular: BoolArray = np.linalg.det(gram) > _REGULAR
+    return regular, rows, sizes
