@@ -69,6 +69,19 @@ def test_equal_bars_that_lie_on_each_other_really_turn(form: LockingForm, value:
         assert np.abs(found[1] - found[0])[: 2 * m].max() > 1e-3
 
 
+def test_two_slides_in_line_really_move() -> None:
+    """From lengths of 0.3 and 0.4 at 5°, and any rates: the lengths run along at 0°."""
+    form = _form(_driven("r*e^(i*t) = s", "t", t=30, r=0.0, s=0.0), 0)
+    turn = np.exp(1j * np.radians(5))
+    x = np.array([turn, 0.3 * turn, 0.4, 1 / turn, 0.3 / turn, 0.4, 1.0, 1.0j])
+    found = real_motion(form.system, x, form.lead)
+    assert found is not None
+    for point in found:
+        np.testing.assert_allclose(form.lead(point)[0], 1.0, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(point[1], point[2], rtol=0, atol=1e-9)
+    assert abs(found[1][2] - found[0][2]) > 1e-3
+
+
 def test_bars_that_fold_at_a_complex_input_only_never_turn() -> None:
     """The pantograph's tie and pen bar: the dead points of the arm before them are all complex."""
     form = _form(lw.example("pantograph"), 2)
