@@ -10,7 +10,7 @@ from linkwork.equations.locking import LockingForm, locking_form
 from linkwork.motion.drive import Drive
 from linkwork.motion.lock_step import lock_step
 from linkwork.numerics.locking_family import locking_roots
-from linkwork.numerics.resting_motion import keeps_complex_input, real_motion
+from linkwork.numerics.resting_motion import RealPoints, keeps_complex_input, real_motion
 
 KITE = "e^(i*t) + 2*e^(i*p) = 1 + 2*e^(i*q)"
 ISOSCELES = "2*e^(i*p) + 2*e^(i*q) = s"
@@ -91,3 +91,16 @@ def test_bars_that_fold_at_a_complex_input_only_never_turn() -> None:
         assert keeps_complex_input(form.system, x, form.lead)
         assert abs(abs(form.lead(x)[0][0]) - 1.0) > 0.1
         assert real_motion(form.system, x, form.lead) is None
+
+
+def test_a_dead_point_with_a_slide_is_a_real_position_but_no_motion() -> None:
+    """The rod square to the slide, s free at first order: rates ω and σ are both at work."""
+    form = _form(_driven("2*e^(i*t) + e^(i*p) = s", "t", t=30, p=-80, s=2.0), 0)
+    x = next(x for x in locking_roots(form.system).x if abs(abs(x[1]) - 1.0) < 1e-6)
+    real = RealPoints(form.system, form.lead)
+    y = real.corrected(real.near(x), None)
+    assert y is not None
+    m = 2 * form.system.size
+    np.testing.assert_allclose((real.basis @ y)[:m], x[:m], rtol=0, atol=1e-9)
+    assert np.abs(y[m:]).min() > 0.1
+    assert real_motion(form.system, x, form.lead) is None

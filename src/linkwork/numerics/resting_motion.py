@@ -19,7 +19,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.numerics.locking_system import LockingSystem
 
-__all__ = ["Lead", "keeps_complex_input", "real_motion"]
+__all__ = ["Lead", "RealPoints", "keeps_complex_input", "real_motion"]
 
 #: The input's e^{iθ} or length at a solution x (n,), as U and as V have it, (2,), and slopes (2, n).
 Lead = Callable[[ComplexArray], tuple[ComplexArray, ComplexArray]]
@@ -61,7 +61,7 @@ def real_motion(
     tuple or None
         ``None`` if none was found, which does not prove that there is none.
     """
-    real = _RealPoints(system, lead)
+    real = RealPoints(system, lead)
     with np.errstate(all="ignore"):
         here = real.corrected(real.near(x), None)
         if here is None:
@@ -84,7 +84,7 @@ def _kernel(matrix: ComplexArray | Array) -> ComplexArray:
     return basis
 
 
-class _RealPoints:
+class RealPoints:
     """The system in real coordinates y = (a, b, ω, s), (2M + 2 own,), with x = ``basis`` y."""
 
     def __init__(self, system: LockingSystem, lead: Lead) -> None:
