@@ -117,7 +117,10 @@ ISOSCELES = {"evans", "hoeken", "pantograph", "five-bar-robot"}
 
 
 #: Their dead points take more than ten seconds.
-COSTLY = {"dixon-one", "double-butterfly", "scissor-lift", "stephenson-valve-gear", "trotbot-leg"}
+COSTLY = {
+    "dixon-one", "dixon-two", "double-butterfly", "scissor-lift", "stephenson-valve-gear",
+    "trotbot-leg",
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in COSTLY])
@@ -160,7 +163,9 @@ def test_bars_of_one_length_that_cannot_fold_onto_each_other_leave_the_list_comp
     """
     found = dead_inputs_of(lw.example(name))
     assert (found.completeness, found.reason) == (Completeness.WITH_PROBABILITY_ONE, "")
-    assert all(count.multiple == 0 for count in found.counts if count.unknowns != ("tie", "pen_bar"))
+    assert all(
+        count.multiple == 0 for count in found.counts if count.unknowns != ("tie", "pen_bar")
+    )
 
 
 def test_pivots_that_can_meet_say_which_bars_turn_and_where() -> None:

@@ -60,7 +60,7 @@ class LockingForm:
         Returns
         -------
         value, slope : (2,), (2, n)
-            e^{iθ} but for a constant factor, or a length; conjugates of each other where it is real.
+            e^{iθ} but for a constant factor, or a length; conjugates of each other where real.
         """
         form, m = self.form, self.system.size
         number = form.table.unknowns - 1

@@ -21,7 +21,7 @@ from linkwork.numerics.locking_system import LockingSystem
 
 __all__ = ["Lead", "RealPoints", "keeps_complex_input", "real_motion"]
 
-#: The input's e^{iθ} or length at a solution x (n,), as U and as V have it, (2,), and slopes (2, n).
+#: The input's e^{iθ} or length at x (n,), as U and as V have it, (2,), and the slopes, (2, n).
 Lead = Callable[[ComplexArray], tuple[ComplexArray, ComplexArray]]
 
 _FREE = 1e-7  # singular values this small, relative to the largest, are zero but for rounding

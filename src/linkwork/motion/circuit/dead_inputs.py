@@ -201,11 +201,9 @@ class _Search:
         moving = form.variables[:-1][gap[:-1] > _MOVES * gap[:-1].max()]
         scale, lead = self.model.input_scale, self.model.equations.inputs[self.number]
         value = self._wrapped([float(here[-1])])[0] / scale[self.number]
-        unit = self.model.input_units[lead.name]
-        return (
-            f"{', '.join(variables[int(k)].name for k in np.sort(moving))} can move while the input "
-            f"stands still, as at {lead.name} = {round(value, 6) + 0.0:.6g} {unit}"
-        )
+        at = f"{lead.name} = {round(value, 6) + 0.0:.6g} {self.model.input_units[lead.name]}"
+        names = ", ".join(variables[int(k)].name for k in np.sort(moving))
+        return f"{names} can move while the input stands still, as at {at}"
 
     def _crossing(self, form: LockingForm, number: int, x: Array) -> float:
         """The input of a multiple solution x (n,): a change point's to rounding."""
