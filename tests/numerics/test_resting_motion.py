@@ -101,6 +101,6 @@ def test_a_dead_point_with_a_slide_is_a_real_position_but_no_motion() -> None:
     y = real.corrected(real.near(x), None)
     assert y is not None
     m = 2 * form.system.size
-    np.testing.assert_allclose((real.basis @ y)[:m], x[:m], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(real.placed(y)[:m], x[:m], rtol=0, atol=1e-9)
     assert np.abs(y[m:]).min() > 0.1
     assert real_motion(form.system, x, form.lead) is None

@@ -72,7 +72,7 @@ def real_motion(
         for way in _kernel(jacobian).T.real:
             there = real.corrected(here + _STRIDE * size * way, held)
             if there is not None and np.abs(there - here).max() > _MOVED * _STRIDE * size:
-                return real.basis @ here, real.basis @ there
+                return real.placed(here), real.placed(there)
     return None
 
 
@@ -113,13 +113,18 @@ class RealPoints:
         self.norm[2 * m :] = y[2 * m :] = rows[-1]
         return y
 
+    def placed(self, y: Array) -> ComplexArray:
+        """x (n,) of a real point."""
+        x: ComplexArray = self.basis @ y.astype(complex)
+        return x
+
     def value(self, y: Array) -> ComplexArray:
         """The input as U and as V have it, (2,)."""
-        return self.lead(self.basis @ y)[0]
+        return self.lead(self.placed(y))[0]
 
     def equations(self, y: Array, held: ComplexArray | None) -> tuple[Array, Array]:
         """Real residuals and their derivative; with the input ``held`` at a value (2,)."""
-        x = self.basis @ y
+        x = self.placed(y)
         f, jacobian = self.system.residual_and_jacobian(x[None])
         value, slope = f[0, :-1], jacobian[0, :-1] @ self.basis  # rates have a norm of their own
         if held is not None:
