@@ -105,7 +105,7 @@ def test_where_dead_points_may_be_missing_the_reason_is_told() -> None:
     assert kite.completeness is Completeness.NOT_PROVED
     assert kite.message.endswith(
         f"{kite.seeded} input values looked at; one that lies between two of them would be missing "
-        "(not proved: the mechanism can move while the input stands still at a dead point)"
+        "(p, q can move while the input stands still, as at t = 0 deg)"
     )
 
 
@@ -133,7 +133,7 @@ def test_a_guess_at_a_dead_point_does_not_stand_for_its_interval() -> None:
 
 #: Their circuits take seconds: coupled loops, or many circuits.
 COSTLY = frozenset({
-    "beam-engine", "dixon-one", "double-butterfly", "excavator", "hart-inversor",
+    "beam-engine", "dixon-one", "dixon-two", "double-butterfly", "excavator", "hart-inversor",
     "kempe-translator", "pantograph", "peaucellier", "scissor-lift", "stephenson-valve-gear",
     "three-rpr-platform", "trotbot-leg",
 })  # fmt: skip

@@ -204,6 +204,31 @@ def test_dixons_points_stay_on_two_perpendicular_lines() -> None:
     same(np.ptp(t, axis=0), 0, 80**2)
 
 
+@law("dixon-two")
+def test_dixons_rectangles_keep_their_common_axes() -> None:
+    """x1 x2, y1 y2 and x1² + y1² + x2² + y2² stay constant; all sixteen bars keep their lengths."""
+    motion = motion_of("dixon-two")
+    assert motion.found.all()
+    corners = (1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j)
+    p = np.array([motion.trace(f"P{k}") for k in range(1, 5)])
+    q = np.array([motion.trace(f"Q{k}") for k in range(1, 5)])
+    center = p.mean(axis=0)
+    same(q.mean(axis=0), center, 80)
+    unit = (p[0] - p[1]) / np.abs(p[0] - p[1])  # the axis along the first sides of both
+    first, second = (p[0] - center) / unit, (q[0] - center) / unit
+    for k, corner in enumerate(corners):
+        same((p[k] - center) / unit, corner.real * first.real + 1j * corner.imag * first.imag, 80)
+        same((q[k] - center) / unit, corner.real * second.real + 1j * corner.imag * second.imag, 80)
+    same(first.real * second.real, 50 * 25, 80**2)
+    same(first.imag * second.imag, 20 * 60, 80**2)
+    same(np.abs(first) ** 2 + np.abs(second) ** 2, 50**2 + 20**2 + 25**2 + 60**2, 80**2)
+    for i, a in enumerate(corners):
+        for j, b in enumerate(corners):
+            across = complex(a.real * 50 - b.real * 25, a.imag * 20 - b.imag * 60)
+            same(np.abs(p[i] - q[j]), abs(across), 80)
+    assert np.ptp(first.real) > 5  # they change their shapes
+
+
 @law("parallel-cranks")
 def test_coupled_wheels_turn_together() -> None:
     """All wheels turn by one angle and the rod only translates."""

@@ -9,12 +9,20 @@ import pytest
 
 import linkwork as lw
 from linkwork.foundation.certification import Certification
+from linkwork.mechanism.linkage import Linkage
+from linkwork.textfile.schema import json_schema
 from tests.library.laws import LAWS, motion_of
 
 MODULES = [
     import_module(f"tests.library.{path.stem}")
     for path in sorted(Path(__file__).parent.glob("test_*.py"))
     if path != Path(__file__)
+]
+#: Tables that a file of points and links may repeat, by its published schema; inputs are another.
+JOINT_TABLES = [
+    table
+    for table, entry in json_schema()["$defs"]["points_and_links"]["properties"].items()
+    if entry.get("type") == "array"
 ]
 DRIVEN = [name for name in lw.examples() if lw.example(name).description.inputs]
 
@@ -33,6 +41,18 @@ def test_every_mechanism_tells_its_source_and_family(name: str) -> None:
     assert len(description.source) > 20
     assert description.family
     assert description.name != "mechanism"
+
+
+@pytest.mark.parametrize("kind", ["pins", *JOINT_TABLES])
+def test_every_kind_of_joint_works_in_two_mechanisms(kind: str) -> None:
+    """A joint is a table of the file format that may be repeated, or a pin: a shared point."""
+    found = []
+    for name in lw.examples():
+        linkage = lw.example(name).description
+        if isinstance(linkage, Linkage):
+            pinned = any(len(bodies) > 1 for bodies in linkage.carriers().values())
+            found += [name] if (pinned if kind == "pins" else getattr(linkage, kind)) else []
+    assert len(found) >= 2, found
 
 
 def test_the_gallery_shows_every_mechanism() -> None:

@@ -132,6 +132,52 @@ def test_beam_engine_copies_the_link_point_and_keeps_the_piston_upright() -> Non
     assert np.ptp(path.real) < 1.2
 
 
+@law("sun-and-planet")
+def test_sun_turns_twice_as_far_as_the_arm_less_the_rods_swing() -> None:
+    """θ(sun) = 2 θ(arm) - θ(rod) + const: two turns of the shaft for one of the arm."""
+    motion = motion_of("sun-and-planet")
+    a = 100 * np.exp(1j * degrees(motion, "arm"))
+    end = circles_meet(a, 500, np.full(a.shape, 300 + 500j), 300, 1)
+    same(motion.trace("B"), end, 600)
+    same(motion["planet"], motion["rod"], 360)
+    rod = np.unwrap(np.angle(end - a))
+    sun = 2 * degrees(motion, "arm") - rod
+    found = degrees(motion, "sun")
+    same(found - found[0], sun - sun[0], 4 * math.pi)
+    assert found[-1] - found[0] == pytest.approx(4 * math.pi, abs=1e-12)
+
+
+@law("boxer-engine")
+def test_boxer_pistons_mirror_each_other() -> None:
+    """s = r cos θ + √(l² - r² sin² θ) on either side, so the pistons' middle rests at O."""
+    motion = motion_of("boxer-engine")
+    crank = degrees(motion, "throw1")
+    closed = 35 * np.cos(crank) + np.sqrt(120**2 - (35 * np.sin(crank)) ** 2)
+    same(motion["s1"], closed, 155)
+    same(motion["s2"], closed, 155)
+    same(motion.trace("B1") + motion.trace("B2"), 0, 155)
+    same(motion.trace("A1") + motion.trace("A2"), 0, 155)
+
+
+@law("atkinson-engine")
+def test_atkinson_engine_expands_further_than_it_compresses() -> None:
+    """s = c cos φ + √(l² - c² sin² φ); four strokes a turn, expansion 1.75 times compression."""
+    motion = motion_of("atkinson-engine")
+    a = 60 - 180j + 56 * np.exp(1j * degrees(motion, "crank"))
+    pin = circles_meet(a, 189, np.zeros(a.shape), 100, -1)
+    same(motion.trace("C"), pin, 250)
+    same(motion["s"], pin.real + np.sqrt(150**2 - pin.imag**2), 250)
+    frame, foot = abs(60 - 180j), math.atan2(-180, 60)
+    turns = [
+        foot + math.acos((100**2 + frame**2 - reach**2) / (2 * 100 * frame))
+        for reach in (189 - 56, 189 + 56)
+    ]
+    near, far = (100 * math.cos(φ) + math.sqrt(150**2 - (100 * math.sin(φ)) ** 2) for φ in turns)
+    found = lw.example("atkinson-engine").sweep(limits_of=["s"]).output_limits
+    assert sorted(at.value for at in found) == pytest.approx([far, near, 250, 250], abs=1e-9)
+    assert (250 - far) / (250 - near) == pytest.approx(1.75, abs=0.005)
+
+
 @law("ross-yoke")
 def test_ross_yoke_moves_its_pistons_as_sines_a_quarter_turn_apart() -> None:
     """y = r sin θ ± (b1/b2) r cos θ; with b1 = b2 amplitude √2 r, a quarter turn apart."""

@@ -52,7 +52,7 @@ def _four_bar(
         ((4, 1, 3, 2), "change-point crank-rocker", "SCRR"),
         ((4, 3, 1, 2), "change-point double-rocker", "SRCR"),
         ((4, 3, 2, 1), "change-point rocker-crank", "SRRC"),
-        ((4, 2, 4, 2), "parallelogram or antiparallelogram", "S2X"),
+        ((4, 2, 4, 2), "parallelogram", "S2X"),
         ((2, 2, 4, 4), "deltoid", "S2X"),
         ((2, 4, 4, 2), "deltoid", "S2X"),
         ((2, 2, 2, 2), "rhombus", "S3X"),
@@ -66,6 +66,53 @@ def test_barkers_types_of_four_bars(lengths: tuple[float, ...], name: str, code:
     s, p, q, l = sorted(lengths)  # noqa: E741 - the letters of the condition
     assert loop.margin == pytest.approx(p + q - s - l, rel=1e-14, abs=1e-15)
     assert loop.grashof == {"G": True, "R": False, "S": None}[code[0]]
+
+
+@pytest.mark.parametrize(
+    ("far", "name"),
+    [
+        ((5.0, 1.7), "parallelogram"),
+        ((2.0, -1.7), "antiparallelogram"),
+        ((5.1, 1.5), "parallelogram"),
+    ],
+)
+def test_the_sketch_tells_a_parallelogram_from_an_antiparallelogram(
+    far: tuple[float, float], name: str
+) -> None:
+    bar = lw.linkage(
+        points={"O": (0, 0), "C": (4, 0), "A": (1, 1.7), "B": far},
+        links=FOUR_BAR,
+        lengths={"O A": 2, "A B": 4, "C B": 2},
+        inputs=lw.Input(link="crank"),
+    )
+    loop = _classified(bar).loop
+    assert loop is not None
+    assert (loop.name, loop.barker) == (name, "S2X")
+    position = bar.solve(at=60)
+    same_way = abs(position["coupler"]) < 1e-6
+    assert same_way == (name == "parallelogram")
+    asked = lw.linkage(
+        points={"O": (0, 0), "C": (4, 0), "A": (1, 1.7), "B": far},
+        links=FOUR_BAR,
+        lengths={"O A": 2, "A B": 4, "C B": 2},
+        inputs=lw.Input(link="crank"),
+        configuration="crossed",
+    )
+    loop = _classified(asked).loop
+    assert loop is not None
+    assert loop.name == "parallelogram or antiparallelogram"
+
+
+def test_a_stretched_sketch_tells_neither() -> None:
+    loop = _classified(
+        lw.linkage(
+            points={"O": (0, 0), "C": (4, 0), "A": (2, 0), "B": (6, 0)},
+            links=FOUR_BAR,
+            inputs=lw.Input(link="crank"),
+        )
+    ).loop
+    assert loop is not None
+    assert loop.name == "parallelogram or antiparallelogram"
 
 
 def test_the_margin_of_a_change_point_is_a_trillionth_of_the_longest_link() -> None:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
 
 import linkwork as lw
 from linkwork import Completeness
+from linkwork.motion.circuit import dead_inputs
 from tests.campaigns.circuits import CRANKED, dead_inputs_of
 from tests.laws.mechanisms import NAMES, mechanism_of
 from tests.oracles.cranked import cranked_truss
@@ -110,12 +112,15 @@ def test_lengths_in_millimetres_change_nothing() -> None:
         np.testing.assert_allclose(metres, millimetres, rtol=0, atol=1e-9)
 
 
-#: Two bars of one length can lie on each other, at a complex input: paths end on a curve there.
+#: With bars of one length some dead points lie at infinity.
 ISOSCELES = {"evans", "hoeken", "pantograph", "five-bar-robot"}
 
 
 #: Their dead points take more than ten seconds.
-COSTLY = {"dixon-one", "double-butterfly", "scissor-lift", "stephenson-valve-gear", "trotbot-leg"}
+COSTLY = {
+    "dixon-one", "dixon-two", "double-butterfly", "scissor-lift", "stephenson-valve-gear",
+    "trotbot-leg",
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in COSTLY])
@@ -143,8 +148,64 @@ def test_a_kite_can_move_at_a_dead_point_and_says_so() -> None:
     found = dead_inputs_of(looped("e^(i*t) + 2*e^(i*p) = 1 + 2*e^(i*q)", t=60, p=30, q=80))
     assert found.completeness is Completeness.CONTINUUM
     assert not found.cover_all
+    assert found.reason == "p, q can move while the input stands still, as at t = 0 deg"
+
+
+@pytest.mark.parametrize("name", sorted(ISOSCELES))
+def test_bars_of_one_length_that_cannot_fold_onto_each_other_leave_the_list_complete(
+    name: str,
+) -> None:
+    """Two equal bars turn freely where their outer pins meet, and there only.
+
+    Hoeken's crank of 1 never reaches the rocker's pivot at 2; the robot's cranks of 90 about
+    pivots 118 apart do not bring both elbows together in lock-step; the pantograph's tracing
+    point never comes to the end of the long bar, which its arm's dead point would take.
+    """
+    found = dead_inputs_of(lw.example(name))
+    assert (found.completeness, found.reason) == (Completeness.WITH_PROBABILITY_ONE, "")
+    assert all(
+        count.multiple == 0 for count in found.counts if count.unknowns != ("tie", "pen_bar")
+    )
+
+
+def test_pivots_that_can_meet_say_which_bars_turn_and_where() -> None:
+    """The inversor with both elbows on one side: the far bars lie on each other, and turn."""
+    inversor = lw.example("peaucellier")
+    reason = dead_inputs_of(inversor).reason
+    match = re.fullmatch(
+        r"far_B, far_D can move while the input stands still, as at crank = (\S+) deg", reason
+    )
+    assert match is not None
+    ways = inversor.configurations(at=float(match[1]))
+    assert ways.completeness is Completeness.CONTINUUM
+    # the near elbows' positions by the law of cosines: |OP| = 2 r cos(crank/2), arms 5, near 3
+    reach = 3.0 * math.cos(math.radians(float(match[1])) / 2)
+    assert 2.0 <= reach <= 8.0
+
+
+def test_a_continuum_that_is_neither_real_nor_surely_complex_is_called_so(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(dead_inputs, "real_motion", lambda *_: None)
+    found = dead_inputs_of(lw.example("peaucellier"))
+    assert found.completeness is Completeness.CONTINUUM
     assert found.reason == (
-        "not proved: the mechanism can move while the input stands still at a dead point"
+        "not proved: dead points at complex values form a continuum, and whether real ones are "
+        "among them is not known"
+    )
+
+
+def test_cylinders_in_lock_step_are_the_reason_given() -> None:
+    """The excavator has no rack: its cylinders' lengths follow one of them."""
+    found = dead_inputs_of(lw.example("excavator"))
+    assert not found.cover_all
+    assert found.reason.startswith(
+        "the equations of stick, stick_ram_angle tie one length to another, "
+        "as inputs driven in lock-step do; "
+    )
+    assert "racks" not in found.reason
+    assert "tie an angle to a length, as racks and rolling do" in (
+        dead_inputs_of(lw.example("rack-steering")).reason
     )
 
 

@@ -119,7 +119,8 @@ class QuantityValues:
         k = self._number[symbol]
         unknowns = len(self.equations.unknowns)
         if k < unknowns:
-            return self.v[k]
+            own: Array = self.v[k]
+            return own
         column = self.inputs[:, k - unknowns] * self.model.input_scale[k - unknowns]
         found: Array = np.where(self._lost, np.nan, column[:, None])
         return found

@@ -218,8 +218,7 @@ def _solved_lines(
     rows = np.zeros((len(lines.constant), table.variables + 1))
     np.add.at(rows, (lines.row, lines.variable), lines.weight)
     rows[:, -1] = lines.constant
-    if np.abs(rows[:, sliding]).max(initial=0.0) > 0.0:
-        raise NoDirectionForm("tie an angle to a length, as racks and rolling do")
+    _check_lengths_untied(rows, turning, sliding)
     own = rows[:, turning].copy()
     rest = np.concatenate([rows[:, n:-1], rows[:, -1:]], axis=1)
     pivots = _eliminated(own, rest)
@@ -232,6 +231,16 @@ def _solved_lines(
         reduce[j] = -own[k, free]
         shift[j] = -rest[k]
     return reduce, shift, free
+
+
+def _check_lengths_untied(rows: Array, turning: IndexArray, sliding: IndexArray) -> None:
+    tied = np.abs(rows[:, sliding]).max(axis=1, initial=0.0) > 0.0
+    if not tied.any():
+        return
+    lengths_only = (rows[np.ix_(tied, turning)] == 0.0).all()
+    if lengths_only and ((rows[np.ix_(tied, sliding)] != 0.0).sum(axis=1) > 1).all():
+        raise NoDirectionForm("tie one length to another, as inputs driven in lock-step do")
+    raise NoDirectionForm("tie an angle to a length, as racks and rolling do")
 
 
 def _eliminated(own: Array, rest: Array) -> list[int]:

@@ -54,6 +54,34 @@ class LockingForm:
         known = np.repeat(self.known[None, :], len(x), axis=0)
         return self.form.unknowns(x[:, : 2 * self.system.size], known, near[self.variables])
 
+    def lead(self, x: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """The leading input at a solution x (n,) as U and as V have it, and the slopes of both.
+
+        Returns
+        -------
+        value, slope : (2,), (2, n)
+            e^{iθ} but for a constant factor, or a length; conjugates of each other where real.
+        """
+        form, m = self.form, self.system.size
+        number = form.table.unknowns - 1
+        value, slope = np.zeros(2, dtype=complex), np.zeros((2, len(x)), dtype=complex)
+        for side, begin in enumerate((0, m)):
+            if number in form.turning:
+                weights = form.angles[form.turning.tolist().index(number)]
+                used = begin + np.flatnonzero(weights)
+                power = weights[weights != 0.0]
+                value[side] = np.prod(x[used] ** power)
+                slope[side, used] = value[side] * power / x[used]
+                continue
+            k = form.sliding.tolist().index(number)
+            here, along = begin + form.directions + k, form.along[k]
+            way = complex(x[begin + along]) if along >= 0 else 1.0
+            value[side] = x[here] / way
+            slope[side, here] = 1.0 / way
+            if along >= 0:
+                slope[side, begin + along] = -value[side] / way
+        return value, slope
+
 
 def locking_form(
     leads: LeadTable, solver: BlockSolver, path: InputPath, number: int

@@ -93,6 +93,8 @@ def chain_name(chain: Chain) -> str:
     sliding = sum(joint.kind is JointKind.PRISMATIC for joint in whole.joints)
     if name is None:
         freedom = "" if whole.mobility == 1 else f" with {whole.mobility} degrees of freedom"
+        if whole.mobility < 1:  # and more in truth, or it would be no mechanism
+            freedom += " by Grübler's count"
         name = "five-bar chain" if count == 5 and letters == "RRRRR" else plain + freedom
     parts = [name]
     parts += [_counted(sliding, "prismatic joint")] if sliding else []

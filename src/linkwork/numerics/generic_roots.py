@@ -45,9 +45,11 @@ SEED = 20_210_501
 _SAME = 1e-6  # two solutions are the same one
 _FINITE = 1e-8  # smallest homogenising coordinate, of vectors of length 1, of a finite solution
 _FADING = 0.5  # a singular path whose homogenising coordinate shrinks so much runs to infinity
+_FINITE_MULTIPLE = 1e-5  # the smallest one of a finite multiple solution, which is known roughly
 _ATTEMPTS = 5
 _FEW = 8  # paths that seldom meet, so that following them twice costs less than care
 _LOOPS = 2  # closed paths without a new solution after which a set counts as complete
+_STEPS_TO_MULTIPLE = 30  # of Gauss-Newton; each halves the distance to a double solution
 _TRIES = 30  # closed paths at most
 
 S = TypeVar("S", bound=PolynomialSystem)
@@ -91,6 +93,18 @@ class Family(Hashable, Protocol[S]):
         self, start: S, goal: S, rng: np.random.Generator, *, nearest: bool = False
     ) -> HomotopyFromRelative:
         """Paths from member to member: random ones, or those with the ``nearest`` start."""
+
+
+@dataclass(frozen=True)
+class _Goal:
+    """The end of a homotopy as a system in the coordinates of its patches."""
+
+    homotopy: Homotopy
+
+    def residual_and_jacobian(self, x: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """H and ∂H/∂w at σ = 0."""
+        value, jacobian, _ = self.homotopy.evaluate(x, np.zeros(len(x)))
+        return value, jacobian
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -234,6 +248,9 @@ def _read(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) -> _Ends:
         moved = np.abs(better - x[finite]).max(axis=1) < 1e-3 * (1 + np.abs(better).max(axis=1))
         regular[finite] = (steps > 0) & (steps <= 6) & moved
         x[np.flatnonzero(finite)[regular[finite]]] = better[regular[finite]]
+    for k in np.flatnonzero(finite & ~regular):
+        infinite[k] = _multiple_at_infinity(homotopy, paths.w[k], float(scale[k]))
+    finite &= ~infinite
     return _Ends(
         x=x,
         regular=regular,
@@ -241,6 +258,17 @@ def _read(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) -> _Ends:
         singular=(singular & ~infinite) | (finite & ~regular),
         failed=paths.state == LOST,
     )
+
+
+def _multiple_at_infinity(homotopy: _ToSystem, w: ComplexArray, scale: float) -> bool:
+    """Whether a path that jumped to a multiple solution w (n,) ended at infinity.
+
+    Such an end is off by a root of the rounding, so a homogenising coordinate that ought to vanish
+    does not. In the coordinates of the patches the solution is finite and can be sharpened.
+    """
+    end = nearest_solution(_Goal(homotopy), w, _STEPS_TO_MULTIPLE)
+    _, sharp = homotopy.points(end[None])
+    return bool(sharp[0] < max(_FINITE_MULTIPLE, _FADING * scale))
 
 
 def _meeting(ends: _Ends) -> BoolArray:
@@ -275,17 +303,18 @@ def _distinct(x: ComplexArray, same: float = _SAME) -> ComplexArray:
 
 def _roots(system: S, ends: _Ends, generic: _Generic[S]) -> Roots:
     multiple = _distinct(ends.x[ends.singular], 1e-2)
-    continuum = [_on_a_curve(system, x) for x in multiple]
+    curved = np.array([_on_a_curve(system, x) for x in multiple], dtype=bool)
     return Roots(
         x=ends.x[ends.regular],
-        multiple=multiple[~np.array(continuum, dtype=bool)] if continuum else multiple,
+        multiple=multiple[~curved],
         paths=len(generic.x),
         at_infinity=int(ends.infinite.sum()),
         singular=int(ends.singular.sum()),
         failed=int(ends.failed.sum()),
         expected=len(generic.x),
         sure=generic.sure,
-        continuum=any(continuum),
+        continuum=bool(curved.any()),
+        curves=multiple[curved],
     )
 
 

@@ -39,6 +39,8 @@ class Roots:
         Whether that number was confirmed.
     continuum : bool
         Whether a singular end belongs to a curve of solutions.
+    curves : (C, n) complex
+        Points on such curves, as far as they are known.
     """
 
     x: ComplexArray
@@ -50,6 +52,7 @@ class Roots:
     expected: int
     sure: bool
     continuum: bool
+    curves: ComplexArray
 
 
 def polished(system: PolynomialSystem, x: ComplexArray) -> tuple[ComplexArray, CountArray]:

@@ -101,4 +101,5 @@ def _found(
         expected=bound_by_products(system.products).number,
         sure=True,
         continuum=curve,
+        curves=x if curve else nothing,
     )

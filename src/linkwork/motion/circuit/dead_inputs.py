@@ -17,6 +17,7 @@ from linkwork.numerics.change_point import crossing_near
 from linkwork.numerics.generic_roots import nearest_solution
 from linkwork.numerics.locking_family import locking_roots
 from linkwork.numerics.polynomial_system import Roots
+from linkwork.numerics.resting_motion import keeps_complex_input, real_motion
 from linkwork.numerics.track import InputPath
 
 __all__ = ["DeadPointInputs", "LockingCount", "dead_point_inputs"]
@@ -26,6 +27,11 @@ _ALMOST_REAL = 1e-6  # a solution this near to its mirror image is a real one,
 _ALMOST_DOUBLE = 1e-3  # and a multiple one, whose path ends less precisely
 _SAME = 1e-9  # weighted: two inputs are one,
 _SAME_MULTIPLE = 1e-5  # and that of a multiple solution another one's
+_MOVES = 1e-6  # part of the largest change that is one
+_COMPLEX_CURVES = (
+    "not proved: dead points at complex values form a continuum, and whether real ones are among "
+    "them is not known"
+)
 _WHOLE = 1e-12  # how far a rate may be from a whole number
 _STEPS = 40  # towards a multiple solution
 _GRADES = {
@@ -33,9 +39,6 @@ _GRADES = {
         "every dead point is listed, with probability one: all solution paths are accounted for"
     ),
     Completeness.NOT_PROVED: "not proved: solution paths were lost, so dead points may be missing",
-    Completeness.CONTINUUM: (
-        "not proved: the mechanism can move while the input stands still at a dead point"
-    ),
 }
 
 
@@ -116,7 +119,7 @@ class _Search:
         # rates that are whole numbers but for the rounding of a table in degrees
         whole = np.round(path.rate)
         rate = np.where(np.abs(path.rate - whole) <= _WHOLE, whole, path.rate)
-        self.model, self.path = model, replace(path, rate=rate)
+        self.model, self.path, self.number = model, replace(path, rate=rate), lead
         self.leads = LeadTable(model.compiled.table, self.path, lead)
         self.grade = Completeness.WITH_PROBABILITY_ONE
         self.reasons: list[str] = []
@@ -164,10 +167,10 @@ class _Search:
         roots = locking_roots(system)
         lost = roots.failed or not roots.sure
         lost = lost or roots.paths != len(roots.x) + roots.at_infinity + roots.singular
-        if roots.continuum:
-            self.grade = self.grade.and_then(Completeness.CONTINUUM)
-        elif lost:
+        if lost:
             self.grade = self.grade.and_then(Completeness.NOT_PROVED)
+        if roots.continuum:
+            self._tell_of_curves(form, roots.curves)
         real = _real(form, roots.x, _ALMOST_REAL)
         double = _real(form, _sharpened(form, roots.multiple), _ALMOST_DOUBLE)
         start = self.model.equations.start
@@ -176,6 +179,31 @@ class _Search:
             [self._crossing(form, number, x) for x in form.positions(double, start)]
         )
         self.counts.append(_count(names, form, roots, len(real) + len(double)))
+
+    def _tell_of_curves(self, form: LockingForm, curves: ComplexArray) -> None:
+        """Say what curves of dead points through solutions (C, n) mean; nothing if none is real."""
+        open_ = [x for x in curves if not keeps_complex_input(form.system, x, form.lead)]
+        if not open_:
+            return
+        self.grade = self.grade.and_then(Completeness.CONTINUUM)
+        for x in open_:
+            moving = real_motion(form.system, x, form.lead)
+            if moving is not None:
+                self.reasons.append(self._moving(form, np.stack(moving)))
+                return
+        self.reasons.append(_COMPLEX_CURVES)
+
+    def _moving(self, form: LockingForm, x: ComplexArray) -> str:
+        """Which unknowns differ between two positions x (2, n) with the same input."""
+        here, there = form.positions(x, self.model.equations.start)
+        variables = self.model.equations.variables
+        gap = np.abs(there - here) / self.leads.scale[form.variables]
+        moving = form.variables[:-1][gap[:-1] > _MOVES * gap[:-1].max()]
+        scale, lead = self.model.input_scale, self.model.equations.inputs[self.number]
+        value = self._wrapped([float(here[-1])])[0] / scale[self.number]
+        at = f"{lead.name} = {round(value, 6) + 0.0:.6g} {self.model.input_units[lead.name]}"
+        names = ", ".join(variables[int(k)].name for k in np.sort(moving))
+        return f"{names} can move while the input stands still, as at {at}"
 
     def _crossing(self, form: LockingForm, number: int, x: Array) -> float:
         """The input of a multiple solution x (n,): a change point's to rounding."""

@@ -44,7 +44,8 @@ def _class(groups: tuple[AssurGroup, ...]) -> int | None:
 def block_groups(model: Model) -> tuple[AssurGroup | None, ...]:
     """For every block of equations the Assur group whose unknowns it determines, if there is one.
 
-    A block that only turns the driven angle into that of a link belongs to no group.
+    Coordinates of a curve or of a contact belong to the group whose links they are solved with. A
+    block of them alone, or one that only turns the driven angle into that of a link, has no group.
     """
     linkage, equations = model.description, model.equations
     blocks = model.compiled.solver.blocks
@@ -56,17 +57,17 @@ def block_groups(model: Model) -> tuple[AssurGroup | None, ...]:
     angles = {link: angle.variable for link, angle in equations.links.items()}
     for cylinder in linkage.cylinders:
         angles |= dict.fromkeys(cylinder_ends(cylinder.name), cylinder.angle_name)
-    owner: dict[str | None, FoundGroup] = {}
+    owner: dict[str, FoundGroup] = {}
     for entry in groups:
         turning = (angles.get(link) for link in entry.links)
         sliding = (equations.sliders.get(joint) for joint in entry.joints)
-        for name in (*turning, *sliding):
-            owner.setdefault(name, entry)
+        for name in (*turning, *sliding, *entry.joints):
+            if name is not None:
+                owner.setdefault(name, entry)
     found = []
     for block in blocks:
         names = [equations.unknowns[k].name for k in block.unknowns]
-        owners = [owner.get(name) for name in names]
-        first = owners[0] if owners else None
-        same = first is not None and all(entry is first for entry in owners)
-        found.append(first.group if first is not None and same else None)
+        owners = [owner[name] for name in names if name in owner]
+        alone = bool(owners) and all(entry is owners[0] for entry in owners)
+        found.append(owners[0].group if alone else None)
     return tuple(found)

@@ -35,6 +35,13 @@ class FourLinkLoop:
         k = self.links.index(link)
         return self.joints[k - 1], self.joints[k]
 
+    def carries_its_pins(self, linkage: Linkage, link: str) -> bool:
+        """Whether both joints of a link are pins that it carries without what is welded to it."""
+        return all(
+            joint.kind is JointKind.REVOLUTE and joint.name in linkage.links[link]
+            for joint in self.ends(link)
+        )
+
     def length(self, linkage: Linkage, link: str) -> float:
         """The distance between the two pins of a link."""
         before, after = self.ends(link)
@@ -88,7 +95,8 @@ def driven_joints(linkage: Linkage, chain: Chain) -> list[Joint | None]:
 def input_loop(linkage: Linkage, chain: Chain) -> FourLinkLoop | None:
     """The loop of four links from ground over the driven joint, or around a four-link chain.
 
-    ``None`` if there is no such loop of lower pairs, or more than one, or if it has a weld.
+    ``None`` if there is no such loop of lower pairs, or more than one, or if a length of it leads
+    across a weld.
     """
     driven = driven_joints(linkage, chain)
     lead = driven[0] if len(driven) == 1 else None
@@ -110,6 +118,6 @@ def input_loop(linkage: Linkage, chain: Chain) -> FourLinkLoop | None:
     links = [chain.ground, second]
     for joint, onward in pairwise(joints[1:]):
         links.append(next(c for c in joint.across(links[-1]) if c in onward.links))
-    if any(len(chain.members(link)) > 1 for link in links):
-        return None  # its lengths lead across a weld
-    return FourLinkLoop(links=tuple(links), joints=joints, driven=lead if lead in joints else None)
+    loop = FourLinkLoop(links=tuple(links), joints=joints, driven=lead if lead in joints else None)
+    welded = (link for link in links if len(chain.members(link)) > 1)
+    return loop if all(loop.carries_its_pins(linkage, link) for link in welded) else None

@@ -22,6 +22,8 @@ _GRASHOF = (
     ("double-rocker", "GRCR"),
     ("rocker-crank", "GRRC"),
 )
+_PARALLELOGRAM_OR_ANTI = "parallelogram or antiparallelogram"
+_FLAT = 1e-3  # sine of the angle of ground and driven link below which a sketch tells nothing
 _AT_CHANGE_POINT = ("SCCC", "SCRR", "SRCR", "SRRC")
 
 
@@ -60,6 +62,8 @@ def _four_bar(loop: FourLinkLoop, linkage: Linkage) -> LoopType:
     if abs(margin) <= small:
         turning = None
         name, code = _change_point(lengths, at_shortest, small)
+        if name == _PARALLELOGRAM_OR_ANTI:
+            name = _parallelogram_as_sketched(loop, linkage)
     elif margin > 0:
         name, code = _GRASHOF[at_shortest]
     else:
@@ -94,12 +98,28 @@ def _change_point(lengths: list[float], at_shortest: int, small: float) -> tuple
     if alike(ground, coupler) and alike(driven, output):
         if alike(ground, driven):
             return "rhombus", "S3X"
-        return "parallelogram or antiparallelogram", "S2X"
+        return _PARALLELOGRAM_OR_ANTI, "S2X"
     if (alike(ground, driven) and alike(coupler, output)) or (
         alike(ground, output) and alike(driven, coupler)
     ):
         return "deltoid", "S2X"
     return f"change-point {_GRASHOF[at_shortest][0]}", _AT_CHANGE_POINT[at_shortest]
+
+
+def _parallelogram_as_sketched(loop: FourLinkLoop, linkage: Linkage) -> str:
+    """Which of the two equal opposite sides make: the area that they enclose tells.
+
+    With signs it is that of the parallelogram on ground and driven link, or none where two sides
+    cross each other. A configuration asked for by name may be the other one.
+    """
+    if linkage.configuration:
+        return _PARALLELOGRAM_OR_ANTI
+    before, behind, far, near = (linkage.sketched(joint.name) for joint in loop.joints)
+    whole = abs(((near - before).conjugate() * (behind - before)).imag)
+    enclosed = abs(((far - before).conjugate() * (near - behind)).imag) / 2.0
+    if whole <= _FLAT * loop.length(linkage, loop.links[0]) * loop.length(linkage, loop.links[1]):
+        return _PARALLELOGRAM_OR_ANTI
+    return "parallelogram" if enclosed > whole / 2.0 else "antiparallelogram"
 
 
 def _slider_crank(

@@ -1,0 +1,97 @@
+"""What a textbook says of the best-known mechanisms: mobility, chain, type, class.
+
+R. L. Norton, Design of Machinery (chains and inversions, Barker's types, Grashof); I. I.
+Artobolevskii, Theory of mechanisms and machines (Assur groups and their class).
+"""
+
+from __future__ import annotations
+
+import pytest
+
+import linkwork as lw
+
+#: Name → mobility by count and by rank, chain, the beginning of the type, class.
+TEXTBOOK = {
+    "four-bar": (1, 1, "four-bar chain", "crank-rocker (GCRR): Grashof", 2),
+    "parallelogram": (1, 1, "four-bar chain", "parallelogram (S2X): change point", 2),
+    "antiparallelogram": (1, 1, "four-bar chain", "antiparallelogram (S2X): change point", 2),
+    "galloway": (1, 1, "four-bar chain", "deltoid (S2X): change point", 2),
+    "hoeken": (1, 1, "four-bar chain", "crank-rocker (GCRR): Grashof", 2),
+    "chebyshev": (1, 1, "four-bar chain", "double-rocker (GRCR): Grashof", 2),
+    "watt-linkage": (1, 1, "four-bar chain", "triple-rocker (RRR1): not Grashof", 2),
+    "roberts": (1, 1, "four-bar chain", "change-point double-rocker (SRCR)", 2),
+    "pumpjack": (1, 1, "four-bar chain", "crank-rocker (GCRR): Grashof", 2),
+    "slider-crank": (1, 1, "slider-crank chain (RRRP)", "slider-crank: the driven link turns", 2),
+    "scott-russell": (1, 1, "slider-crank chain (RRRP)", "isosceles slider-crank", 2),
+    "inverted-slider-crank": (1, 1, "slider-crank chain (RRRP)", "crank shaper", 2),
+    "scotch-yoke": (1, 1, "double-slider chain (RRPP)", "Scotch yoke", 2),
+    "elliptic-trammel": (1, 1, "double-slider chain (RRPP)", "elliptic trammel", None),
+    "oldham-coupling": (1, 1, "double-slider chain (RRPP)", "Oldham coupling", 2),
+    "crank-shaper": (1, 1, "Watt chain, 2 prismatic joints", "Watt II; its loop", 2),
+    "whitworth": (1, 1, "Watt chain, 2 prismatic joints", "Watt II; its loop", 2),
+    "drag-link": (1, 1, "Watt chain, 1 prismatic joint", "Watt II; its loop", 2),
+    "hart-inversor": (1, 1, "Watt chain", "Watt I; its loop", 2),
+    "klann-leg": (1, 1, "Stephenson chain", "Stephenson III; its loop", 2),
+    "stephenson-far-crank": (1, 1, "Stephenson chain", "Stephenson III", 3),
+    "jansen-leg": (1, 1, "eight-link chain, 3 multiple pins", "", 2),
+    "peaucellier": (1, 1, "eight-link chain, 4 multiple pins", "", 2),
+    "double-butterfly": (1, 1, "eight-link chain no. 5 of 16 (4 ternary links)", "", 3),
+    "five-bar-robot": (2, 2, "five-bar chain", "", 2),
+    "three-rpr": (3, 3, "eight-link chain with 3 degrees of freedom, 3 prismatic joints", "", 3),
+    "planetary-gear": (1, 1, "four-link chain with 2 gear pairs", "", None),
+    "planetary-differential": (2, 2, "five-link chain with 2 gear pairs", "", None),
+    "cam-roller-follower": (1, 1, "three-link chain with 1 cam", "", None),
+    "sun-and-planet": (1, 1, "five-link chain with 1 gear pair", "its loop ground, arm, rod", None),
+    "boxer-engine": (1, 1, "Watt chain, 2 prismatic joints", "Watt II", 2),
+    "atkinson-engine": (
+        1, 1, "six-link chain, 1 prismatic joint, 1 multiple pin",
+        "its loop ground, crank, rod, lever: crank-rocker", 2,
+    ),
+    "parallel-cranks": (
+        0, 1, "five-link chain with 0 degrees of freedom by Grübler's count", "", None
+    ),
+    "dixon-one": (
+        0, 1, "nine-link chain with 0 degrees of freedom by Grübler's count, 6 multiple pins",
+        "", None,
+    ),
+    "dixon-two": (
+        -3, 1, "16-link chain with -3 degrees of freedom by Grübler's count, 8 multiple pins",
+        "", None,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", TEXTBOOK)
+def test_check_says_what_a_textbook_says(name: str) -> None:
+    count, rank, chain, kind, number = TEXTBOOK[name]
+    report = lw.example(name).check()
+    found = report.classification
+    assert found is not None
+    assert (report.mobility_count, report.mobility_rank) == (count, rank)
+    assert (found.chain, found.class_number) == (chain, number)
+    assert found.type.startswith(kind)
+    assert bool(found.type) == bool(kind)
+
+
+CAM = "no Assur group: it has a cam"
+
+
+@pytest.mark.parametrize(
+    ("name", "reasons"),
+    [
+        ("curved-slot", ["no Assur group: it has a pin on a curve"]),
+        ("garage-door", ["no Assur group: it has a pin on a curve"]),
+        ("eccentric-cam", [CAM, None, None, CAM]),
+        ("cardan-circles", ["no Assur group: it has a gear pair"]),
+        (
+            "rolling-inside",
+            ["no Assur group: an input holds the angle of a link that is not at its pin"],
+        ),
+    ],
+)
+def test_blocks_with_higher_pairs_say_why_they_have_no_class(
+    name: str, reasons: list[str | None]
+) -> None:
+    """Coordinates of curves and contacts follow from the links, and do not hide the reason."""
+    blocks = lw.example(name).check().blocks
+    assert [block.group and block.group.text for block in blocks] == reasons
