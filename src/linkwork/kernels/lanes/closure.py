@@ -15,7 +15,7 @@ from linkwork.foundation.arrays import IndexArray
 from linkwork.kernels.lanes.program import Recorder, Value
 from linkwork.kernels.loop_table import LoopTable
 
-__all__ = ["BlockPart", "Closure", "Linear", "Phase", "solved"]
+__all__ = ["BlockPart", "Closure", "Linear", "Phase", "phasor_name", "solved", "turned"]
 
 Pair = tuple[Value | float, Value | float]
 #: Variables with their weights; empty for a fixed direction.
@@ -75,13 +75,15 @@ class Closure:
     def _turned(self, phase: Phase) -> Pair:
         if not phase:
             return 1.0, 0.0
-        if len(phase) == 1 and phase[0][1] in (1.0, -1.0):
-            ((variable, weight),) = phase
-            sine, cosine = self.rec.sin_cos(self.v[variable])
-            return cosine, sine if weight > 0 else -sine
-        angle = self.rec.total([self.v[k] * weight for k, weight in phase])
-        sine, cosine = self.rec.sin_cos(angle)
-        return cosine, sine
+        if self.given(phase):
+            return self.rec.input(phasor_name("cos", phase)), self.rec.input(
+                phasor_name("sin", phase)
+            )
+        return turned(self.rec, self.v, phase)
+
+    def given(self, phase: Phase) -> bool:
+        """Whether only inputs turn a phase: its phasor is computed once for all blocks."""
+        return bool(phase) and all(k >= self.table.unknowns for k, _ in phase)
 
     def coefficient(self, term: int) -> Pair:
         """A term's complex coefficient; parts that are zero in every design are left out."""
@@ -170,6 +172,21 @@ def _phases(terms: IndexArray, variables: IndexArray, weights: np.ndarray) -> di
         phase = found.setdefault(t, {})
         phase[k] = phase.get(k, 0.0) + w
     return {t: tuple(sorted((k, w) for k, w in p.items() if w)) for t, p in found.items()}
+
+
+def phasor_name(part: str, phase: Phase) -> str:
+    """The register of the cosine or sine of a phase that only inputs turn."""
+    return part + "".join(f" {weight:g}*{k}" for k, weight in phase)
+
+
+def turned(rec: Recorder, variables: Sequence[Value], phase: Phase) -> tuple[Value, Value]:
+    """Cosine and sine of a phase."""
+    if len(phase) == 1 and phase[0][1] in (1.0, -1.0):
+        ((variable, weight),) = phase
+        sine, cosine = rec.sin_cos(variables[variable])
+        return cosine, sine if weight > 0 else -sine
+    sine, cosine = rec.sin_cos(rec.total([variables[k] * weight for k, weight in phase]))
+    return cosine, sine
 
 
 @dataclass(frozen=True, eq=False)

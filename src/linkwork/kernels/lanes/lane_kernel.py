@@ -12,13 +12,13 @@ from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.kernels.lanes.closure import BlockPart
 from linkwork.kernels.lanes.folding import LastNodes
 from linkwork.kernels.lanes.machine import LANES
-from linkwork.kernels.lanes.march_programs import march_programs
+from linkwork.kernels.lanes.march_programs import ROLES, march_programs
 from linkwork.kernels.lanes.marching import begin, march
 from linkwork.kernels.loop_table import LoopTable
 
 __all__ = ["LaneKernel", "LaneRows", "Steps"]
 
-_COMMON = ("t", "t1", "t0", "active", "good", "first", "radius")
+_COMMON = ("live0", "good", "radius", "a1", "b1", "a2", "b2", "a3", "b3")
 _PART = 4096  # designs that one thread works on at a time
 
 
@@ -67,7 +67,7 @@ class LaneRows:
             reached=np.zeros((rows, count), dtype=bool),
             found=np.zeros(count, dtype=bool),
             stopped=np.full((2, count), np.nan),
-            last=np.empty((2, len(kernel.node), count)),
+            last=np.empty((2, 2 * kernel.nodes.shape[1], count)),
         )
 
     def take(self, where: IndexArray) -> LaneRows:
@@ -103,27 +103,16 @@ class LaneKernel:
         self.table, self.certified = table, certified
         programs = march_programs(table, parts, zeros, certified)
         self.registers = reg = programs.registers
-        sections = [
-            programs.predict,
-            programs.judge,
-            programs.take,
-            programs.stand,
-            *programs.begin,
-            *programs.damped,
-            *programs.iterate,
-            *programs.prove,
+        turns = [
+            np.concatenate([section.code for section in programs.turned(moves)])
+            for moves in range(ROLES)
         ]
-        ends = np.cumsum([len(section.code) for section in sections])
-        self.code = np.ascontiguousarray(np.concatenate([section.code for section in sections]))
+        self.codes = np.ascontiguousarray(np.stack(turns))
+        ends = np.cumsum([len(section.code) for section in programs.sections])
         self.spans = np.stack([np.concatenate([[0], ends[:-1]]), ends], axis=1)
-        n, blocks = table.unknowns, range(len(parts))
-        self.unknowns = reg.all_of([f"v{k}" for k in range(n)])
-        nodes = [f"{name}{k}" for name in "wqsp" for k in range(n)]
-        nodes += [f"x{k}" for k in range(n)] if certified else [f"sign{b}" for b in blocks]
-        self.node = reg.all_of([*nodes, "t1"])
-        self.guess = reg.all_of([*nodes[: 4 * n], "t1"])
+        self.nodes = programs.nodes
         self.common = reg.all_of(_COMMON)
-        self.live = reg.all_of([f"live{b}" for b in blocks])
+        self.live = reg.all_of([f"live{b}" for b in range(len(parts))])
         self.height = max(programs.height, reg.count)
 
     def run(
@@ -154,9 +143,8 @@ class LaneKernel:
         count, n = len(start), self.table.unknowns
         design = np.array([coefficients[name] for name in used]).reshape(len(used), count)
         places = np.array([named[name] for name in used], dtype=np.intp)
-        given = np.zeros((len(self.guess), count))
-        given[:n] = given[n : 2 * n] = guess
-        given[-1] = start
+        given = np.zeros((self.nodes.shape[1], count))
+        given[:n], given[-1] = guess, start
 
         def one(first: int) -> None:
             part = slice(first, first + _PART)
@@ -173,9 +161,10 @@ class LaneKernel:
     def last_nodes(self, found: LaneRows, way: int, where: IndexArray) -> LastNodes:
         """The nodes at which some designs stopped, downwards (0) or upwards (1)."""
         n, last = self.table.unknowns, found.last[way][:, where]
-        w, q, s, p = (last[k * n : (k + 1) * n] for k in range(4))
-        x = last[4 * n : 5 * n] if self.certified else np.zeros_like(w)
-        return LastNodes(t=found.stopped[way, where], w=w, s=s, q=q, p=p, x=x)
+        w, s, x = (last[k * n : (k + 1) * n] for k in range(3))
+        q, p = (last[self.nodes.shape[1] :][k * n : (k + 1) * n] for k in range(2))
+        errors = x if self.certified else np.zeros_like(w)
+        return LastNodes(t=found.stopped[way, where], w=w, s=s, q=q, p=p, x=errors)
 
     def _part(
         self,
@@ -199,17 +188,17 @@ class LaneKernel:
         design = np.ascontiguousarray(design)
         given = np.ascontiguousarray(given)
         count = design.shape[1]
-        node = np.empty((len(self.node), count))
+        node = np.empty((self.nodes.shape[1], count))
         begun = np.zeros(count, dtype=bool)
         begin(
-            self.code, self.spans, space, self.common, self.live,
-            places, design, self.guess, given, self.node, node, begun,
+            self.codes[0], self.spans, space, self.common, self.live,
+            places, design, self.nodes, given, node, begun,
         )  # fmt: skip
         found.found[part] = begun
         march(
-            self.code, self.spans, space, self.common, self.live,
-            places, design, self.node, node, begun,
-            rows, np.array([steps.first, steps.largest, steps.smallest]), self.unknowns,
+            self.codes, self.spans, space, self.common, self.live,
+            places, design, self.nodes, node, begun,
+            rows, np.array([steps.first, steps.largest, steps.smallest]), self.table.unknowns,
             found.v[:, :, part], found.radius[:, part], found.reached[:, part],
             found.stopped[:, part], found.last[:, :, part],
         )  # fmt: skip

@@ -52,6 +52,13 @@ def run(code, w):  # type: ignore[no-untyped-def]
             for i in range(LANES):
                 yes, no = w[b, i], w[c, i]
                 w[d, i] = yes if w[a, i] > 0.5 else no
+        elif op == 18:
+            for i in range(LANES):
+                yes = w[b, i]
+                w[d, i] = yes if w[a, i] > 0.5 else w[d, i]
+        elif op == 19:
+            for i in range(LANES):
+                w[d, i] -= w[a, i]
         elif op == 13:
             _sin_cos(w, a, d, c)
         elif op == 0:

@@ -1,52 +1,83 @@
-"""The programs of one topology: predict, solve block by block, take or leave the step.
+"""The programs of one topology: predict, solve block by block, prove or judge the step.
 
-Registers by name, one number per lane each:
+A lane keeps four positions: the trial (role 0) and the last three nodes (roles 1 to 3). Registers by
+name, one number per lane each; ``.s`` is a role:
 
-``t`` ``t1`` ``t0``         the value of the path tried, at the last node, at the one before
-``u<j>.origin`` ``.rate``   inputs along the path: u = origin + rate t
-``v<k>`` ``w<k>`` ``q<k>``  variables at the trial, at the last node, at the one before
-``r<k>`` ``s<k>`` ``p<k>``  their derivatives by t there
-``scale<k>``, ``size<b>``   weights of variables, sizes of a block's residuals
-``first``                   1.0 where there is no node before the last
-``live<b>``                 1.0 where block b still iterates
-``step<b>`` ``begin<b>``    weighted size of the latest and of the first correction
-``side<b>`` ``sign<b>``     the sign of det J at the trial and at the last node
-``e<k>`` ``x<k>``           how far the true position may be from the trial, from the last node
-``radius``                  the largest of the former, weighted
-``y<k>``                    how far it may get from the trial on the way between both
+``t.s``                   the value of the path
+``x<k>.s`` ``d<k>.s``     unknowns, and their derivatives by t
+``e<k>.s``                how far the true position may be from there
+``side<b>.s``             det J of a block
+``u<j>``                  inputs at the trial, u = ``u<j>.origin`` + ``u<j>.rate`` t
+``a1`` … ``b3``           weights of the nodes' unknowns and derivatives in the prediction
+``scale<k>``              weights of variables that are lengths
+``live<b>``               1.0 where block b still iterates
+``step<b>`` ``begin<b>``  weighted size of the latest and of the first correction
+``y<k>``                  how far the true position may get from the trial on the way to it
+``radius``                the largest error of the trial, weighted
+``good``                  1.0 where the step may be taken
+
+When the trial has become the last node, roles move on by one: nothing is copied, the same program
+is run with its registers renamed (:meth:`MarchPrograms.turned`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.kernels.lanes.closure import BlockPart, Closure, solved
+from linkwork.foundation.arrays import IndexArray
+from linkwork.kernels.lanes.closure import (
+    BlockPart,
+    Closure,
+    Phase,
+    phasor_name,
+    solved,
+    turned,
+)
 from linkwork.kernels.lanes.program import Program, Recorder, Registers, Value, lowered, reserve
 from linkwork.kernels.lanes.proof_program import BlockProof
 from linkwork.kernels.loop_table import LoopTable
 
-__all__ = ["MarchPrograms", "march_programs"]
+__all__ = ["ROLES", "MarchPrograms", "march_programs"]
 
+ROLES = 4
 _UNIT = float(np.finfo(float).eps) / 2.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MarchPrograms:
-    """``predict``; ``begin`` and ``iterate`` of every block; ``judge``; ``take`` the step."""
+    """``predict`` the trial; ``begin`` and ``iterate`` every block, ``damped`` at the start;
+    ``prove`` every block, if asked; ``judge``.
+
+    ``nodes`` (4, S): registers of a position, role by role.
+    """
 
     registers: Registers
     height: int
     predict: Program
+    judge: Program
     begin: tuple[Program, ...]
     damped: tuple[Program, ...]
     iterate: tuple[Program, ...]
     prove: tuple[Program, ...]
-    judge: Program
-    take: Program
-    stand: Program
+    nodes: IndexArray
+
+    @property
+    def sections(self) -> tuple[Program, ...]:
+        """All programs in the order in which the march counts them."""
+        return (self.predict, self.judge, *self.begin, *self.damped, *self.iterate, *self.prove)
+
+    def turned(self, moves: int) -> tuple[Program, ...]:
+        """The sections when roles have moved on so many times: the trial is one further down."""
+        place = np.arange(self.height, dtype=np.uint32)
+        for role in range(ROLES):
+            place[self.nodes[role]] = self.nodes[(role - moves) % ROLES]
+        return tuple(
+            replace(program, code=np.hstack([program.code[:, :1], place[program.code[:, 1:]]]))
+            for program in self.sections
+        )
 
 
 class _Writer:
@@ -59,6 +90,12 @@ class _Writer:
         self.n, self.count = table.unknowns, table.variables
         self.alone = self.count == self.n + 1  # a single input is the path's own value
 
+    def _variables(self, rec: Recorder) -> list[Value]:
+        """All variables at the trial."""
+        inputs = range(self.count - self.n)
+        own = [rec.input("t.0")] if self.alone else [rec.input(f"u{j}") for j in inputs]
+        return [*[rec.input(f"x{k}.0") for k in range(self.n)], *own]
+
     def _scale(self, rec: Recorder, k: int) -> Value:
         """The weight of a variable: 1 for angles."""
         return rec.constant(1.0) if self.table.turns[k] else rec.input(f"scale{k}")
@@ -67,54 +104,56 @@ class _Writer:
         """By how much an input changes with t."""
         return rec.constant(1.0) if self.alone else rec.input(f"u{j}.rate")
 
-    def _weighted(self, rec: Recorder, k: int, change: Value) -> Value:
-        """|change| of a variable in its weight."""
-        return abs(change) if self.table.turns[k] else abs(change) / rec.input(f"scale{k}")
-
-    def predict(self) -> Recorder:
-        """The cubic through both last nodes with their derivatives, at t; the inputs there."""
-        rec = Recorder()
-        t, t1, t0 = rec.input("t"), rec.input("t1"), rec.input("t0")
-        h = t - t1
-        only = rec.input("first")
-        inverse = 1.0 / rec.where(only, 1.0, t1 - t0)
-        q = rec.where(only, 0.0, h * inverse)
-        more = q + 1.0
-        for k in range(self.n):
-            x1, x0 = rec.input(f"w{k}"), rec.input(f"q{k}")
-            r1, r0 = rec.input(f"s{k}"), rec.input(f"p{k}")
-            slope = (x1 - x0) * inverse
-            a, e = r1 - slope, r0 - slope
-            rec.write(f"v{k}", x1 + h * (r1 + q * (a + more * (e + a))))
-        for j in range(self.count - self.n):
-            value = t if self.alone else rec.input(f"u{j}.origin") + self._rate(rec, j) * t
-            rec.write(f"v{self.n + j}", value)
-        for b in range(len(self.parts)):
-            rec.write(f"live{b}", rec.input("active"))
-        return rec
-
     def _moved(self, rec: Recorder, k: int) -> Value:
         """The rate of a variable that a block takes as known."""
-        return rec.input(f"r{k}") if k < self.n else self._rate(rec, k - self.n)
+        return rec.input(f"d{k}.0") if k < self.n else self._rate(rec, k - self.n)
+
+    def _weighted(self, rec: Recorder, k: int, change: Value) -> Value:
+        """|change| of a variable in its weight."""
+        return rec.divide(rec.absolute(change), self._scale(rec, k))
+
+    def _closure(self, number: int, rec: Recorder) -> Closure:
+        part = self.parts[number]
+        return Closure(self.table, part, rec, self._variables(rec), self.zeros)
+
+    def predict(self) -> Recorder:
+        """The polynomial through the last nodes with their derivatives; the inputs at t."""
+        rec = Recorder()
+        for k in range(self.n):
+            value: Value = rec.constant(0.0)
+            for role in (1, 2, 3):
+                value = value + rec.input(f"a{role}") * rec.input(f"x{k}.{role}")
+                value = value + rec.input(f"b{role}") * rec.input(f"d{k}.{role}")
+            rec.write(f"x{k}.0", value)
+        t = rec.input("t.0")
+        inputs = [t]
+        if not self.alone:
+            inputs = [
+                rec.input(f"u{j}.origin") + rec.input(f"u{j}.rate") * t
+                for j in range(self.count - self.n)
+            ]
+            for j, value in enumerate(inputs):
+                rec.write(f"u{j}", value)
+        variables = [t] * self.n + inputs  # phases of inputs alone know no unknowns
+        for phase in sorted(self._given_phases()):
+            cosine, sine = turned(rec, variables, phase)
+            rec.write(phasor_name("cos", phase), cosine)
+            rec.write(phasor_name("sin", phase), sine)
+        return rec
+
+    def _given_phases(self) -> set[Phase]:
+        closures = [self._closure(b, Recorder()) for b in range(len(self.parts))]
+        return {p for c in closures for p in c.phases.values() if c.given(p)}
 
     def iterate(self, number: int, first: bool, damped: bool) -> Recorder:
         """One Newton-Raphson step of a block; without proofs with rates and the sign of det J."""
         part, rec = self.parts[number], Recorder()
-        v = [rec.input(f"v{k}") for k in range(self.count)]
-        closure = Closure(self.table, part, rec, v, self.zeros)
-        known = closure.known()
-        slopes = [] if self.certified else closure.jacobian(known)
-        drives = [
-            rec.total(
-                [rec.multiply(x, self._moved(rec, k)) for x, k in zip(row, known, strict=True)]
-            )
-            for row in slopes
-        ]
-        matrix = closure.jacobian(part.unknowns)
-        f = closure.residual()
-        answer = solved(rec, matrix, [f] if self.certified else [f, drives])
-        change = answer.columns[0]
-        live = rec.input(f"live{number}")
+        closure = self._closure(number, rec)
+        sides = [closure.residual()]
+        if not self.certified:
+            sides.append(self._drives(closure, rec))
+        answer = solved(rec, closure.jacobian(part.unknowns), sides)
+        change, live = answer.columns[0], rec.input(f"live{number}")
         turns = [abs(d) for d, k in zip(change, part.unknowns, strict=True) if self.table.turns[k]]
         if damped and turns:
             factor = rec.smallest([1.0, rec.input("most_turn") / rec.largest(turns)])
@@ -122,48 +161,59 @@ class _Writer:
         size = rec.largest(
             self._weighted(rec, k, d) for d, k in zip(change, part.unknowns, strict=True)
         )
+
+        def put(name: str, value: Value) -> None:
+            rec.write(name, value if first else rec.where(live, value, rec.input(name)))
+
         for d, k in zip(change, part.unknowns, strict=True):
-            rec.write(f"v{k}", rec.where(live, v[k] - d, v[k]))
+            put(f"x{k}.0", closure.v[k] - d)
         for moved in answer.columns[1:]:
             for r, k in zip(moved, part.unknowns, strict=True):
-                rec.write(f"r{k}", rec.where(live, -r, rec.input(f"r{k}")))
+                put(f"d{k}.0", -r)
         if not self.certified:
-            rec.write(f"step{number}", rec.where(live, size, rec.input(f"step{number}")))
-        if not self.certified:
+            put(f"side{number}.0", answer.determinant)
+            put(f"step{number}", size)
             if first:
                 rec.write(f"begin{number}", size)
-            side = rec.where(live, answer.determinant, rec.input(f"side{number}"))
-            rec.write(f"side{number}", side)
-        goes_on = rec.at_most(size, rec.input("tolerance"))
-        rec.write(f"live{number}", rec.where(goes_on, 0.0, live))
+        done = rec.at_most(size, rec.input("tolerance"))
+        rec.write(f"live{number}", 1.0 - done if first else rec.where(done, 0.0, live))
         return rec
+
+    def _drives(self, closure: Closure, rec: Recorder) -> list[Value]:
+        """F_k times the rates of the known variables."""
+        known = closure.known()
+        rates = [self._moved(rec, k) for k in known]
+        return [
+            rec.total([rec.multiply(x, rate) for x, rate in zip(row, rates, strict=True)])
+            for row in closure.jacobian(known)
+        ]
 
     def prove(self, number: int) -> Recorder:
         """A block's proof: of the trial, and that it lies on the branch of the last node."""
-        rec, part = Recorder(), self.parts[number]
-        v = [rec.input(f"v{k}") for k in range(self.count)]
-        closure = Closure(self.table, part, rec, v, self.zeros)
+        part, rec = self.parts[number], Recorder()
+        closure = self._closure(number, rec)
         used = (*part.unknowns, *closure.known())
         proof = BlockProof(closure, {k: self._scale(rec, k) for k in used})
         near: dict[int, Value] = {}
         far: dict[int, Value] = {}
-        step = abs(rec.input("t") - rec.input("t1")) * (1.0 + 16.0 * _UNIT)
+        step = abs(rec.input("t.0") - rec.input("t.1")) * (1.0 + 16.0 * _UNIT)
         for k in proof.known:
             if k < self.n:
-                near[k], far[k] = rec.input(f"e{k}"), rec.input(f"y{k}")
+                near[k], far[k] = rec.input(f"e{k}.0"), rec.input(f"y{k}")
             else:
-                near[k] = abs(v[k]) * (4.0 * _UNIT)
+                near[k] = abs(closure.v[k]) * (4.0 * _UNIT)
                 far[k] = step * abs(self._rate(rec, k - self.n)) + 2.0 * near[k]
         for k, rate in zip(part.unknowns, proof.rates(self._moved), strict=True):
-            rec.write(f"r{k}", rate)
+            rec.write(f"d{k}.0", rate)
         here, there = proof.within(near), proof.within(far)
         masks = [here.holds, there.holds]
         for k, error, reach, alone in zip(
             part.unknowns, here.each, there.each, there.alone, strict=True
         ):
-            rec.write(f"e{k}", error)
+            rec.write(f"e{k}.0", error)
             rec.write(f"y{k}", reach)
-            away = abs(v[k] - rec.input(f"w{k}")) + rec.largest([error, rec.input(f"x{k}")])
+            away = abs(closure.v[k] - rec.input(f"x{k}.1"))
+            away = away + rec.largest([error, rec.input(f"e{k}.1")])
             masks.append(rec.at_most(away, alone * (1.0 - 4.0 * _UNIT)))
         rec.write(f"ok{number}", rec.all_of(masks))
         rec.write(f"radius{number}", here.radius)
@@ -172,67 +222,35 @@ class _Writer:
     def judge_proof(self) -> Recorder:
         """``good``: where everything is proved."""
         rec = Recorder()
-        masks = [rec.input(f"ok{b}") for b in range(len(self.parts))]
-        rec.write("radius", rec.largest(rec.input(f"radius{b}") for b in range(len(self.parts))))
-        rec.write("good", rec.all_of([*masks, rec.input("active")]))
+        blocks = range(len(self.parts))
+        rec.write("good", rec.all_of([rec.input(f"ok{b}") for b in blocks]))
+        rec.write("radius", rec.largest(rec.input(f"radius{b}") for b in blocks))
         return rec
 
     def judge(self) -> Recorder:
-        """``good``: where the step may be taken."""
+        """``good``: where the step may be taken without a proof."""
         rec = Recorder()
         masks = []
         for b in range(len(self.parts)):
             masks.append(rec.at_most(rec.input(f"step{b}"), rec.input("tolerance")))
             masks.append(rec.at_most(rec.input(f"begin{b}"), rec.input("most_correction")))
-            product = rec.input(f"side{b}") * rec.input(f"sign{b}")
+            product = rec.input(f"side{b}.0") * rec.input(f"side{b}.1")
             masks.append(rec.at_most(0.0, product))
-        h = rec.input("t") - rec.input("t1")
+        h = rec.input("t.0") - rec.input("t.1")
         drifts = [
-            self._weighted(rec, k, (rec.input(f"r{k}") - rec.input(f"s{k}")) * h)
+            self._weighted(rec, k, (rec.input(f"d{k}.0") - rec.input(f"d{k}.1")) * h)
             for k in range(self.n)
         ]
         masks.append(rec.at_most(rec.largest(drifts), rec.input("most_drift")))
-        rec.write("good", rec.all_of([*masks, rec.input("active")]))
+        rec.write("good", rec.all_of(masks))
         return rec
 
-    def take(self) -> Recorder:
-        """Where ``good``, the trial becomes the last node."""
-        rec = Recorder()
-        t, t1 = rec.input("t"), rec.input("t1")
-        stands = rec.at_most(t, t1) * rec.at_most(t1, t)  # a row at the very node
-        moves = rec.input("good") * (1.0 - stands)
-
-        def moved(new: str, old: str) -> Value:
-            return rec.where(moves, rec.input(new), rec.input(old))
-
-        for k in range(self.n):
-            rec.write(f"q{k}", moved(f"w{k}", f"q{k}"))
-            rec.write(f"p{k}", moved(f"s{k}", f"p{k}"))
-            rec.write(f"w{k}", moved(f"v{k}", f"w{k}"))
-            rec.write(f"s{k}", moved(f"r{k}", f"s{k}"))
-            if self.certified:
-                rec.write(f"x{k}", moved(f"e{k}", f"x{k}"))
-        rec.write("t0", moved("t1", "t0"))
-        rec.write("t1", moved("t", "t1"))
-        rec.write("first", rec.where(moves, 0.0, rec.input("first")))
-        for b in range(0 if self.certified else len(self.parts)):
-            rec.write(f"sign{b}", moved(f"side{b}", f"sign{b}"))
-        return rec
-
-    def stand(self) -> Recorder:
-        """The trial becomes the first node."""
-        rec = Recorder()
-        for k in range(self.n):
-            for to, source in (("w", "v"), ("q", "v"), ("s", "r"), ("p", "r")):
-                rec.write(f"{to}{k}", rec.input(f"{source}{k}"))
-            if self.certified:
-                rec.write(f"x{k}", rec.input(f"e{k}"))
-        for b in range(0 if self.certified else len(self.parts)):
-            rec.write(f"sign{b}", rec.input(f"side{b}"))
-        for name in ("t0", "t1"):
-            rec.write(name, rec.input("t"))
-        rec.write("first", 1.0)
-        return rec
+    def node_names(self, role: int) -> list[str]:
+        """What makes up a position in a role: unknowns, derivatives, evidence, t."""
+        own = [f"{name}{k}" for name in "xd" for k in range(self.n)]
+        own += [f"e{k}" for k in range(self.n)] if self.certified else []
+        own += [] if self.certified else [f"side{b}" for b in range(len(self.parts))]
+        return [f"{name}.{role}" for name in (*own, "t")]
 
 
 def march_programs(
@@ -251,34 +269,33 @@ def march_programs(
         Blocks in the order in which they are solved.
     zeros : set of str
         Names of coefficients that are zero in every design.
+    certified : bool
+        Whether every step is proved.
     """
-    writer = _Writer(table, parts, zeros, certified)
-    blocks = range(len(parts))
+    writer, blocks = _Writer(table, parts, zeros, certified), range(len(parts))
     recorded = [
         writer.predict(),
         writer.judge_proof() if certified else writer.judge(),
-        writer.take(),
-        writer.stand(),
         *[writer.iterate(b, first=True, damped=False) for b in blocks],
         *[writer.iterate(b, first=False, damped=True) for b in blocks],
         *[writer.iterate(b, first=False, damped=False) for b in blocks],
         *[writer.prove(b) for b in blocks if certified],
     ]
     registers = Registers()
+    nodes = np.stack([registers.all_of(writer.node_names(role)) for role in range(ROLES)])
     for rec in recorded:
         reserve(rec, registers)
     programs = [lowered(rec, registers, registers.count) for rec in recorded]
-    predict, judge, take, stand, *rest = programs
     count = len(parts)
+    predict, judge, *rest = programs
     return MarchPrograms(
         registers=registers,
-        height=max(program.height for program in programs),
+        height=max(registers.count, *(program.height for program in programs)),
         predict=predict,
         judge=judge,
-        take=take,
-        stand=stand,
         begin=tuple(rest[:count]),
         damped=tuple(rest[count : 2 * count]),
         iterate=tuple(rest[2 * count : 3 * count]),
         prove=tuple(rest[3 * count :]),
+        nodes=nodes,
     )

@@ -40,8 +40,10 @@ class Op(IntEnum):
     WHERE = 15  # b where a is a true mask, else c
     LE = 16  # a <= b as a mask
     AND = 17  # of two masks
-    INPUT = 18  # a named register; no instruction
-    CONSTANT = 19  # no instruction
+    KEEP = 18  # b where a is a true mask, else what the target holds
+    LESS = 19  # what the target holds, less a
+    INPUT = 20  # a named register; no instruction
+    CONSTANT = 21  # no instruction
 
 
 _SYMMETRIC = frozenset({Op.ADD, Op.MUL, Op.MAX, Op.MIN, Op.AND})
@@ -415,12 +417,25 @@ class _Lowering:
         rec = self.recorder
         position = {k: p for p, k in enumerate(order)}
         found: dict[int, int] = {}
+        self.in_place: set[int] = set()
         for name, value in rec.writes.items():
             before = rec._known.get((Op.INPUT, (), name))
             still_read = -1 if before is None else self.last.get(before, -1)
-            if value in position and value not in found and still_read < position[value]:
+            if value not in position or value in found:
+                continue
+            if still_read < position[value]:
                 found[value] = self.registers.of(name)
+            elif still_read == position[value] and self._changes(value, before):
+                found[value] = self.registers.of(name)
+                self.in_place.add(value)
         return found
+
+    def _changes(self, value: int, old: int | None) -> bool:
+        """Whether a value is the old one but for some lanes, or less something."""
+        op, arguments = self.recorder.ops[value], self.recorder.arguments[value]
+        if value in self.fused or arguments.count(old or -1) != 1:
+            return False
+        return (op is Op.WHERE and arguments[2] == old) or (op is Op.SUB and arguments[0] == old)
 
     def _register(self, k: int) -> int:
         rec = self.recorder
@@ -446,6 +461,10 @@ class _Lowering:
         op, arguments = self.fused.get(k, (rec.ops[k], rec.arguments[k]))
         sources = [self._register(a) for a in arguments]
         place = self._new_place(k, target)
+        if k in self.in_place:
+            if op is Op.WHERE:
+                return int(Op.KEEP), place, sources[0], sources[1], sources[1]
+            return int(Op.LESS), place, sources[1], sources[1], sources[1]
         if op is Op.SIN:
             cosine = rec._known.get((Op.COS, (k,), None))
             if cosine is None:
