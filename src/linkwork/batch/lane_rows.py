@@ -51,7 +51,7 @@ class DesignRows:
             v=np.empty((unknowns, rows, designs)),
             status=np.full((rows, designs), Status.NO_START.code, dtype=np.int8),
             certification=np.full((rows, designs), none.code, dtype=np.int8),
-            radius=np.full((rows, designs), np.nan),
+            radius=np.empty((rows, designs)),
             dead_points=np.full((2, designs), np.nan),
             alone=np.zeros(designs, dtype=bool),
         )
@@ -70,6 +70,7 @@ def design_rows(designs: Designs, *, certify: bool, threads: int = 1) -> DesignR
     march = _Path.of(model)
     if march is None:
         found.v[:] = np.nan
+        found.radius[:] = np.nan
     else:
         left &= ~march.fill(designs, found, certify, threads)
     for k in np.flatnonzero(left):
@@ -109,15 +110,23 @@ class _Path:
         way = slice(None, None, -1 if t[-1] < t[0] else 1)
         march = _March(self, designs, served, certify, threads)
         whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
-        found.v[:, ~reached[way]] = np.nan
-        found.status[:, whole] = Status.OUT_OF_REACH.code
-        found.status[reached[way]] = Status.CONVERGED.code
-        if certify:
-            found.certification[reached[way]] = Certification.CERTIFIED.code
-        else:
-            found.radius[:] = np.nan
+        self._note(found, reached[way], whole, certify)
         found.dead_points[:] = march.dead_points
         return whole
+
+    def _note(self, found: DesignRows, reached: BoolArray, whole: BoolArray, certify: bool) -> None:
+        """Statuses of rows that were reached, and of the others of designs that are done."""
+        if not reached.all():
+            found.v[:, ~reached] = np.nan
+            found.radius[~reached] = np.nan
+            found.status[:, whole] = Status.OUT_OF_REACH.code
+            if certify:
+                found.certification[~reached] = Certification.NO_POSITION.code
+        np.copyto(found.status, Status.CONVERGED.code, where=reached)
+        if certify:
+            np.copyto(found.certification, Certification.CERTIFIED.code, where=reached)
+        else:
+            found.radius[:] = np.nan
 
 
 class _March:

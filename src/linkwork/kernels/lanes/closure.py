@@ -83,7 +83,8 @@ class Closure:
 
     def given(self, phase: Phase) -> bool:
         """Whether only inputs turn a phase: its phasor is computed once for all blocks."""
-        return bool(phase) and all(k >= self.table.unknowns for k, _ in phase)
+        given = set(range(self.table.unknowns, self.table.variables)) - set(self.part.unknowns)
+        return bool(phase) and all(k in given for k, _ in phase)
 
     def coefficient(self, term: int) -> Pair:
         """A term's complex coefficient; parts that are zero in every design are left out."""

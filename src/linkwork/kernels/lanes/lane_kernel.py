@@ -33,7 +33,7 @@ class Steps:
 
     first: float = 0.05
     largest: float = 0.6
-    smallest: float = 2e-4
+    smallest: float = 1e-5
     tolerance: float = 1e-8
     most_turn: float = float(np.radians(40.0))
     most_correction: float = 0.1

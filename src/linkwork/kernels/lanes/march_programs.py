@@ -1,7 +1,7 @@
 """The programs of one topology: predict, solve block by block, prove or judge the step.
 
-A lane keeps four positions: the trial (role 0) and the last three nodes (roles 1 to 3). Registers by
-name, one number per lane each; ``.s`` is a role:
+A lane keeps four positions: the trial (role 0) and the last three nodes (roles 1 to 3). Registers
+by name, one number per lane each; ``.s`` is a role:
 
 ``t.s``                   the value of the path
 ``x<k>.s`` ``d<k>.s``     unknowns, and their derivatives by t

@@ -198,7 +198,7 @@ def march(  # type: ignore[no-untyped-def]
                 for role in range(1, 4):
                     _load(w, i, nodes[(role - turn) % 4], node, member[i])
                 known[i] = 1
-                spacing[i, :] = 0.0
+                spacing[i, :] = np.inf  # like no other
                 h[i] = steps[0]
                 above = np.searchsorted(rows, w[t1, i])
                 row[i] = above if way[i] == 1 else above - 1
