@@ -21,7 +21,7 @@ class LinkworkFamily(Peer):
 
     def __init__(self, *, certify: bool) -> None:
         self.certify = certify
-        self.name = "linkwork family, certified" if certify else "linkwork family"
+        self.name = "family, certified" if certify else "family"
 
     def prepare(self, work: Work) -> Prepared:
         family = family_of(work)

@@ -174,10 +174,19 @@ def _too_wide(text: str) -> list[str]:
     ]
 
 
+#: Their circuits take more than five seconds; those of the others show every form of the page.
+COSTLY = {
+    "beam-engine", "dixon-one", "dixon-two", "double-butterfly", "excavator", "scissor-lift",
+    "trotbot-leg",
+}  # fmt: skip
+
+
 @pytest.mark.parametrize("name", examples())
 def test_every_page_of_the_library_fits_eighty_columns(run: Run, folder: Path, name: str) -> None:
     assert run("examples", name, "-o", "mechanism.toml").exit_code == 0
     for command, *options in PAGES:
+        if command == "circuits" and name in COSTLY:
+            continue
         done = run(command, "mechanism.toml", *options)
         assert done.exit_code in (0, 1) or "add [input]" in " ".join(done.stderr.split())
         assert _too_wide(done.output) == []
