@@ -4,6 +4,7 @@ Registers by name, one number per lane each:
 
 ``t`` ``t1`` ``t0``         the value of the path tried, at the last node, at the one before
 ``u<j>.origin`` ``.rate``   inputs along the path: u = origin + rate t
+``u<j>.spread``             how far the inputs of a row may be from those, beside their own rounding
 ``v<k>`` ``w<k>`` ``q<k>``  variables at the trial, at the last node, at the one before
 ``r<k>`` ``s<k>`` ``p<k>``  their derivatives by t there
 ``scale<k>``, ``size<b>``   weights of variables, sizes of a block's residuals
@@ -152,7 +153,7 @@ class _Writer:
             if k < self.n:
                 near[k], far[k] = rec.input(f"e{k}"), rec.input(f"y{k}")
             else:
-                near[k] = abs(v[k]) * (4.0 * _UNIT)
+                near[k] = abs(v[k]) * (4.0 * _UNIT) + rec.input(f"u{k - self.n}.spread")
                 far[k] = step * abs(self._rate(rec, k - self.n)) + 2.0 * near[k]
         for k, rate in zip(part.unknowns, proof.rates(self._moved), strict=True):
             rec.write(f"r{k}", rate)
@@ -173,6 +174,8 @@ class _Writer:
         """``good``: where everything is proved."""
         rec = Recorder()
         masks = [rec.input(f"ok{b}") for b in range(len(self.parts))]
+        # what has not converged may be proved, but its radius would be of no use
+        masks += [rec.at_most(rec.input(f"live{b}"), 0.0) for b in range(len(self.parts))]
         rec.write("radius", rec.largest(rec.input(f"radius{b}") for b in range(len(self.parts))))
         rec.write("good", rec.all_of([*masks, rec.input("active")]))
         return rec

@@ -195,7 +195,8 @@ def march(  # type: ignore[no-untyped-def]
             m = member[i]
             if m < 0:
                 continue
-            if w[good, i] > 0.5:
+            still = w[t, i] == w[t1, i] and w[t, i] != rows[row[i]]  # a step lost in rounding
+            if w[good, i] > 0.5 and not still:
                 if w[t, i] == rows[row[i]]:
                     r = row[i]
                     reached[r, m] = True

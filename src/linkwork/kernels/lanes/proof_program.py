@@ -19,7 +19,7 @@ __all__ = ["BlockProof", "Found"]
 
 _UNIT = float(np.finfo(float).eps) / 2.0
 _SLACK = 1.0 + 1e-12
-_PHASOR = 14.0  # roundings in one term: sine and cosine, products
+_PHASOR = 14.0  # roundings in one term: sine and cosine (2.5 each), products
 _ROOM = 1e-9  # 1 - Z below which nothing is proved
 _TINY = 1e-300
 
@@ -317,4 +317,4 @@ class _Rounding:
         size = rec.total([constant, *[abs(closure.v[k]) * abs(w) for k, w in entries]])
         spread = rec.total([self.scale[k] * abs(w) for k, w in entries])
         error = rec.multiply(_UNIT * (len(entries) + 4.0), size)
-        return error, rec.multiply(_UNIT * (self.products + 2.0), spread)
+        return error, rec.multiply(_UNIT * (self.products + len(entries)), spread)
