@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 import numba  # noqa: TID253 - this module is loaded when a family is solved
+import numpy as np
 
 __all__ = ["LANES", "compiled", "run"]
 
@@ -95,7 +96,7 @@ def _sin_cos(w, a, sine, cosine):  # type: ignore[no-untyped-def]
     """
     for i in range(LANES):
         x = w[a, i]
-        n = math.floor(x * _TWO_OVER_PI + 0.5)
+        n = np.floor(x * _TWO_OVER_PI + 0.5)
         r = ((x - n * _PART_1) - n * _PART_2) - n * _PART_3
         r = r if abs(n) <= _MOST_QUARTERS else math.nan
         z = r * r
@@ -115,7 +116,7 @@ def _sin_cos(w, a, sine, cosine):  # type: ignore[no-untyped-def]
         p = -0.001388888888888889 + z * p
         p = 0.041666666666666664 + z * p
         p = 1.0 - 0.5 * z + z * z * p
-        q = n - 4.0 * math.floor(0.25 * n)
+        q = n - 4.0 * np.floor(0.25 * n)
         odd = (q == 1.0) | (q == 3.0)
         u = p if odd else s
         v = s if odd else p
