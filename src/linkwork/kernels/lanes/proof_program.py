@@ -15,7 +15,7 @@ import numpy as np
 from linkwork.kernels.lanes.closure import Closure, Phase, solved
 from linkwork.kernels.lanes.program import Recorder, Value
 
-__all__ = ["BlockProof", "Found"]
+__all__ = ["BlockProof", "Constants", "Found"]
 
 _UNIT = float(np.finfo(float).eps) / 2.0
 _SLACK = 1.0 + 1e-12
@@ -39,7 +39,7 @@ class Found:
 
 
 @dataclass(frozen=True, eq=False)
-class _Constants:
+class Constants:
     """One row of the proof in units of its weight; the Lipschitz constant is ω + ρ ``bent``."""
 
     y: Value
@@ -163,10 +163,14 @@ class BlockProof:
 
     def within(self, known: Mapping[int, Value]) -> Found:
         """The proof for every value of the known variables so far from theirs."""
-        spread = _Spread(self, known)
-        return self._radii([spread.constants(i) for i in range(self.count)])
+        return self._radii(self.constants(known))
 
-    def _radii(self, rows: Sequence[_Constants]) -> Found:
+    def constants(self, known: Mapping[int, Value]) -> list[Constants]:
+        """Y, Z and ω row by row for known variables within some distance (own units)."""
+        spread = _Spread(self, known)
+        return [spread.constants(i) for i in range(self.count)]
+
+    def _radii(self, rows: Sequence[Constants]) -> Found:
         """Existence and uniqueness from the constants, as ``numerics.certificate.radii``."""
         rec = self.rec
         y, z = rec.largest(row.y for row in rows), rec.largest(row.z for row in rows)
@@ -215,14 +219,14 @@ class _Spread:
         """How far a phase turns when some variables move."""
         return self.rec.total([moves[k] * abs(w) for k, w in phase if k in among])
 
-    def constants(self, i: int) -> _Constants:
+    def constants(self, i: int) -> Constants:
         """Row i."""
         proof, rec = self.proof, self.rec
         z, omega, bent = self._bending(i)
         y = rec.add(proof.residual[i], self._shift(i))
         weight = proof.scale[proof.unknowns[i]]
         per = rec.divide(_SLACK, weight)
-        return _Constants(*(rec.multiply(x, per) for x in (y, z, omega, bent)))
+        return Constants(*(rec.multiply(x, per) for x in (y, z, omega, bent)))
 
     def _shift(self, i: int) -> Value:
         """By how much the known variables may move the solution: along slopes, or as a whole."""
