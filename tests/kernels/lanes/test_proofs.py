@@ -55,7 +55,9 @@ def test_constants_and_radii_are_those_of_the_scalar_proof(seed: int) -> None:
         scalar = bounds(table, v[k : k + 1], jacobian, inverse, known[k : k + 1])
         # rounding is counted coarser: up to so many units of what the inverse makes of the terms
         weights = table.variable_scale
-        size = np.abs(inverse[0]) @ (np.abs(jacobian[0]) @ weights) / weights[:n]
+        terms = table.loops.moduli(v[k : k + 1], np.ones((1, len(table.loops.row))))[1][0]
+        lines = np.abs(jacobian[0, 2 * len(terms) :])
+        size = np.abs(inverse[0]) @ (np.concatenate([terms, terms, lines]) @ weights) / weights[:n]
         angles = 1.0 + np.abs(v[k]) @ table.turns
         loose = 2.0**-53 * 100 * n * size * angles
         for name, own, other in (
@@ -79,7 +81,7 @@ def test_constants_and_radii_are_those_of_the_scalar_proof(seed: int) -> None:
             (lanes.radii.each[k], one.each[0]),
             (lanes.radii.alone[k], one.alone[0]),
         ):
-            np.testing.assert_allclose(own, other, rtol=1e-6)
+            np.testing.assert_allclose(own, other, rtol=1e-5)
     assert held or sharper or seed % 3 == 0
 
 
