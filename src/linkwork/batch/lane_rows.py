@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -283,11 +283,32 @@ def _coefficients(path: _Path, designs: Designs) -> dict[str, Array]:
     return found
 
 
+def _at_shared_inputs(designs: Designs, k: int) -> Model:
+    """A design by itself with the family's table, should its own depend on what varies."""
+    base, model = designs.base, designs.design(k)
+    if np.array_equal(model.everyday_rows, base.everyday_rows):
+        return model
+    number = base.description.numbers
+    inputs = tuple(
+        replace(
+            which,
+            **{
+                end: number(value)
+                for end in ("start", "stop", "step")
+                if (value := getattr(which, end)) is not None
+            },
+        )
+        for which in base.description.inputs
+    )
+    description = replace(model.description, inputs=inputs)
+    return Model(description, model.equations, model.compiled, model.skeleton, model.branch)
+
+
 def _alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
     """One design by the ordinary sweep."""
     found.alone[k] = True
     try:
-        motion = sweep(designs.design(k), certify=certify)
+        motion = sweep(_at_shared_inputs(designs, k), certify=certify)
     except LinkworkError:  # what is wrong with it is told by ``designs.message``
         found.v[:, :, k] = found.radius[:, k] = np.nan
         found.status[:, k] = Status.NO_START.code
