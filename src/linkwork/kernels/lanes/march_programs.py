@@ -32,6 +32,7 @@ from linkwork.kernels.loop_table import LoopTable
 __all__ = ["MarchPrograms", "march_programs"]
 
 _UNIT = float(np.finfo(float).eps) / 2.0
+_FARTHEST = 16.0  # distances of the last two nodes that the cubic is trusted beyond them
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -73,13 +74,18 @@ class _Writer:
         return abs(change) if self.table.turns[k] else abs(change) / rec.input(f"scale{k}")
 
     def predict(self) -> Recorder:
-        """The cubic through both last nodes with their derivatives, at t; the inputs there."""
+        """The cubic through both last nodes with their derivatives, at t; the inputs there.
+
+        Nodes that lie much nearer together than the step is long tell nothing but their rounding:
+        then, and without a node before the last, the tangent.
+        """
         rec = Recorder()
         t, t1, t0 = rec.input("t"), rec.input("t1"), rec.input("t0")
-        h = t - t1
-        only = rec.input("first")
-        inverse = 1.0 / rec.where(only, 1.0, t1 - t0)
-        q = rec.where(only, 0.0, h * inverse)
+        h, apart = t - t1, t1 - t0
+        near = rec.at_most(abs(h), _FARTHEST * abs(apart))
+        usable = rec.where(rec.input("first"), 0.0, near)
+        inverse = rec.where(usable, 1.0 / apart, 0.0)
+        q = h * inverse
         more = q + 1.0
         for k in range(self.n):
             x1, x0 = rec.input(f"w{k}"), rec.input(f"q{k}")
