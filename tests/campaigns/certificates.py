@@ -14,7 +14,7 @@ from linkwork.numerics.certificate import Bounds, Majorant, Radii, bounds, expan
 from tests.campaigns.positions import Placed
 from tests.oracles.balls import BallTable, ball, certainly_above, exactly, newton
 
-__all__ = ["Verdict", "judge"]
+__all__ = ["Case", "Verdict", "judge", "judge_case"]
 
 Array = npt.NDArray[np.float64]
 
@@ -33,7 +33,7 @@ class Verdict:
 
 
 @dataclass(frozen=True)
-class _Case:
+class Case:
     """A position with its certificate: A, the uncertainty of the known variables, the claims."""
 
     placed: Placed
@@ -76,11 +76,11 @@ def judge(positions: Iterable[Placed], seed: int, starts: int = 40) -> Verdict:
         if case is None:
             verdict.counts["J singular to rounding"] += 1
             continue
-        _judge(rng, case, starts, verdict, f"{placed.kind}, seed {seed}, position {number}: ")
+        judge_case(rng, case, starts, verdict, f"{placed.kind}, seed {seed}, position {number}: ")
     return verdict
 
 
-def _case(rng: np.random.Generator, placed: Placed, number: int) -> _Case | None:
+def _case(rng: np.random.Generator, placed: Placed, number: int) -> Case | None:
     table = placed.table
     n = table.unknowns
     v = placed.v.copy()
@@ -107,7 +107,7 @@ def _case(rng: np.random.Generator, placed: Placed, number: int) -> _Case | None
         table = replace(table, variable_scale=weights)
         placed = replace(placed, table=table)
     claimed = bounds(table, v[None, :], jacobian, matrix[None], known[None, :])
-    return _Case(
+    return Case(
         placed=placed,
         balls=BallTable(table),
         v=v,
@@ -118,9 +118,11 @@ def _case(rng: np.random.Generator, placed: Placed, number: int) -> _Case | None
     )
 
 
-def _judge(
-    rng: np.random.Generator, case: _Case, starts: int, verdict: Verdict, where: str
+def judge_case(
+    rng: np.random.Generator, case: Case, starts: int, verdict: Verdict, where: str
 ) -> None:
+    """Referee one position with its certificate; without ``starts`` only whether a root is there."""
+
     def false(claim: str) -> None:
         verdict.false.append(where + claim)
 
@@ -131,8 +133,9 @@ def _judge(
     if case.known.any():
         shifts += [corner, -corner, rng.uniform(-1, 1, p)]
         verdict.counts["uncertain inputs"] += 1
-    _constants(rng, case, shifts, false)
-    _lipschitz(rng, case, shifts, false)
+    if starts:
+        _constants(rng, case, shifts, false)
+        _lipschitz(rng, case, shifts, false)
     if not case.radii.holds[0]:
         verdict.counts["not proved"] += 1
         return
@@ -145,11 +148,11 @@ def _judge(
             continue
         exact = root if exact is None else exact
         _radii(case, root, false)
-    if exact is not None:
+    if exact is not None and starts:
         _alone(rng, case, exact, starts, verdict, false)
 
 
-def _constants(rng: np.random.Generator, case: _Case, shifts: list[Array], false: object) -> None:
+def _constants(rng: np.random.Generator, case: Case, shifts: list[Array], false: object) -> None:
     """Y, Z0 exactly evaluated at known values inside their intervals; ω at x0 in closed form."""
     assert callable(false)
     b, w = case.bounds, case.balls.weights
@@ -178,7 +181,7 @@ def _constants(rng: np.random.Generator, case: _Case, shifts: list[Array], false
             false(f"second derivatives of row {i} within {rho} are larger than ω")
 
 
-def _lipschitz(rng: np.random.Generator, case: _Case, shifts: list[Array], false: object) -> None:
+def _lipschitz(rng: np.random.Generator, case: Case, shifts: list[Array], false: object) -> None:
     """‖A (J(x) - J(y))‖ ≤ ω(ρ) ‖x - y‖ at random pairs within ρ, in floats."""
     assert callable(false)
     n, table, w = case.n, case.placed.table, case.weights
@@ -201,7 +204,7 @@ def _lipschitz(rng: np.random.Generator, case: _Case, shifts: list[Array], false
         false("A J changes faster than ω")
 
 
-def _radii(case: _Case, root: list[arb], false: object) -> None:
+def _radii(case: Case, root: list[arb], false: object) -> None:
     """The true root lies within r- and within the radius of each unknown."""
     assert callable(false)
     for k in range(case.n):
@@ -214,7 +217,7 @@ def _radii(case: _Case, root: list[arb], false: object) -> None:
 
 def _alone(
     rng: np.random.Generator,
-    case: _Case,
+    case: Case,
     root: list[arb],
     starts: int,
     verdict: Verdict,

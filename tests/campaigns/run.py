@@ -11,6 +11,7 @@ from time import perf_counter
 from tests.campaigns.certificates import judge
 from tests.campaigns.circuits import circuit_campaign
 from tests.campaigns.configurations import configuration_campaign
+from tests.campaigns.lanes import judge_lane_steps, judge_lanes
 from tests.campaigns.motion import sweep_campaign
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.steps import judge_steps
@@ -41,6 +42,13 @@ def _steps(part: int) -> tuple[Counter[str], list[str]]:
     return verdict.counts, verdict.false
 
 
+def _lanes(part: int) -> tuple[Counter[str], list[str]]:
+    tables = range(part * _PART, (part + 1) * _PART)
+    verdict = judge_lanes(tables, part, thorough=16)
+    verdict.add(judge_lane_steps(tables, part))
+    return verdict.counts, verdict.false
+
+
 def _motion(part: int) -> tuple[Counter[str], list[str]]:
     tally = sweep_campaign(range(part * _PART, (part + 1) * _PART))
     return tally.counts, tally.wrong
@@ -58,6 +66,7 @@ def _circuits(part: int) -> tuple[Counter[str], list[str]]:
 CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {
     "certificates": (_certificates, 10_000),
     "steps": (_steps, 1_000),
+    "lanes": (_lanes, 1_000),
     "motion": (_motion, 10_000),
     "configurations": (_configurations, 450),
     "circuits": (_circuits, 500),

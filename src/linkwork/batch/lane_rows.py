@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from linkwork.motion.tracking import turns_freely
 __all__ = ["DesignRows", "design_rows"]
 
 _ON_PATH = 1e-12
+_UNIT = float(np.finfo(float).eps) / 2.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -80,12 +81,13 @@ def design_rows(designs: Designs, *, certify: bool, threads: int = 1) -> DesignR
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Path:
-    """The straight line through the table's inputs: u = origin + rate t."""
+    """The straight line through the table's inputs: u = origin + rate t; ``size``: of a step."""
 
     model: Model
     lead: int
     origin: Array
     rate: Array
+    size: float
 
     @classmethod
     def of(cls, model: Model) -> _Path | None:
@@ -95,7 +97,18 @@ class _Path:
             return None
         lead, rate = lock_step(model.rows)
         drive = Drive.through(model, model.rows[0], rate, lead)
-        return cls(model=model, lead=lead, origin=drive.path.origin, rate=drive.path.rate)
+        path = drive.path
+        return cls(model=model, lead=lead, origin=path.origin, rate=path.rate, size=path.size)
+
+    def spread(self, start: Array) -> Array:
+        """How far inputs asked for, or computed on the way from ``start`` (D,), are off, (p,)."""
+        t = self.model.rows[:, self.lead]
+        gap = np.abs(self.model.rows - (self.origin + np.outer(t, self.rate))).max(axis=0)
+        farthest = max(np.abs(t).max(), np.abs(start[np.isfinite(start)]).max(initial=0.0))
+        rounds = (self.origin != 0.0) & (self.rate != 0.0)
+        size = np.abs(self.origin) + np.abs(self.rate) * farthest
+        spread: Array = gap + np.where(rounds, 4.0 * _UNIT * size, 0.0)
+        return spread
 
     def fill(self, designs: Designs, found: DesignRows, certify: bool, threads: int) -> BoolArray:
         """Designs that went through all rows are filled in; which they are, (D,)."""
@@ -139,7 +152,8 @@ class _March:
         compiled, model = path.model.compiled, path.model
         n = compiled.solver.unknowns
         self.coefficients = _coefficients(path, designs)
-        self.zeros = {name for name, values in self.coefficients.items() if not values.any()}
+        fine = designs.problem == 0
+        self.zeros = {name for name, values in self.coefficients.items() if not values[fine].any()}
         parts = [
             BlockPart(equations=block.equations, unknowns=tuple(block.unknowns.tolist()))
             for block in compiled.solver.blocks
@@ -173,15 +187,24 @@ class _March:
         self.dead_points[:, stopped] = np.where(np.isinf(limits), np.nan, limits)
         return done, reached
 
-    def _marched(self, t: Array, v: Array, radius: Array, where: IndexArray | slice) -> LaneRows:
+    def _marched(
+        self,
+        t: Array,
+        v: Array,
+        radius: Array,
+        where: IndexArray | slice,
+        apart: float = 0.0,
+    ) -> LaneRows:
+        """Rows at values of t that may be ``apart`` from those that are meant."""
         found = LaneRows.over(v, radius if self.certify else radius[:0], self.kernel)
         coefficients = {name: values[where] for name, values in self.coefficients.items()}
+        coefficients["u0.spread"] = coefficients["u0.spread"] + apart
         self.kernel.run(
             coefficients,
             self.guess[:, where],
             self.start[where],
             t,
-            Steps(),
+            Steps().times(self.path.size),
             found,
             self.threads,
         )
@@ -225,7 +248,9 @@ class _March:
             return
         mine = stopped[those]
         own, radii = np.empty((len(v), len(t), len(mine))), np.empty((len(t), len(mine)))
-        further = self._marched(moved, own, radii, mine)
+        # neither 2π nor the sum is exact
+        apart = 4.0 * _UNIT * (float(np.abs(t).max()) + abs(turns) * FULL_TURN)
+        further = self._marched(moved, own, radii, mine, apart)
         row, column = np.nonzero(further.reached & ~reached[:, mine])
         v[:, row, mine[column]] = own[:, row, column]
         radius[row, mine[column]] = radii[row, column]
@@ -257,17 +282,40 @@ def _coefficients(path: _Path, designs: Designs) -> dict[str, Array]:
     for k, turns in enumerate(path.model.compiled.table.turns):
         if not turns:
             found[f"scale{k}"] = designs.length_scale
+    spread = path.spread(designs.start[:, path.model.compiled.solver.unknowns + path.lead])
     for j, (origin, rate) in enumerate(zip(path.origin, path.rate, strict=True)):
         found[f"u{j}.origin"] = np.full(len(designs), origin)
         found[f"u{j}.rate"] = np.full(len(designs), rate)
+        found[f"u{j}.spread"] = np.full(len(designs), spread[j])
     return found
+
+
+def _at_shared_inputs(designs: Designs, k: int) -> Model:
+    """A design by itself with the family's table, should its own depend on what varies."""
+    base, model = designs.base, designs.design(k)
+    if np.array_equal(model.everyday_rows, base.everyday_rows):
+        return model
+    number = base.description.numbers
+    inputs = tuple(
+        replace(
+            which,
+            **{
+                end: number(value)
+                for end in ("start", "stop", "step")
+                if (value := getattr(which, end)) is not None
+            },
+        )
+        for which in base.description.inputs
+    )
+    description = replace(model.description, inputs=inputs)
+    return Model(description, model.equations, model.compiled, model.skeleton, model.branch)
 
 
 def _alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
     """One design by the ordinary sweep."""
     found.alone[k] = True
     try:
-        motion = sweep(designs.design(k), certify=certify)
+        motion = sweep(_at_shared_inputs(designs, k), certify=certify)
     except LinkworkError:  # what is wrong with it is told by ``designs.message``
         found.v[:, :, k] = found.radius[:, k] = np.nan
         found.status[:, k] = Status.NO_START.code

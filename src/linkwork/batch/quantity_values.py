@@ -141,7 +141,7 @@ class QuantityValues:
         table = self.model.compiled.points
         number = {own: k for k, own in enumerate(table.names)}
         parent = self.equations.points[name].parent
-        place: ComplexArray = np.where(self._lost, np.nan, 0.0).astype(complex)
+        place: ComplexArray = np.where(self._lost, complex(np.nan, np.nan), 0j)
         for term in np.flatnonzero(table.rows.row == number[name]):
             place = place + self._term(int(term))
         return place if parent is None else place + self._point(parent)

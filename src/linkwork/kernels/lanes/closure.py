@@ -8,17 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence, Set
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
-from linkwork.foundation.arrays import IndexArray
+from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.kernels.lanes.program import Recorder, Value
 from linkwork.kernels.loop_table import LoopTable
 
 __all__ = ["BlockPart", "Closure", "Linear", "Phase", "phasor_name", "solved", "turned"]
 
 Pair = tuple[Value | float, Value | float]
-#: Variables with their weights; empty for a fixed direction.
+#: Variables with their weights, one twice only where adding these would round; empty for a fixed
+#: direction.
 Phase = tuple[tuple[int, float], ...]
 
 
@@ -138,7 +140,7 @@ class Closure:
             x: Value | float = 0.0
             y: Value | float = 0.0
             for term in self.terms[k]:
-                weight = dict(self.phases.get(term, ())).get(variable, 0.0)
+                weight = sum(w for k, w in self.phases.get(term, ()) if k == variable)
                 if weight:
                     a, b = self.whole(term)
                     x, y = rec.subtract(x, weight * b), rec.add(y, weight * a)
@@ -167,12 +169,22 @@ class Closure:
         return sorted(found - set(self.part.unknowns))
 
 
-def _phases(terms: IndexArray, variables: IndexArray, weights: np.ndarray) -> dict[int, Phase]:
-    found: dict[int, dict[int, float]] = {}
+def _phases(terms: IndexArray, variables: IndexArray, weights: Array) -> dict[int, Phase]:
+    """The phase of each term; weights of one variable are added where that rounds nothing."""
+    found: dict[int, list[tuple[int, float]]] = {}
     for t, k, w in zip(terms.tolist(), variables.tolist(), weights.tolist(), strict=True):
-        phase = found.setdefault(t, {})
-        phase[k] = phase.get(k, 0.0) + w
-    return {t: tuple(sorted((k, w) for k, w in p.items() if w)) for t, p in found.items()}
+        found.setdefault(t, []).append((k, w))
+    return {t: _merged(phase) for t, phase in found.items()}
+
+
+def _merged(phase: Sequence[tuple[int, float]]) -> Phase:
+    merged: list[tuple[int, float]] = []
+    for variable in sorted({k for k, _ in phase}):
+        mine = [w for k, w in phase if k == variable]
+        total = sum(mine)
+        exact = Fraction(total) == sum(map(Fraction, mine))
+        merged += [(variable, total)] if exact else [(variable, w) for w in sorted(mine)]
+    return tuple((k, w) for k, w in merged if w)
 
 
 def phasor_name(part: str, phase: Phase) -> str:

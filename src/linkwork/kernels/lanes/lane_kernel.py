@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -38,6 +38,15 @@ class Steps:
     most_turn: float = float(np.radians(40.0))
     most_correction: float = 0.1
     most_drift: float = 0.5
+
+    def times(self, size: float) -> Steps:
+        """For a path whose natural step is so many times longer: a length for lengths."""
+        return replace(
+            self,
+            first=size * self.first,
+            largest=size * self.largest,
+            smallest=size * self.smallest,
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -8,6 +8,7 @@ by name, one number per lane each; ``.s`` is a role:
 ``e<k>.s``                how far the true position may be from there
 ``side<b>.s``             det J of a block
 ``u<j>``                  inputs at the trial, u = ``u<j>.origin`` + ``u<j>.rate`` t
+``u<j>.spread``           how far the inputs of a row may be from those, beside their own rounding
 ``a1`` … ``b3``           weights of the nodes' unknowns and derivatives in the prediction
 ``scale<k>``              weights of variables that are lengths
 ``live<b>``               1.0 where block b still iterates
@@ -201,7 +202,7 @@ class _Writer:
             if k < self.n:
                 near[k], far[k] = rec.input(f"e{k}.0"), rec.input(f"y{k}")
             else:
-                near[k] = abs(closure.v[k]) * (4.0 * _UNIT)
+                near[k] = abs(closure.v[k]) * (4.0 * _UNIT) + rec.input(f"u{k - self.n}.spread")
                 far[k] = step * abs(self._rate(rec, k - self.n)) + 2.0 * near[k]
         for k, rate in zip(part.unknowns, proof.rates(self._moved), strict=True):
             rec.write(f"d{k}.0", rate)
@@ -223,7 +224,10 @@ class _Writer:
         """``good``: where everything is proved."""
         rec = Recorder()
         blocks = range(len(self.parts))
-        rec.write("good", rec.all_of([rec.input(f"ok{b}") for b in blocks]))
+        masks = [rec.input(f"ok{b}") for b in blocks]
+        # what has not converged may be proved, but its radius would be of no use
+        masks += [rec.at_most(rec.input(f"live{b}"), 0.0) for b in blocks]
+        rec.write("good", rec.all_of(masks))
         rec.write("radius", rec.largest(rec.input(f"radius{b}") for b in blocks))
         return rec
 

@@ -236,7 +236,8 @@ def march(  # type: ignore[no-untyped-def]
             if m < 0:
                 continue
             moved = abs(w[t0, i] - w[t1, i])
-            taken = w[good, i] > 0.5
+            lost = moved == 0.0 and w[t0, i] != rows[row[i]]  # a step lost in rounding
+            taken = w[good, i] > 0.5 and not lost
             if taken:
                 if w[t0, i] == rows[row[i]]:
                     r = row[i]

@@ -8,6 +8,7 @@ their own; the rest are scratch. One and the same program is run by the interpre
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -119,7 +120,8 @@ class Recorder:
 
     def constant(self, value: float) -> Value:
         """The same number in every lane."""
-        return self._new(Op.CONSTANT, payload=float(value))
+        number = float(value)
+        return self._new(Op.CONSTANT, payload=number if number == number else math.nan)
 
     def write(self, name: str, value: Value | float) -> None:
         """Leave a value in a named register when the program has run."""
@@ -200,7 +202,8 @@ class Recorder:
         """x / y."""
         a, b = self._number(x), self._number(y)
         if a is not None and b is not None:
-            return self.constant(a / b)
+            with np.errstate(all="ignore"):  # as in a lane: infinite, or not a number
+                return self.constant(float(np.divide(a, b)))
         if b is not None and b and abs(np.frexp(b)[0]) == 0.5:  # exact for powers of two
             return self.multiply(x, 1.0 / b)
         if a == 0.0:
@@ -346,16 +349,33 @@ class _Lowering:
         target = self._direct_targets(order)
         code: list[tuple[int, int, int, int, int]] = []
         for position, k in enumerate(order):
-            op = rec.ops[k]
-            if op is Op.COS:  # written by its sine
-                continue
-            code.append(self._instruction(k, target))
+            if rec.ops[k] is not Op.COS:  # which its sine has written
+                code.append(self._instruction(k, target))
             self._release(k, position)
-        for name, value in rec.writes.items():
-            here, there = self._register(value), self.registers.of(name)
-            if here != there:
-                code.append((int(Op.COPY), there, here, there, there))
+        code += self._copies()
         return Program(code=np.array(code, dtype=np.uint32).reshape(len(code), 5), height=self.top)
+
+    def _copies(self) -> list[tuple[int, int, int, int, int]]:
+        """What is left to be written to named registers, in an order in which all sources still
+        hold what they held; where they go round in a circle, one is put aside.
+        """
+        left = {
+            self.registers.of(name): self._register(value)
+            for name, value in self.recorder.writes.items()
+        }
+        left = {there: here for there, here in left.items() if here != there}
+        found: list[tuple[int, int, int, int, int]] = []
+        while left:
+            read = set(left.values())
+            there = next((there for there in left if there not in read), None)
+            if there is None:
+                there = next(iter(left))
+                aside, self.top = self.top, self.top + 1
+                found.append((int(Op.COPY), aside, there, aside, aside))
+                left = {to: aside if here == there else here for to, here in left.items()}
+            here = left.pop(there)
+            found.append((int(Op.COPY), there, here, there, there))
+        return found
 
     def _needed(self) -> set[int]:
         rec, todo, found = self.recorder, list(self.recorder.writes.values()), set[int]()
@@ -416,6 +436,9 @@ class _Lowering:
         """
         rec = self.recorder
         position = {k: p for p, k in enumerate(order)}
+        for k in order:
+            if rec.ops[k] is Op.COS:
+                position[k] = position[rec.arguments[k][0]]
         found: dict[int, int] = {}
         self.in_place: set[int] = set()
         for name, value in rec.writes.items():
@@ -440,9 +463,9 @@ class _Lowering:
     def _register(self, k: int) -> int:
         rec = self.recorder
         if rec.ops[k] is Op.INPUT:
-            return self.registers.of(str(rec.payload[k]))
+            return self.registers.of(_name(rec.payload[k]))
         if rec.ops[k] is Op.CONSTANT:
-            return self.registers.of_constant(float(str(rec.payload[k])))
+            return self.registers.of_constant(_constant(rec.payload[k]))
         return self.place[k]
 
     def _new_place(self, k: int, target: Mapping[int, int]) -> int:
@@ -496,8 +519,18 @@ def reserve(recorder: Recorder, registers: Registers) -> None:
     """Give every name and constant of a recording its register."""
     for op, payload in zip(recorder.ops, recorder.payload, strict=True):
         if op is Op.INPUT:
-            registers.of(str(payload))
+            registers.of(_name(payload))
         elif op is Op.CONSTANT:
-            registers.of_constant(float(str(payload)))
+            registers.of_constant(_constant(payload))
     for name in recorder.writes:
         registers.of(name)
+
+
+def _name(payload: object) -> str:
+    assert isinstance(payload, str)
+    return payload
+
+
+def _constant(payload: object) -> float:
+    assert isinstance(payload, float)
+    return payload

@@ -15,11 +15,11 @@ import numpy as np
 from linkwork.kernels.lanes.closure import Closure, Phase, solved
 from linkwork.kernels.lanes.program import Recorder, Value
 
-__all__ = ["BlockProof", "Found"]
+__all__ = ["BlockProof", "Constants", "Found"]
 
 _UNIT = float(np.finfo(float).eps) / 2.0
 _SLACK = 1.0 + 1e-12
-_PHASOR = 14.0  # roundings in one term: sine and cosine, products
+_PHASOR = 14.0  # roundings in one term: sine and cosine (2.5 each), products
 _ROOM = 1e-9  # 1 - Z below which nothing is proved
 _TINY = 1e-300
 
@@ -39,7 +39,7 @@ class Found:
 
 
 @dataclass(frozen=True, eq=False)
-class _Constants:
+class Constants:
     """One row of the proof in units of its weight; the Lipschitz constant is ω + ρ ``bent``."""
 
     y: Value
@@ -163,10 +163,14 @@ class BlockProof:
 
     def within(self, known: Mapping[int, Value]) -> Found:
         """The proof for every value of the known variables so far from theirs."""
-        spread = _Spread(self, known)
-        return self._radii([spread.constants(i) for i in range(self.count)])
+        return self._radii(self.constants(known))
 
-    def _radii(self, rows: Sequence[_Constants]) -> Found:
+    def constants(self, known: Mapping[int, Value]) -> list[Constants]:
+        """Y, Z and ω row by row for known variables within some distance (own units)."""
+        spread = _Spread(self, known)
+        return [spread.constants(i) for i in range(self.count)]
+
+    def _radii(self, rows: Sequence[Constants]) -> Found:
         """Existence and uniqueness from the constants, as ``numerics.certificate.radii``."""
         rec = self.rec
         y, z = rec.largest(row.y for row in rows), rec.largest(row.z for row in rows)
@@ -215,14 +219,14 @@ class _Spread:
         """How far a phase turns when some variables move."""
         return self.rec.total([moves[k] * abs(w) for k, w in phase if k in among])
 
-    def constants(self, i: int) -> _Constants:
+    def constants(self, i: int) -> Constants:
         """Row i."""
         proof, rec = self.proof, self.rec
         z, omega, bent = self._bending(i)
         y = rec.add(proof.residual[i], self._shift(i))
         weight = proof.scale[proof.unknowns[i]]
         per = rec.divide(_SLACK, weight)
-        return _Constants(*(rec.multiply(x, per) for x in (y, z, omega, bent)))
+        return Constants(*(rec.multiply(x, per) for x in (y, z, omega, bent)))
 
     def _shift(self, i: int) -> Value:
         """By how much the known variables may move the solution: along slopes, or as a whole."""
@@ -317,4 +321,4 @@ class _Rounding:
         size = rec.total([constant, *[abs(closure.v[k]) * abs(w) for k, w in entries]])
         spread = rec.total([self.scale[k] * abs(w) for k, w in entries])
         error = rec.multiply(_UNIT * (len(entries) + 4.0), size)
-        return error, rec.multiply(_UNIT * (self.products + 2.0), spread)
+        return error, rec.multiply(_UNIT * (self.products + len(entries)), spread)

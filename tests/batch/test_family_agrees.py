@@ -1,0 +1,277 @@
+"""Families against the ordinary sweep of every design: row by row, name by name."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from flint import arb
+
+import linkwork as lw
+from linkwork.batch import Family
+from linkwork.batch.family_motion import FamilyMotion
+from linkwork.batch.quantities import quantities
+from linkwork.foundation.certification import Certification
+from linkwork.foundation.status import Status
+from linkwork.motion import sweep
+from linkwork.motion.model import Model
+from linkwork.results.motion import Motion
+from tests.oracles.balls import BallTable, exactly, newton
+
+Array = npt.NDArray[np.float64]
+DRIVEN = [name for name in lw.examples() if lw.example(name).description.inputs]
+#: What the compiled march does not lead through all rows, and why.
+ALONE = {
+    "antiparallelogram": "folds",
+    "cam-roller-follower": "a law",
+    "curved-slot": "a law",
+    "excavator": "the guess lies beside the table's path",
+    "five-bar-robot": "the guess lies beside the table's path",
+    "three-rpr": "the guess lies beside the table's path",
+}
+
+
+def family_of(name: str, *factors: float) -> Family:
+    """A mechanism with its first number times some factors."""
+    mechanism = lw.example(name)
+    own = mechanism.description
+    quantity = next(q for q in quantities(own) if abs(q.of(own)) > 1e-9)
+    return mechanism.family({quantity.name: quantity.of(own) * np.array(factors)})
+
+
+def by_itself(family: Family, k: int, certify: bool = True) -> Motion:
+    """A design's own sweep, over the table that all of the family share."""
+    model = family.designs.design(k)
+    base = family.designs.base
+    if not np.array_equal(model.everyday_rows, base.everyday_rows):
+        number = base.description.numbers
+        inputs = tuple(
+            replace(
+                which, start=number(which.start), stop=number(which.stop), step=number(which.step)
+            )
+            for which in base.description.inputs
+        )
+        description = replace(model.description, inputs=inputs)
+        model = Model(description, model.equations, model.compiled, model.skeleton, model.branch)
+    return sweep(model, certify=certify)
+
+
+def assert_agrees(family: Family, motion: FamilyMotion, certify: bool = True) -> None:
+    """Statuses, certification, unknowns and everything named, design by design."""
+    for k in range(len(family)):
+        if family.designs.problem[k]:
+            assert (motion.status[k] == Status.NO_START.code).all()
+            assert not motion.found[k].any()
+            assert np.isnan(motion.rows.v[:, :, k]).all()
+            assert motion.message(k)
+            continue
+        alone = by_itself(family, k, certify)
+        asked = alone.asked
+        status = np.array([status.code for status in alone.status])[asked]
+        np.testing.assert_array_equal(motion.status[k], status)
+        told = np.array([c.code for c in alone.certification])[asked]
+        np.testing.assert_array_equal(motion.certification[k], told)
+        np.testing.assert_array_equal(motion.found[k], alone.found[asked])
+        np.testing.assert_array_equal(motion.certified[k], alone.certified[asked])
+        proved = motion.certified[k]
+        assert (motion.radius[k][proved] < 1e-3).all()
+        _assert_same_place(family, motion, k, alone)
+        _assert_same_names(family, motion, k, alone)
+
+
+def _assert_same_place(family: Family, motion: FamilyMotion, k: int, alone: Motion) -> None:
+    n = family.designs.base.compiled.solver.unknowns
+    weights = family.designs.design(k).compiled.solver.variable_scale[:n]
+    own, other = motion.rows.v[:, :, k].T, alone.q[alone.asked]
+    assert np.isnan(own[~motion.found[k]]).all()
+    radius = np.where(motion.certified[k], motion.radius[k] + alone.radius[alone.asked], 1e-9)
+    off = np.abs((own - other) / weights).max(axis=1, initial=0.0)[motion.found[k]]
+    assert (off <= radius[motion.found[k]]).all()
+
+
+def _assert_same_names(family: Family, motion: FamilyMotion, k: int, alone: Motion) -> None:
+    there, scale = motion.found[k], max(float(family.designs.length_scale[k]), 360.0)
+    tables = (alone.inputs, alone.unknowns, alone.links, alone.sliders, alone.outputs)
+    places = [f"{point}.{axis}" for point in alone.points for axis in "xy"]
+    for name in dict.fromkeys([*(name for table in tables for name in table), *places]):
+        own, other = motion[name], alone[name][alone.asked]
+        assert own.shape == motion.status.shape
+        np.testing.assert_allclose(
+            own[k][there], other[there], rtol=1e-9, atol=1e-9 * scale, err_msg=name
+        )
+        if name not in alone.inputs:
+            assert np.isnan(own[k][~there]).all(), name
+        else:
+            np.testing.assert_array_equal(own[k], other)
+    for point in family.designs.base.equations.points:
+        place = motion.trace(point)[k]
+        np.testing.assert_array_equal(place.real, motion[f"{point}.x"][k])
+        np.testing.assert_array_equal(place.imag, motion[f"{point}.y"][k])
+
+
+# ------------------------------------------------------------------ the library
+
+
+@pytest.mark.parametrize("name", DRIVEN)
+def test_library_mechanisms_move_together_as_each_by_itself(name: str) -> None:
+    family = family_of(name, 0.999, 1.001)
+    motion = family.sweep()
+    assert motion.status.shape == motion.radius.shape == (2, len(motion.inputs))
+    assert_agrees(family, motion)
+    fine = family.designs.problem == 0
+    if name not in ALONE and motion.found[fine].all():
+        assert not motion.rows.alone.any()
+        assert motion.certified[fine].all()
+
+
+def test_nobody_is_named_as_going_alone_who_does_not() -> None:
+    for name in ALONE:
+        assert family_of(name, 0.999).sweep(certify=False).rows.alone.all(), name
+
+
+@pytest.mark.parametrize("name", ["four-bar", "jansen-leg", "slider-crank", "chebyshev", "evans"])
+def test_without_proofs_the_motions_are_the_same(name: str) -> None:
+    family = family_of(name, 0.99, 1.0, 1.01)
+    motion = family.sweep(certify=False)
+    assert_agrees(family, motion, certify=False)
+    assert (motion.certification == Certification.NOT_ASKED.code).all()
+    assert np.isnan(motion.radius).all()
+
+
+@pytest.mark.parametrize("name", ["andrews-squeezer", "klann-leg", "slider-input", "rack-steering"])
+def test_every_radius_of_the_library_holds_a_true_position(name: str) -> None:
+    family = family_of(name, 0.998, 1.002)
+    motion = family.sweep()
+    rng = np.random.default_rng(5)
+    for k in range(len(family)):
+        model = family.designs.design(k)
+        balls = BallTable(model.compiled.table)
+        n = model.compiled.solver.unknowns
+        for row in rng.choice(np.flatnonzero(motion.certified[k]), 4, replace=False):
+            v = [*motion.rows.v[:, row, k], *model.rows[row]]
+            root, proved = newton(balls, exactly(v))
+            assert proved
+            for i in range(n):
+                off = abs(root[i] - arb(float(v[i])))
+                assert off <= arb(float(motion.radius[k, row])) * balls.weights[i]
+
+
+# ------------------------------------------------------------------ trouble
+
+
+def test_designs_with_limits_change_points_problems_and_without_numbers() -> None:
+    four_bar = lw.example("four-bar")  # 40, 120, 80, 100
+    family = four_bar.family({"A B": [120.0, 60.0, 100.0, 40.0, math.nan, 1e4, 120.0, -5.0]})
+    motion = family.sweep()
+    assert_agrees(family, motion)
+    assert motion.found[[0, 6]].all()  # good ones among bad ones
+    told = {Status.of_code(int(code)) for code in np.unique(motion.status)}
+    assert {Status.CONVERGED, Status.OUT_OF_REACH, Status.NO_START} <= told
+    assert motion.counts.total() == motion.status.size
+
+
+def test_change_points_stop_designs_as_they_do_by_themselves() -> None:
+    family = lw.example("parallelogram").family({"O2 A": [40.0, 40.001, 39.9]})
+    motion = family.sweep()
+    assert_agrees(family, motion)
+    assert Status.CHANGE_POINT.code in motion.status
+
+
+def test_descending_tables_and_starts_outside_the_table() -> None:
+    four_bar = lw.example("four-bar")
+    for start, stop, step in ((200.0, 100.0, -5.0), (400.0, 700.0, 7.0), (-700.0, -400.0, 9.0)):
+        driven = four_bar.driven_by(link="crank", start=start, stop=stop, step=step)
+        family = driven.family({"A B": [119.0, 120.0, 121.0]})
+        motion = family.sweep()
+        assert_agrees(family, motion)
+        assert motion.certified.all()
+        assert not motion.rows.alone.any()
+
+
+def two_inputs(begin: float, there: float) -> lw.Mechanism:
+    """A five-bar whose cranks turn in lock-step, the second through zero."""
+    return lw.loops(
+        angle="rad",
+        loops={"1": "r*e^(i*a) + l*e^(i*p) = g + r*e^(i*b) + l*e^(i*q)"},
+        dimensions={"r": 1.0, "l": 2.0, "g": 1.5},
+        guess={"a": begin, "b": there, "p": 0.7, "q": 2.0},
+        inputs=(
+            lw.Input(variable="a", start=begin, stop=begin + 0.2, step=0.01),
+            lw.Input(variable="b", start=there, stop=there + 0.2, step=0.01),
+        ),
+    )
+
+
+def test_two_inputs_in_lock_step_are_proved_at_the_inputs_asked_for() -> None:
+    # the line through the inputs is u = there - begin + t: rounded by far more than u itself
+    mechanism = two_inputs(2000.0, -0.1)
+    family = mechanism.family({"l": [2.0, 2.01]})
+    motion = family.sweep()
+    assert not motion.rows.alone.any()
+    assert motion.certified.all()
+    assert_agrees(family, motion)
+    for k in range(2):
+        model = family.designs.design(k)
+        balls = BallTable(model.compiled.table)
+        for row in range(0, len(motion.inputs), 4):
+            v = [*motion.rows.v[:, row, k], *model.rows[row]]
+            root, proved = newton(balls, exactly(v))
+            assert proved
+            off = max(abs(x - arb(float(y))) for x, y in zip(root[:2], v[:2], strict=True))
+            assert off <= arb(float(motion.radius[k, row]))
+
+
+def test_rows_a_whole_turn_away_count_the_rounding_of_two_pi() -> None:
+    # a rocker that reaches ±100°: rows near 360° are found a turn away, near 0
+    rocker = lw.loops(
+        loops={"1": "r*e^(i*a) + l*e^(i*p) = g + h*e^(i*q)"},
+        dimensions={"r": 2.0, "l": 1.5, "g": 2.5, "h": 2.0},
+        guess={"a": 10, "p": 40, "q": 100},
+        inputs=lw.Input(variable="a", start=0, stop=360, step=1),
+    )
+    family = rocker.family({"l": [1.5, 1.51]})
+    motion = family.sweep()
+    assert_agrees(family, motion)
+    for k in range(2):
+        rows = np.flatnonzero(motion.certified[k] & (motion.inputs[:, 0] > 300))
+        assert len(rows)
+        model = family.designs.design(k)
+        balls = BallTable(model.compiled.table)
+        for row in rows[::5]:
+            v = [*motion.rows.v[:, row, k], *model.rows[row]]
+            root, proved = newton(balls, exactly(v))
+            assert proved
+            off = max(abs(x - arb(float(y))) for x, y in zip(root[:2], v[:2], strict=True))
+            assert off <= arb(float(motion.radius[k, row]))
+
+
+def test_all_designs_keep_to_the_table_of_the_family() -> None:
+    # the range of the input depends on what varies: 180/n - 90 to 90 - 180/n
+    family = lw.example("geneva-drive").family({"n": [4.0, 5.0, 6.0]})
+    motion = family.sweep()
+    assert_agrees(family, motion)
+    mechanism = two_inputs(1.0, 0.5).changed(
+        dimensions={"r": 1.0, "l": 2.0, "g": 1.5, "top": 1.2},
+        inputs=(
+            lw.Input(variable="a", start=1.0, stop="top", step=0.01),
+            lw.Input(variable="b", start=0.6, stop=0.6),
+        ),
+    )  # whose guess lies beside the table: every design goes alone
+    family = mechanism.family({"top": [1.2, 1.3, 1.1]})
+    motion = family.sweep()
+    assert motion.rows.alone.all()
+    assert motion.found.all()
+    np.testing.assert_allclose(motion["p"][1], motion["p"][0], rtol=0, atol=1e-9)
+
+
+def test_threads_and_parts_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    family = lw.example("slider-crank").family({"A B": np.linspace(90.0, 110.0, 150)})
+    whole = family.sweep(threads=1)
+    monkeypatch.setattr("linkwork.kernels.lanes.lane_kernel._PART", 64)
+    parted = family.sweep(threads=3)
+    np.testing.assert_array_equal(parted.rows.v, whole.rows.v)
+    np.testing.assert_array_equal(parted.radius, whole.radius)
+    np.testing.assert_array_equal(parted.status, whole.status)
