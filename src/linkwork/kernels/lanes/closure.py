@@ -48,6 +48,8 @@ class Closure:
         All N variables of the table.
     zeros : set of str
         Coefficients that are zero in every design: nothing is computed with them.
+    shared : bool
+        Whether the phasors of phases that only inputs turn stand in registers of their own.
     """
 
     def __init__(
@@ -57,9 +59,11 @@ class Closure:
         recorder: Recorder,
         variables: Sequence[Value],
         zeros: Set[str] = frozenset(),
+        *,
+        shared: bool = False,
     ) -> None:
         self.table, self.part, self.rec, self.v = table, part, recorder, variables
-        self.zeros = zeros
+        self.zeros, self.shared = zeros, shared
         loops = table.loops
         self.loops = [k for k in part.equations if k < loops.rows]
         self.lines = [k - loops.rows for k in part.equations if k >= loops.rows]
@@ -77,16 +81,15 @@ class Closure:
     def _turned(self, phase: Phase) -> Pair:
         if not phase:
             return 1.0, 0.0
-        if self.given(phase):
-            return self.rec.input(phasor_name("cos", phase)), self.rec.input(
-                phasor_name("sin", phase)
-            )
+        if self.shared and self.given(phase):
+            names = (phasor_name(part, phase) for part in ("cos", "sin"))
+            cosine, sine = (self.rec.input(name) for name in names)
+            return cosine, sine
         return turned(self.rec, self.v, phase)
 
     def given(self, phase: Phase) -> bool:
-        """Whether only inputs turn a phase: its phasor is computed once for all blocks."""
-        given = set(range(self.table.unknowns, self.table.variables)) - set(self.part.unknowns)
-        return bool(phase) and all(k in given for k, _ in phase)
+        """Whether only inputs turn a phase: its phasor is the same in all blocks."""
+        return bool(phase) and all(k >= self.table.unknowns for k, _ in phase)
 
     def coefficient(self, term: int) -> Pair:
         """A term's complex coefficient; parts that are zero in every design are left out."""

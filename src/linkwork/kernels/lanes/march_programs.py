@@ -115,7 +115,7 @@ class _Writer:
 
     def _closure(self, number: int, rec: Recorder) -> Closure:
         part = self.parts[number]
-        return Closure(self.table, part, rec, self._variables(rec), self.zeros)
+        return Closure(self.table, part, rec, self._variables(rec), self.zeros, shared=True)
 
     def predict(self) -> Recorder:
         """The polynomial through the last nodes with their derivatives; the inputs at t."""
