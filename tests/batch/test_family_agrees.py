@@ -52,7 +52,9 @@ def by_itself(family: Family, k: int, certify: bool = True) -> Motion:
     if not np.array_equal(model.everyday_rows, base.everyday_rows):
         number = base.description.numbers
         inputs = tuple(
-            replace(which, start=number(which.start), stop=number(which.stop), step=number(which.step))
+            replace(
+                which, start=number(which.start), stop=number(which.stop), step=number(which.step)
+            )
             for which in base.description.inputs
         )
         description = replace(model.description, inputs=inputs)

@@ -105,7 +105,9 @@ def _claims(found: Mapping[str, Array], n: int, weights: Array) -> LaneClaims:
     holds, alone = found["holds"] > 0.5, rows("alone")
     bounds = Bounds(y=rows("y."), z=rows("z."), omega=rows("o."), omega_slope=rows("b."))
     unique = np.where(holds, (alone / weights).min(axis=1), 0.0)
-    radii = Radii(holds=holds, exists=found["radius"], unique=unique, each=rows("each"), alone=alone)
+    radii = Radii(
+        holds=holds, exists=found["radius"], unique=unique, each=rows("each"), alone=alone
+    )
     inverse = np.stack([rows(f"a{i}.") for i in range(n)], axis=1)
     return LaneClaims(bounds=bounds, radii=radii, inverse=inverse)
 
@@ -133,7 +135,9 @@ def judge_lanes(parts: range, seed: int, lanes: int = LANES, thorough: int = 2) 
     return verdict
 
 
-def _lanes_of(rng: np.random.Generator, placed: Placed, lanes: int) -> tuple[list[LoopTable], Array]:
+def _lanes_of(
+    rng: np.random.Generator, placed: Placed, lanes: int
+) -> tuple[list[LoopTable], Array]:
     """The same equations with other coefficients: every second place is not quite a position."""
     table, n = placed.table, placed.table.unknowns
     tables, places = [], []
@@ -223,9 +227,7 @@ def _with_one_input(table: LoopTable, v: Array) -> LoopTable:
             length[t] = -1
     phases, entries = ~held[rows.phase_variable], ~held[linear.variable]
     constant = linear.constant.copy()
-    np.add.at(
-        constant, linear.row[~entries], (linear.weight * v[linear.variable])[~entries]
-    )
+    np.add.at(constant, linear.row[~entries], (linear.weight * v[linear.variable])[~entries])
     return replace(
         table,
         loops=replace(

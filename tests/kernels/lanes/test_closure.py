@@ -58,9 +58,7 @@ def test_residual_and_jacobian_are_those_of_the_table(seed: int) -> None:
     part = BlockPart(equations=chosen, unknowns=tuple(range(table.unknowns)))
     closure = Closure(table, part, rec, variables, zeros_of(table))
     columns = list(range(table.variables))
-    for i, (f, row) in enumerate(
-        zip(closure.residual(), closure.jacobian(columns), strict=True)
-    ):
+    for i, (f, row) in enumerate(zip(closure.residual(), closure.jacobian(columns), strict=True)):
         rec.write(f"f{i}", f)
         for k, x in enumerate(row):
             rec.write(f"j{i},{k}", x)
@@ -102,7 +100,7 @@ def test_weights_of_one_variable_are_added_only_where_that_rounds_nothing() -> N
 
 def solutions(matrices: Array, sides: Array, structural: Array) -> tuple[Array, Array]:
     """X (M, n, s) and det (M,) by the recorded solver; ``structural`` (n, n): known zeros."""
-    count, n, _ = matrices.shape
+    n = matrices.shape[1]
     rec = Recorder()
     given = {f"a{i},{k}": matrices[:, i, k] for i in range(n) for k in range(n)}
     given |= {f"b{s},{i}": sides[:, i, s] for s in range(sides.shape[2]) for i in range(n)}

@@ -112,7 +112,9 @@ def test_operations_may_write_over_what_they_read() -> None:
 def near_quarters(rng: np.random.Generator, count: int) -> Array:
     """Floats next to multiples of π/4 up to a million."""
     ctx.prec = 200
-    quarters = [float((arb.pi() / 4 * int(k)).mid()) for k in rng.integers(-1270000, 1270000, count)]
+    quarters = [
+        float((arb.pi() / 4 * int(k)).mid()) for k in rng.integers(-1270000, 1270000, count)
+    ]
     x = np.array(quarters)
     moved = x + rng.choice([-1.0, 0.0, 1.0], count) * np.spacing(np.abs(x))
     return np.where(rng.random(count) < 0.8, moved, x + 1e-6 * rng.normal(size=count))
