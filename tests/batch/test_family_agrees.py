@@ -25,13 +25,16 @@ Array = npt.NDArray[np.float64]
 DRIVEN = [name for name in lw.examples() if lw.example(name).description.inputs]
 #: What the compiled march does not lead through all rows, and why.
 ALONE = {
-    "antiparallelogram": "folds",
     "cam-roller-follower": "a law",
     "curved-slot": "a law",
+    "garage-door": "the guess lies beside the table's path",
     "excavator": "the guess lies beside the table's path",
     "five-bar-robot": "the guess lies beside the table's path",
+    "kempe-translator": "the guess lies beside the table's path",
     "three-rpr": "the guess lies beside the table's path",
 }
+#: Tables that end right at a dead point: the steps in front of it get too small for the march.
+NEARLY_DEAD = ("chebyshev",)
 
 
 def family_of(name: str, *factors: float) -> Family:
@@ -122,7 +125,7 @@ def test_library_mechanisms_move_together_as_each_by_itself(name: str) -> None:
     assert motion.status.shape == motion.radius.shape == (2, len(motion.inputs))
     assert_agrees(family, motion)
     fine = family.designs.problem == 0
-    if name not in ALONE and motion.found[fine].all():
+    if name not in (*ALONE, *NEARLY_DEAD) and motion.found[fine].all():
         assert not motion.rows.alone.any()
         assert motion.certified[fine].all()
 
@@ -174,7 +177,9 @@ def test_designs_with_limits_change_points_problems_and_without_numbers() -> Non
 
 
 def test_change_points_stop_designs_as_they_do_by_themselves() -> None:
-    family = lw.example("parallelogram").family({"O2 A": [40.0, 40.001, 39.9]})
+    mechanism = lw.example("parallelogram").driven_by(link="crank", start=5, stop=355, step=5)
+    length = mechanism.description.lengths["O2 A"]
+    family = mechanism.family({"O2 A": length * np.array([1.0, 1.0001, 0.99])})
     motion = family.sweep()
     assert_agrees(family, motion)
     assert Status.CHANGE_POINT.code in motion.status
@@ -191,23 +196,23 @@ def test_descending_tables_and_starts_outside_the_table() -> None:
         assert not motion.rows.alone.any()
 
 
-def two_inputs(begin: float, there: float) -> lw.Mechanism:
-    """A five-bar whose cranks turn in lock-step, the second through zero."""
+def two_inputs(begin: float, there: float, slow: float = 1.0) -> lw.Mechanism:
+    """A five-bar whose cranks turn in lock-step, the first so many times slower."""
     return lw.loops(
         angle="rad",
         loops={"1": "r*e^(i*a) + l*e^(i*p) = g + r*e^(i*b) + l*e^(i*q)"},
         dimensions={"r": 1.0, "l": 2.0, "g": 1.5},
         guess={"a": begin, "b": there, "p": 0.7, "q": 2.0},
         inputs=(
-            lw.Input(variable="a", start=begin, stop=begin + 0.2, step=0.01),
+            lw.Input(variable="a", start=begin, stop=begin + 0.2 / slow, step=0.01 / slow),
             lw.Input(variable="b", start=there, stop=there + 0.2, step=0.01),
         ),
     )
 
 
 def test_two_inputs_in_lock_step_are_proved_at_the_inputs_asked_for() -> None:
-    # the line through the inputs is u = there - begin + t: rounded by far more than u itself
-    mechanism = two_inputs(2000.0, -0.1)
+    # b = 1e4 (a - 1) + 0.1: the rounding of a is that of b times 1e4
+    mechanism = two_inputs(1.0, 0.1, slow=1e4)
     family = mechanism.family({"l": [2.0, 2.01]})
     motion = family.sweep()
     assert not motion.rows.alone.any()
@@ -225,14 +230,8 @@ def test_two_inputs_in_lock_step_are_proved_at_the_inputs_asked_for() -> None:
 
 
 def test_rows_a_whole_turn_away_count_the_rounding_of_two_pi() -> None:
-    # a rocker that reaches ±100°: rows near 360° are found a turn away, near 0
-    rocker = lw.loops(
-        loops={"1": "r*e^(i*a) + l*e^(i*p) = g + h*e^(i*q)"},
-        dimensions={"r": 2.0, "l": 1.5, "g": 2.5, "h": 2.0},
-        guess={"a": 10, "p": 40, "q": 100},
-        inputs=lw.Input(variable="a", start=0, stop=360, step=1),
-    )
-    family = rocker.family({"l": [1.5, 1.51]})
+    # a crank that reaches ±131°: rows from 229° on are found a turn away
+    family = lw.example("four-bar").family({"A B": [50.0, 40.0]})
     motion = family.sweep()
     assert_agrees(family, motion)
     for k in range(2):

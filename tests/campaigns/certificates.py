@@ -121,7 +121,7 @@ def _case(rng: np.random.Generator, placed: Placed, number: int) -> Case | None:
 def judge_case(
     rng: np.random.Generator, case: Case, starts: int, verdict: Verdict, where: str
 ) -> None:
-    """Referee one position with its certificate; without ``starts`` only whether a root is there."""
+    """Referee one position; without ``starts`` only whether a root is where one is claimed."""
 
     def false(claim: str) -> None:
         verdict.false.append(where + claim)

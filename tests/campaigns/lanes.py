@@ -351,16 +351,15 @@ def _proved_here(
     for name, values in given.items():
         put(name, values[0])
     put("u0.spread", 0.0)
-    put("active", 1.0)
     put("live0", 0.0)
     for at, before in ((node, node), (node, node), (trial, node)):  # the node's own proof first
         for k in range(n):
-            put(f"v{k}", at[:, k])
-            put(f"w{k}", before[:, k])
-            put(f"x{k}", space[reg.named[f"e{k}"], :count] if f"e{k}" in reg.named else 0.0)
-        put(f"v{n}", at[:, n])
-        put("t", at[:, n])
-        put("t1", before[:, n])
+            put(f"x{k}.0", at[:, k])
+            put(f"x{k}.1", before[:, k])
+            put(f"e{k}.1", space[reg.named[f"e{k}.0"], :count])
+        put("t.0", at[:, n])
+        put("t.1", before[:, n])
+        run(_phasors(programs), space)
         for program in (*programs.prove, programs.judge):
             run(program.code, space)
         own = space[reg.named["good"], :count] > 0.5
@@ -368,3 +367,10 @@ def _proved_here(
             proved_node = own
     found: npt.NDArray[np.bool_] = own & proved_node
     return found
+
+
+def _phasors(programs: MarchPrograms) -> npt.NDArray[np.uint32]:
+    """The part of the prediction that turns phasors by the input: after the unknowns' own."""
+    code = programs.predict.code
+    unknowns = {programs.registers.named[name] for name in programs.registers.named if name[0] == "x"}
+    return code[[int(target) not in unknowns for target in code[:, 1]]]

@@ -84,9 +84,8 @@ class Family:
         """The motions of so many designs at a time, in order; memory stays bounded."""
         if designs < 1:
             raise InputError(f"a part needs at least one design, got {designs}")
-        for first in range(0, len(self), designs):
-            part = self.take(slice(first, first + designs))
-            yield part.sweep(certify=certify, threads=threads)
+        parts = (self.take(slice(k, k + designs)) for k in range(0, len(self), designs))
+        return (part.sweep(certify=certify, threads=threads) for part in parts)
 
     def reduced(
         self,
@@ -120,8 +119,11 @@ class Family:
             for name, several in wanted.items()
             for reduction in (several if isinstance(several, tuple) else (several,))
         ]
-        found: dict[str, list[Array]] = {key: [] for _, key, _ in columns}
-        found |= {"found": [], "certified": []}
+        nothing = self.take(slice(0)).sweep(certify=False)
+        for name in wanted:
+            nothing[name]  # what does not exist is refused before anything is computed
+        found: dict[str, list[Array]] = {key: [np.empty(0)] for _, key, _ in columns}
+        found |= {"found": [np.empty(0, dtype=int)], "certified": [np.empty(0, dtype=int)]}
         for part in self.parts(certify=certify, threads=threads):
             for name, key, function in columns:
                 value = np.asarray(function(part[name]), dtype=float)

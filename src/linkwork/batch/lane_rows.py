@@ -15,6 +15,7 @@ from linkwork.foundation.status import Status
 from linkwork.kernels.lanes.closure import BlockPart
 from linkwork.kernels.lanes.folding import dead_points
 from linkwork.kernels.lanes.lane_kernel import LaneKernel, LaneRows, Steps
+from linkwork.mechanism.parts import Input
 from linkwork.motion import sweep
 from linkwork.motion.drive import Drive
 from linkwork.motion.lock_step import lock_step
@@ -295,20 +296,17 @@ def _at_shared_inputs(designs: Designs, k: int) -> Model:
     base, model = designs.base, designs.design(k)
     if np.array_equal(model.everyday_rows, base.everyday_rows):
         return model
-    number = base.description.numbers
-    inputs = tuple(
-        replace(
-            which,
-            **{
-                end: number(value)
-                for end in ("start", "stop", "step")
-                if (value := getattr(which, end)) is not None
-            },
-        )
-        for which in base.description.inputs
-    )
+    inputs = tuple(_with_plain_range(base, which) for which in base.description.inputs)
     description = replace(model.description, inputs=inputs)
     return Model(description, model.equations, model.compiled, model.skeleton, model.branch)
+
+
+def _with_plain_range(base: Model, which: Input) -> Input:
+    start, stop, step = (
+        None if value is None else base.description.numbers(value)
+        for value in (which.start, which.stop, which.step)
+    )
+    return replace(which, start=start, stop=stop, step=step)
 
 
 def _alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:

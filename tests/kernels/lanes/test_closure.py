@@ -100,7 +100,7 @@ def test_weights_of_one_variable_are_added_only_where_that_rounds_nothing() -> N
 
 def solutions(matrices: Array, sides: Array, structural: Array) -> tuple[Array, Array]:
     """X (M, n, s) and det (M,) by the recorded solver; ``structural`` (n, n): known zeros."""
-    count, n, _ = matrices.shape
+    n = matrices.shape[1]
     rec = Recorder()
     given = {f"a{i},{k}": matrices[:, i, k] for i in range(n) for k in range(n)}
     given |= {f"b{s},{i}": sides[:, i, s] for s in range(sides.shape[2]) for i in range(n)}

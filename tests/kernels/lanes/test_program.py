@@ -64,8 +64,9 @@ def test_zeros_ones_and_signs_cost_nothing() -> None:
     assert rec.is_zero(a * 0.0)
     assert rec.is_zero(rec.divide(0.0, a))
     assert rec.is_zero(rec.total([]))
-    for same in (a + 0.0, 0.0 + a, a - 0.0, a * 1.0, 1.0 * a, -(-a), (-a) * -1.0, a / 1.0):
+    for same in (a + 0.0, 0.0 + a, a - 0.0, a * 1.0, 1.0 * a, (-a) * -1.0, a / 1.0):
         assert same.number == a.number
+    assert rec.negate(-a).number == a.number
     assert (a + (-b)).number == (a - b).number
     assert ((-a) + b).number == (b - a).number
     assert (a - (-b)).number == (a + b).number

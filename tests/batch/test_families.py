@@ -1,0 +1,219 @@
+"""What families are asked: parts, numbers per design, labelled arrays; and what they refuse."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import linkwork as lw
+from linkwork.batch import Family, FamilyMotion, designs_of
+from linkwork.foundation.errors import InputError, UnknownNameError
+from linkwork.foundation.status import Status
+
+Array = npt.NDArray[np.float64]
+CRANKS = np.array([40.0, 41.0, 110.0, 39.0, math.nan, 42.0])
+
+
+@pytest.fixture(scope="module")
+def family() -> Family:
+    """Three whole circles, one with limits, one without a number, one whole circle."""
+    return lw.example("four-bar").family({"O2 A": CRANKS})
+
+
+@pytest.fixture(scope="module")
+def motion(family: Family) -> FamilyMotion:
+    return family.sweep()
+
+
+# ------------------------------------------------------------------ numbers per design
+
+
+def test_reductions_leave_out_rows_without_a_position(family: Family, motion: FamilyMotion) -> None:
+    found = family.reduced({"B.x": ("min", "max", "mean", "stroke")})
+    values = motion["B.x"]
+    assert np.isnan(values[2]).any()
+    for k in range(len(family)):
+        there = values[k][~np.isnan(values[k])]
+        if not len(there):
+            for name in ("min", "max", "mean", "stroke"):
+                assert math.isnan(found[f"B.x.{name}"][k])
+            continue
+        assert found["B.x.min"][k] == there.min()
+        assert found["B.x.max"][k] == there.max()
+        assert found["B.x.stroke"][k] == there.max() - there.min()
+        assert found["B.x.mean"][k] == pytest.approx(there.mean(), rel=1e-12)
+    np.testing.assert_array_equal(found["found"], motion.found.sum(axis=1))
+    np.testing.assert_array_equal(found["certified"], motion.certified.sum(axis=1))
+    assert list(found) == ["B.x.min", "B.x.max", "B.x.mean", "B.x.stroke", "found", "certified"]
+
+
+def test_reductions_may_be_functions_and_stand_alone(family: Family, motion: FamilyMotion) -> None:
+    def last(values: Array) -> Array:
+        return values[:, -1]
+
+    found = family.reduced(
+        {"rocker": last, "B.y": "max", "coupler": (last, lambda values: values[:, 0])},
+        certify=False,
+    )
+    np.testing.assert_allclose(found["rocker.last"], motion["rocker"][:, -1], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(found["coupler.<lambda>"], motion["coupler"][:, 0], atol=1e-9)
+    assert "B.y.max" in found
+    assert not found["certified"].any()
+
+
+def test_reductions_do_not_depend_on_the_parts(
+    family: Family, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = family.reduced({"rocker": ("min", "mean")})
+    monkeypatch.setattr("linkwork.batch.family._PART", 4)
+    monkeypatch.setattr(Family.parts, "__defaults__", (4,))
+    parted = family.reduced({"rocker": ("min", "mean")})
+    for key, values in whole.items():
+        np.testing.assert_allclose(parted[key], values, rtol=0, atol=1e-12, err_msg=key)
+
+
+def test_reductions_of_no_use_are_refused(family: Family) -> None:
+    told = 'there is no reduction "median" (there are: min, max, mean, stroke)'
+    with pytest.raises(InputError, match=re.escape(told)):
+        family.reduced({"rocker": "median"})
+    with pytest.raises(UnknownNameError, match='there is no "rokcer"'):
+        family.take(slice(0)).reduced({"rokcer": "max"})
+    told = "rocker.<lambda> needs one number per design (6,), got (6, 361)"
+    with pytest.raises(InputError, match=re.escape(told)):
+        family.reduced({"rocker": lambda values: values})
+
+
+# ------------------------------------------------------------------ parts
+
+
+def test_parts_are_the_whole_in_order(family: Family, motion: FamilyMotion) -> None:
+    parts = list(family.parts(4, threads=1))
+    assert [len(part) for part in parts] == [4, 2]
+    np.testing.assert_array_equal(np.concatenate([part.status for part in parts]), motion.status)
+    np.testing.assert_allclose(
+        np.concatenate([part["B.x"] for part in parts]), motion["B.x"], rtol=0, atol=1e-12
+    )
+    with pytest.raises(InputError, match="a part needs at least one design, got 0"):
+        family.parts(0)
+
+
+def test_some_designs_are_a_family(family: Family, motion: FamilyMotion) -> None:
+    for index in ([5, 0], CRANKS < 41.5, slice(1, 6, 2)):
+        some = family.take(index)
+        np.testing.assert_array_equal(some.dimensions["O2 A"], CRANKS[index])
+        np.testing.assert_allclose(
+            some.sweep()["rocker"], motion["rocker"][index], rtol=0, atol=1e-12
+        )
+
+
+def test_no_designs_have_no_motions() -> None:
+    none = lw.example("four-bar").family({"O2 A": []})
+    assert len(none) == 0
+    motion = none.sweep()
+    assert motion.status.shape == motion["rocker"].shape == (0, 361)
+    assert motion.counts == {}
+    assert list(none.parts()) == []
+    found = none.reduced({"rocker": ("min", "stroke")})
+    assert {key: values.shape for key, values in found.items()} == dict.fromkeys(
+        ("rocker.min", "rocker.stroke", "found", "certified"), (0,)
+    )
+
+
+def test_what_would_not_fit_into_memory_is_refused(
+    family: Family, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("linkwork.batch.family._MOST_BYTES", 6 * 361 * 3 * 8 - 1)
+    told = "6 designs × 361 rows take 0 GiB: go through family.parts(), or ask for"
+    with pytest.raises(InputError, match=re.escape(told)):
+        family.sweep()
+    monkeypatch.setattr("linkwork.batch.family._MOST_BYTES", 6 * 361 * 3 * 8)
+    assert len(family.sweep(certify=False)) == 6
+
+
+# ------------------------------------------------------------------ results
+
+
+def test_shapes_and_codes(family: Family, motion: FamilyMotion) -> None:
+    shape = (6, 361)
+    for array in (
+        motion.status,
+        motion.found,
+        motion.certification,
+        motion.certified,
+        motion.radius,
+        motion["rocker"],
+        motion["crank"],
+        motion.trace("B"),
+    ):
+        assert array.shape == shape
+    assert motion.found.dtype == motion.certified.dtype == bool
+    np.testing.assert_array_equal(motion.found, motion.status == Status.CONVERGED.code)
+    assert (motion.certified <= motion.found).all()
+    np.testing.assert_array_equal(np.isnan(motion["rocker"]), ~motion.found)
+    np.testing.assert_array_equal(np.isfinite(motion.radius), motion.certified)
+    assert len(motion) == 6
+    assert motion.counts[Status.CONVERGED] == motion.found.sum()
+    assert "6 designs × 361 inputs" in repr(motion)
+    assert "6 designs with their own O2 A" in repr(family)
+    assert motion.message(0) == ""
+    assert motion.message(4)
+    np.testing.assert_array_equal(motion.dimensions["O2 A"], CRANKS)
+
+
+def test_names_are_spelled_as_users_do_and_unknown_ones_are_told(motion: FamilyMotion) -> None:
+    turning = lw.loops(
+        loops={"1": "r*e^(i*theta) = x + i*y"},
+        dimensions={"r": 2.0},
+        guess={"theta": 30, "x": 1.0, "y": 1.0},
+        inputs=lw.Input(variable="theta", start=0, stop=90, step=30),
+    )
+    turned = turning.family({"r": [1.0, 2.0]}).sweep()
+    np.testing.assert_array_equal(turned["θ"], [[0.0, 30.0, 60.0, 90.0]] * 2)
+    with pytest.raises(UnknownNameError, match=re.escape('there is no "B.z"')):
+        motion["B.z"]
+    with pytest.raises(UnknownNameError, match=re.escape('there is no point "X"')):
+        motion.trace("X")
+
+
+def test_labelled_arrays_hold_the_same_with_units(motion: FamilyMotion) -> None:
+    data = motion.to_xarray()
+    assert dict(data.sizes) == {"design": 6, "crank": 361}
+    for name in ("rocker", "coupler", "B.x"):
+        np.testing.assert_array_equal(data[name].values, motion[name])
+    assert data["rocker"].attrs["units"] == "deg"
+    assert data["crank"].attrs["units"] == "deg"
+    np.testing.assert_array_equal(data["O2 A"].values, CRANKS)
+    np.testing.assert_array_equal(data["status"].values, motion.status)
+    np.testing.assert_array_equal(data["certified"].values, motion.certified)
+    assert f"{Status.OUT_OF_REACH.code} OUT_OF_REACH" in data["status"].attrs["meaning"]
+    few = motion.to_xarray("B.y")
+    assert set(few.data_vars) == {"B.y", "status", "certified", "O2 A"}
+
+
+def test_outputs_and_angles_of_designs_follow_their_own_numbers() -> None:
+    mechanism = lw.loops(
+        loops={"1": "r*e^(i*t) = x + i*y"},
+        dimensions={"r": 2.0},
+        guess={"t": 30, "x": 1.0, "y": 1.0},
+        inputs=lw.Input(variable="t", start=0, stop=360, step=30),
+        outputs={"double": "2*r + x"},
+    )
+    radii = np.array([1.0, 2.0, 5.0])
+    motion = mechanism.family({"r": radii}).sweep()
+    angle = np.radians(np.arange(0, 361, 30))
+    expected = radii[:, None] * (2 + np.cos(angle))
+    np.testing.assert_allclose(motion["double"], expected, rtol=1e-12)
+
+
+def test_designs_and_families_are_made_of_the_same() -> None:
+    mechanism = lw.example("slider-crank")
+    lengths = np.array([39.0, 40.0])
+    name = next(iter(mechanism.description.lengths))
+    family, designs = mechanism.family({name: lengths}), designs_of(mechanism, {name: lengths})
+    np.testing.assert_array_equal(family.designs.loops, designs.loops)
+    with pytest.raises(UnknownNameError):
+        mechanism.family({"no such": [1.0]})
