@@ -372,5 +372,7 @@ def _proved_here(
 def _phasors(programs: MarchPrograms) -> npt.NDArray[np.uint32]:
     """The part of the prediction that turns phasors by the input: after the unknowns' own."""
     code = programs.predict.code
-    unknowns = {programs.registers.named[name] for name in programs.registers.named if name[0] == "x"}
+    unknowns = {
+        programs.registers.named[name] for name in programs.registers.named if name[0] == "x"
+    }
     return code[[int(target) not in unknowns for target in code[:, 1]]]
