@@ -176,8 +176,8 @@ def _too_wide(text: str) -> list[str]:
 
 #: Their circuits take more than five seconds; those of the others show every form of the page.
 COSTLY = {
-    "beam-engine", "dixon-one", "dixon-two", "double-butterfly", "excavator", "scissor-lift",
-    "trotbot-leg",
+    "beam-engine", "dixon-one", "dixon-two", "double-butterfly", "excavator", "jansen-leg",
+    "kempe-translator", "pantograph", "scissor-lift", "trotbot-leg",
 }  # fmt: skip
 
 
