@@ -134,8 +134,8 @@ def test_a_guess_at_a_dead_point_does_not_stand_for_its_interval() -> None:
 #: Their circuits take seconds: coupled loops, or many circuits.
 COSTLY = frozenset({
     "beam-engine", "dixon-one", "dixon-two", "double-butterfly", "excavator", "hart-inversor",
-    "jansen-leg", "kempe-translator", "pantograph", "peaucellier", "scissor-lift", "stephenson-valve-gear",
-    "three-rpr-platform", "trotbot-leg",
+    "jansen-leg", "kempe-translator", "pantograph", "peaucellier", "scissor-lift",
+    "stephenson-valve-gear", "three-rpr-platform", "trotbot-leg",
 })  # fmt: skip
 
 
