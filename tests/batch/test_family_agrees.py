@@ -274,3 +274,37 @@ def test_threads_and_parts_change_nothing(monkeypatch: pytest.MonkeyPatch) -> No
     np.testing.assert_array_equal(parted.rows.v, whole.rows.v)
     np.testing.assert_array_equal(parted.radius, whole.radius)
     np.testing.assert_array_equal(parted.status, whole.status)
+
+
+def test_starts_at_dead_points_and_change_points() -> None:
+    flat = lw.loops(
+        loops={"1": "r*e^(i*a) + l*e^(i*p) = l*c + r*e^(i*q)"},
+        dimensions={"r": 1.0, "l": 3.0, "c": 1.0},
+        guess={"a": 0, "p": 0, "q": 0},
+        inputs=lw.Input(variable="a", start=0, stop=90, step=30),
+    )
+    dead = lw.loops(
+        loops={"1": "r*e^(i*t) + l*e^(i*p) = x"},
+        dimensions={"r": 1.0, "l": 3.0},
+        guess={"t": 0, "p": 0, "x": 4.0},
+        inputs=lw.Input(variable="x", start=4.0, stop=3.0, step=-0.25),
+    )
+    for mechanism in (flat, dead):
+        for certify in (True, False):
+            family = mechanism.family({"l": [3.0, 3.001]})
+            motion = family.sweep(certify=certify)
+            assert_agrees(family, motion, certify)
+            assert Status.START_SINGULAR.code in motion.status[0]
+
+
+def test_steps_that_are_lost_in_rounding_end_the_march() -> None:
+    # at 1e17 the next float is 16 away; a march that went on with steps of 1 would never end
+    far = lw.loops(
+        loops={"yoke": "y + i*z = x + i*r"},
+        dimensions={"r": 1.0},
+        guess={"y": 1e17, "z": 1.0, "x": 1e17},
+        inputs=lw.Input(variable="x", start=1e17, stop=1e17 + 1000, step=100),
+    )
+    motion = far.family({"r": [1.0, 2.0]}).sweep()
+    assert motion.rows.alone.all()
+    np.testing.assert_array_equal(motion.found.sum(axis=1), [1, 1])

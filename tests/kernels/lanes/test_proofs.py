@@ -101,3 +101,12 @@ def test_steps_to_another_branch_are_never_proved(part: int) -> None:
     assert verdict.false == []
     assert verdict.counts["wrong steps"] > 1000
     assert verdict.counts["right steps proved"] > 0.7 * verdict.counts["right steps"] > 70
+
+
+def test_angles_too_large_for_sine_and_cosine_prove_nothing() -> None:
+    placed = random_position(4)  # links that turn
+    n = placed.table.unknowns
+    places = placed.v + np.array([0.0, 1e5, 1e7, 1e9, 1e15])[:, None]
+    tables = [closed(placed.table, place) for place in places]
+    found = claims(tables, places, np.zeros((5, placed.table.variables - n)))
+    assert found.radii.holds.tolist() == [True, True, False, False, False]
