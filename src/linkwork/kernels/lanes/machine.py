@@ -12,11 +12,18 @@ import math
 import numba  # noqa: TID253 - this module is loaded when a family is solved
 import numpy as np
 
-__all__ = ["LANES", "compiled", "run"]
+__all__ = ["LANES", "compiled", "compiled_for", "run"]
 
 LANES = 64
 
-compiled = numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, nogil=True)
+_OPTIONS = {"cache": True, "error_model": "numpy", "fastmath": {"contract"}, "nogil": True}
+compiled = numba.njit(**_OPTIONS)
+
+
+def compiled_for(signature: str):  # type: ignore[no-untyped-def]
+    """Compiled once, for these types; else every layout of an array has a compilation of its own."""
+    return numba.njit(signature, **_OPTIONS)
+
 
 _TWO_OVER_PI = 2.0 / math.pi
 # π/2 in three parts, of 33 bits each the first two: n times them is exact for |n| ≤ 2^20

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from linkwork.kernels.lanes.machine import LANES, compiled, run
+from linkwork.kernels.lanes.machine import LANES, compiled, compiled_for, run
 
 __all__ = ["PREDICT", "begin", "march"]
 
@@ -110,7 +110,11 @@ def begin(code, spans, w, common, live, coefficients, design, guesses, guess, st
             found[member] = fine
 
 
-@compiled
+@compiled_for(
+    "void(uint32[:,::1], int64[:,::1], float64[:,::1], int64[::1], int64[::1], int64[::1],"
+    "float64[:,::1], int64[::1], float64[:,::1], boolean[::1], float64[::1], float64[::1],"
+    "int64[::1], float64[:,:,:], float64[:,:], boolean[:,:], float64[:,:], float64[:,:,:])"
+)
 def march(  # type: ignore[no-untyped-def]
     code,
     spans,
