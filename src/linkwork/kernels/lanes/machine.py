@@ -21,7 +21,7 @@ compiled = numba.njit(**_OPTIONS)
 
 
 def compiled_for(signature: str):  # type: ignore[no-untyped-def]
-    """Compiled once, for these types; else every layout of an array has a compilation of its own."""
+    """Compiled once for all layouts of the arrays that a signature leaves open."""
     return numba.njit(signature, **_OPTIONS)
 
 
