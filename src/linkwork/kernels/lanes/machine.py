@@ -16,13 +16,15 @@ __all__ = ["LANES", "compiled", "compiled_for", "run"]
 
 LANES = 64
 
-_OPTIONS = {"cache": True, "error_model": "numpy", "fastmath": {"contract"}, "nogil": True}
-compiled = numba.njit(**_OPTIONS)
+
+def compiled_for(signature: str | None):  # type: ignore[no-untyped-def]
+    """Compiled once for all layouts of the arrays that a signature leaves open; ``None``: for
+    every layout that is met.
+    """
+    return numba.njit(signature, cache=True, error_model="numpy", fastmath={"contract"}, nogil=True)
 
 
-def compiled_for(signature: str):  # type: ignore[no-untyped-def]
-    """Compiled once for all layouts of the arrays that a signature leaves open."""
-    return numba.njit(signature, **_OPTIONS)
+compiled = compiled_for(None)
 
 
 _TWO_OVER_PI = 2.0 / math.pi
