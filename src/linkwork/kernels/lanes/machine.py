@@ -12,11 +12,20 @@ import math
 import numba  # noqa: TID253 - this module is loaded when a family is solved
 import numpy as np
 
-__all__ = ["LANES", "compiled", "run"]
+__all__ = ["LANES", "compiled", "compiled_for", "run"]
 
 LANES = 64
 
-compiled = numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, nogil=True)
+
+def compiled_for(signature: str | None):  # type: ignore[no-untyped-def]
+    """Compiled once for all layouts of the arrays that a signature leaves open; ``None``: for
+    every layout that is met.
+    """
+    return numba.njit(signature, cache=True, error_model="numpy", fastmath={"contract"}, nogil=True)
+
+
+compiled = compiled_for(None)
+
 
 _TWO_OVER_PI = 2.0 / math.pi
 # π/2 in three parts, of 33 bits each the first two: n times them is exact for |n| ≤ 2^20

@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from linkwork.kernels.lanes.machine import LANES, compiled, run
+from linkwork.kernels.lanes.machine import LANES, compiled, compiled_for, run
 
 __all__ = ["begin", "march"]
 
@@ -139,7 +139,11 @@ def begin(code, spans, w, common, live, coefficients, design, nodes, guess, node
             found[member] = fine
 
 
-@compiled
+@compiled_for(
+    "void(uint32[:,:,::1], int64[:,::1], float64[:,::1], int64[::1], int64[::1], int64[::1],"
+    "float64[:,::1], int64[:,::1], float64[:,::1], boolean[::1], float64[::1], float64[::1],"
+    "int64, float64[:,:,:], float64[:,:], boolean[:,:], float64[:,:], float64[:,:,:])"
+)
 def march(  # type: ignore[no-untyped-def]
     codes, spans, w, common, live, coefficients, design, nodes, node, found,
     rows, steps, unknowns, out, radius, reached, end, last,
