@@ -11,12 +11,13 @@ import numpy.typing as npt
 from linkwork.kernels.lanes.closure import BlockPart, Closure
 from linkwork.kernels.lanes.machine import LANES, run
 from linkwork.kernels.lanes.march_programs import MarchPrograms, march_programs
-from linkwork.kernels.lanes.program import Recorder, Registers, Value, lowered, reserve
 from linkwork.kernels.lanes.proof_program import BlockProof, Found
+from linkwork.kernels.lanes.recorder import Recorder, Value
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.numerics.certificate import Bounds, Radii
 from tests.campaigns.certificates import Case, Verdict, judge_case
 from tests.campaigns.positions import Placed, closed, random_position
+from tests.kernels.lanes.running import ran
 from tests.oracles.balls import BallTable
 
 __all__ = ["LaneClaims", "claims", "coefficients_of", "judge_lane_steps", "judge_lanes"]
@@ -69,7 +70,7 @@ def claims(tables: list[LoopTable], v: Array, known: Array) -> LaneClaims:
     _write_found(rec, proof.within(spread))
     given |= {f"v{k}": v[:, k] for k in range(count)}
     given |= {f"d{k}": known[:, k - n] for k in range(n, count)}
-    return _claims(_ran(rec, given), n, np.stack([t.variable_scale[:n] for t in tables]))
+    return _claims(ran(rec, given), n, np.stack([t.variable_scale[:n] for t in tables]))
 
 
 def _write_found(rec: Recorder, found: Found) -> None:
@@ -78,24 +79,6 @@ def _write_found(rec: Recorder, found: Found) -> None:
     for i, (each, alone) in enumerate(zip(found.each, found.alone, strict=True)):
         rec.write(f"each{i}", each)
         rec.write(f"alone{i}", alone)
-
-
-def _ran(rec: Recorder, given: Mapping[str, Array]) -> dict[str, Array]:
-    registers = Registers()
-    reserve(rec, registers)
-    program = lowered(rec, registers, registers.count)
-    count = len(next(iter(given.values())))
-    found = {name: np.empty(count) for name in registers.named}
-    for first in range(0, count, LANES):
-        space = registers.filled(max(program.height, registers.count), LANES)
-        here = slice(first, min(first + LANES, count))
-        for name, values in given.items():
-            if name in registers.named:
-                space[registers.named[name], : here.stop - first] = values[here]
-        run(program.code, space)
-        for name, register in registers.named.items():
-            found[name][here] = space[register, : here.stop - first]
-    return found
 
 
 def _claims(found: Mapping[str, Array], n: int, weights: Array) -> LaneClaims:

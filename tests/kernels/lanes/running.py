@@ -7,8 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
+from linkwork.kernels.lanes.lowering import lowered, reserve
 from linkwork.kernels.lanes.machine import LANES, run
-from linkwork.kernels.lanes.program import Program, Recorder, Registers, lowered, reserve
+from linkwork.kernels.lanes.program import Program, Registers
+from linkwork.kernels.lanes.recorder import Recorder
 
 __all__ = ["ran", "with_registers"]
 

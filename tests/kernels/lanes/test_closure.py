@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 from linkwork.kernels.lanes.closure import BlockPart, Closure, solved
-from linkwork.kernels.lanes.program import Recorder, Value
+from linkwork.kernels.lanes.recorder import Recorder, Value
 from linkwork.kernels.loop_table import LoopTable
 from tests.campaigns.positions import random_position
 from tests.kernels.lanes.running import ran

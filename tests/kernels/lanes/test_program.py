@@ -11,7 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwork.kernels.lanes.program import Op, Program, Recorder, Registers, Value, lowered, reserve
+from linkwork.kernels.lanes.lowering import lowered, reserve
+from linkwork.kernels.lanes.program import Op, Program, Registers
+from linkwork.kernels.lanes.recorder import Recorder, Value
 from tests.kernels.lanes.running import ran, with_registers
 
 Array = npt.NDArray[np.float64]

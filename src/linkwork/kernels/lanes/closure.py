@@ -13,7 +13,7 @@ from fractions import Fraction
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.kernels.lanes.program import Recorder, Value
+from linkwork.kernels.lanes.recorder import Recorder, Value
 from linkwork.kernels.loop_table import LoopTable
 
 __all__ = ["BlockPart", "Closure", "Linear", "Phase", "phasor_name", "solved", "turned"]

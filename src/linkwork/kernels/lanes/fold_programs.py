@@ -18,8 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.kernels.lanes.closure import BlockPart, Closure, solved
-from linkwork.kernels.lanes.program import Program, Recorder, Registers, Value, lowered, reserve
+from linkwork.kernels.lanes.lowering import lowered, reserve
+from linkwork.kernels.lanes.program import Program, Registers
 from linkwork.kernels.lanes.proof_program import BlockProof
+from linkwork.kernels.lanes.recorder import Recorder, Value
 from linkwork.kernels.loop_table import LoopTable
 
 __all__ = ["FoldPrograms", "fold_programs"]

@@ -18,7 +18,7 @@ from linkwork.kernels.loop_table import LoopTable
 
 __all__ = ["LaneKernel", "LaneRows", "Steps"]
 
-_COMMON = ("live0", "good", "radius", "a1", "b1", "a2", "b2", "a3", "b3")
+_COMMON = ("good", "radius", "a1", "b1", "a2", "b2", "a3", "b3")
 _PART = 4096  # designs that one thread works on at a time
 
 

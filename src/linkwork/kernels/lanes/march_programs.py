@@ -37,8 +37,10 @@ from linkwork.kernels.lanes.closure import (
     solved,
     turned,
 )
-from linkwork.kernels.lanes.program import Program, Recorder, Registers, Value, lowered, reserve
+from linkwork.kernels.lanes.lowering import lowered, reserve
+from linkwork.kernels.lanes.program import Program, Registers
 from linkwork.kernels.lanes.proof_program import BlockProof
+from linkwork.kernels.lanes.recorder import Recorder, Value
 from linkwork.kernels.loop_table import LoopTable
 
 __all__ = ["ROLES", "MarchPrograms", "march_programs"]

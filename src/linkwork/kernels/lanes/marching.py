@@ -27,7 +27,7 @@ _FAR = 2.5  # times the step before: further ahead fewer nodes are trusted
 # where a program stands in the packed code
 PREDICT, JUDGE, BLOCKS = 0, 1, 2
 # registers that every topology has
-LIVE, GOOD, RADIUS, WEIGHTS = 0, 1, 2, 3
+GOOD, RADIUS, WEIGHTS = 0, 1, 2
 
 
 @compiled
@@ -98,7 +98,7 @@ def begin(code, spans, w, common, live, coefficients, design, nodes, guess, node
     ----------
     code, spans : all programs in one array, in the first turn; where each begins and ends
     w : (registers, LANES) workspace with constants and options in place
-    common : registers of live0, good, radius, a1, b1, a2, b2, a3, b3
+    common : registers of good, radius, a1, b1, a2, b2, a3, b3
     live : (B,) registers of the blocks' masks
     coefficients, design : (C,) registers and (C, M) what they hold
     nodes : (4, S) registers of positions, the time last

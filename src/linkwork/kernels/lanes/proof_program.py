@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.kernels.lanes.closure import Closure, Phase, solved
-from linkwork.kernels.lanes.program import Recorder, Value
+from linkwork.kernels.lanes.recorder import Recorder, Value
 
 __all__ = ["BlockProof", "Constants", "Found"]
 
