@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from linkwork.batch.designs import Designs
-from linkwork.batch.lane_rows import DesignRows
+from linkwork.batch.lane_rows import DesignRows, message_alone
 from linkwork.batch.quantity_values import QuantityValues
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
 from linkwork.foundation.certification import Certification
@@ -108,8 +108,12 @@ class FamilyMotion:
         return Counter({Status.of_code(code): number for code, number in pairs})
 
     def message(self, k: int) -> str:
-        """What is wrong with the k-th design as such, "" for nothing."""
-        return self.designs.message(k)
+        """Why rows of the k-th design have no position: what the design says by itself; "" if all
+        were found.
+        """
+        if self.found[k].all():
+            return ""
+        return self.designs.message(k) or message_alone(self.designs, k)
 
     def to_xarray(self, *names: str) -> Any:
         """An xarray Dataset over designs and inputs, with units.

@@ -22,7 +22,7 @@ from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
 
-__all__ = ["DesignRows", "design_rows"]
+__all__ = ["DesignRows", "design_rows", "message_alone"]
 
 _ON_PATH = 1e-12
 _UNIT = float(np.finfo(float).eps) / 2.0
@@ -34,7 +34,6 @@ class DesignRows:
 
     ``v`` (n, R, D): unknowns, NaN where there is no position. ``status``, ``certification``
     (R, D): codes. ``radius`` (R, D): of the proof, weighted; NaN without one.
-    ``dead_points`` (2, D): between which values of t a design moves, where the march found them.
     ``alone`` (D,): designs that were computed one at a time.
     """
 
@@ -42,7 +41,6 @@ class DesignRows:
     status: StatusArray
     certification: StatusArray
     radius: Array
-    dead_points: Array
     alone: BoolArray
 
     @classmethod
@@ -54,7 +52,6 @@ class DesignRows:
             status=np.full((rows, designs), Status.NO_START.code, dtype=np.int8),
             certification=np.full((rows, designs), none.code, dtype=np.int8),
             radius=np.empty((rows, designs)),
-            dead_points=np.full((2, designs), np.nan),
             alone=np.zeros(designs, dtype=bool),
         )
 
@@ -125,7 +122,6 @@ class _Path:
         march = _March(self, designs, served, certify, threads)
         whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
         self._note(found, reached[way], whole, certify)
-        found.dead_points[:] = march.dead_points
         return whole
 
     def _note(self, found: DesignRows, reached: BoolArray, whole: BoolArray, certify: bool) -> None:
@@ -163,7 +159,6 @@ class _March:
         self.guess = np.where(served, designs.start[:, :n].T, np.nan)  # else not found
         self.start = designs.start[:, n + path.lead].copy()
         self.free = turns_freely(model)
-        self.dead_points = np.full((2, len(designs)), np.nan)
 
     def through(self, t: Array, v: Array, radius: Array) -> tuple[BoolArray, BoolArray]:
         """March through increasing values of t.
@@ -185,7 +180,6 @@ class _March:
             self._wind(t, turns, v, radius, reached, stopped, limits)
         settled = self._settled(t, reached[:, stopped], limits)
         done[stopped[settled]] = True
-        self.dead_points[:, stopped] = np.where(np.isinf(limits), np.nan, limits)
         return done, reached
 
     def _marched(
@@ -314,7 +308,7 @@ def _alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
     found.alone[k] = True
     try:
         motion = sweep(_at_shared_inputs(designs, k), certify=certify)
-    except LinkworkError:  # what is wrong with it is told by ``designs.message``
+    except LinkworkError:  # told by ``message_alone``
         found.v[:, :, k] = found.radius[:, k] = np.nan
         found.status[:, k] = Status.NO_START.code
         none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
@@ -327,3 +321,11 @@ def _alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
         c.code for c, a in zip(motion.certification, asked, strict=True) if a
     ]
     found.radius[:, k] = motion.radius[asked]
+
+
+def message_alone(designs: Designs, k: int) -> str:
+    """What a design has to say of its own motion, or why it has none."""
+    try:
+        return sweep(_at_shared_inputs(designs, k), certify=False).message
+    except LinkworkError as error:
+        return str(error)
