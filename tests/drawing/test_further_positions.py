@@ -31,6 +31,7 @@ from linkwork.drawing.scene import text_width
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import DrivenPart
 from linkwork.results.motion import Motion
+from tests.drawing.mechanisms import five_bar_of
 from tests.drawing.pages import svg_texts
 
 MECHANISMS = [
@@ -293,20 +294,7 @@ def test_further_branches_do_not_widen_the_range():
 
 
 def test_of_several_inputs_the_first_that_moves_is_told():
-    five_bar = lw.linkage(
-        points={"O": (0, 0), "Q": (100, 0), "A": (0, 60), "B": (100, 60), "C": (50, 120)},
-        links={
-            "ground": ["O", "Q"],
-            "left": ["O", "A"],
-            "right": ["Q", "B"],
-            "a": ["A", "C"],
-            "b": ["B", "C"],
-        },
-        inputs=[
-            lw.Input(link="left", start=90, stop=90, step=1),
-            lw.Input(link="right", start=90, stop=80, step=-1),
-        ],
-    )
+    five_bar = five_bar_of(left_stop=90)
     assert reached_caption(five_bar.sweep()) == "right 80° to 90°"
 
 

@@ -10,6 +10,7 @@ import linkwork as lw
 from linkwork.drawing import LIGHT, Scene, Sheet, Text, configuration_sheet, render
 from linkwork.drawing.matplotlib_writer import _sheet_figure
 from linkwork.foundation.errors import InputError
+from tests.drawing.mechanisms import five_bar_of
 from tests.drawing.pages import assert_page_is_clear, printed_texts, size_in_inches, svg_texts
 
 #: From one configuration to eight, with every kind of joint that lists have.
@@ -52,20 +53,7 @@ def test_the_caption_counts_them_and_says_where():
     assert configuration_sheet(at).caption == "2 configurations at d = 120 mm"
     squeezer = configuration_sheet(found_of("andrews-squeezer"))
     assert squeezer.caption == "4 configurations at β = −0.0617139 rad"
-    five_bar = lw.linkage(
-        points={"O": (0, 0), "Q": (100, 0), "A": (0, 60), "B": (100, 60), "C": (50, 120)},
-        links={
-            "ground": ["O", "Q"],
-            "left": ["O", "A"],
-            "right": ["Q", "B"],
-            "a": ["A", "C"],
-            "b": ["B", "C"],
-        },
-        inputs=[
-            lw.Input(link="left", start=90, stop=100, step=1),
-            lw.Input(link="right", start=90, stop=80, step=-1),
-        ],
-    )
+    five_bar = five_bar_of(left_stop=100)
     both = configuration_sheet(five_bar.configurations())
     assert both.caption == "2 configurations at left = 90°, right = 90°"
 

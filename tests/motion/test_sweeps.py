@@ -36,16 +36,20 @@ def test_rows_whole_turns_away_are_reached_however_far(
     assert [limit.kind for limit in motion.limits] == [lw.LimitKind.DEAD_POINT] * 2
 
 
+#: Both turn back within a degree of each other.
+FOUR_BAR_WITH_DYAD = {
+    "1": "1.1506868993121604*e^(i*t) + 1.4015301927498651*e^(i*p) "
+    "= 1.0168797508205394 + 2.6587007529023197*e^(i*q)",
+    "2": "1.1506868993121604*e^(i*t) + (1.5918774708532644 - i*2.2387661530443754)*e^(i*p) "
+    "+ 3.266084146225838*e^(i*x) "
+    "= -0.4233697291303557 + i*2.8947794769492443 + 1.531444418102215*e^(i*y)",
+}
+
+
 def test_three_dead_points_within_one_degree_are_all_passed() -> None:
     # the four-bar turns back at -70.59178 degrees; the dyad on it does at -70.68424, beyond that
     mechanism = lw.loops(
-        loops={
-            "1": "1.1506868993121604*e^(i*t) + 1.4015301927498651*e^(i*p) "
-            "= 1.0168797508205394 + 2.6587007529023197*e^(i*q)",
-            "2": "1.1506868993121604*e^(i*t) + (1.5918774708532644 - i*2.2387661530443754)*e^(i*p) "
-            "+ 3.266084146225838*e^(i*x) "
-            "= -0.4233697291303557 + i*2.8947794769492443 + 1.531444418102215*e^(i*y)",
-        },
+        loops=FOUR_BAR_WITH_DYAD,
         guess={"t": -80.3, "p": -162.8797, "q": 215.5748, "x": 84.4018, "y": 144.3598},
         inputs=lw.Input(variable="t"),
     )
@@ -63,13 +67,7 @@ def test_three_dead_points_within_one_degree_are_all_passed() -> None:
 def test_rows_that_only_another_branch_of_the_circuit_reaches_say_so() -> None:
     # the dyad turns back within the range of the four-bar, which goes on without it
     mechanism = lw.loops(
-        loops={
-            "1": "1.1506868993121604*e^(i*t) + 1.4015301927498651*e^(i*p) "
-            "= 1.0168797508205394 + 2.6587007529023197*e^(i*q)",
-            "2": "1.1506868993121604*e^(i*t) + (1.5918774708532644 - i*2.2387661530443754)*e^(i*p) "
-            "+ 3.266084146225838*e^(i*x) "
-            "= -0.4233697291303557 + i*2.8947794769492443 + 1.531444418102215*e^(i*y)",
-        },
+        loops=FOUR_BAR_WITH_DYAD,
         guess={"t": -70.65, "p": -159.7, "q": 211.3, "x": 85.9, "y": 148.2},
         inputs=lw.Input(variable="t", start=-100, stop=-60, step=1),
     )

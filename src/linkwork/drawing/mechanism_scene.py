@@ -18,7 +18,7 @@ from linkwork.drawing.further_positions import (
     limit_marks,
 )
 from linkwork.drawing.ground_symbols import ground_symbols
-from linkwork.drawing.guide_symbols import guide_symbols, track_gaps, tracks
+from linkwork.drawing.guide_symbols import Track, guide_symbols, track_gaps, tracks
 from linkwork.drawing.input_arrow import input_arrows
 from linkwork.drawing.label_placement import link_names, placed, point_names
 from linkwork.drawing.link_symbols import link_symbols, pin_symbols, tones
@@ -115,13 +115,7 @@ def scene_of(
     marks, limit_names = limit_marks(further, motion, measures)
     primitives: list[Primitive] = [
         *faint_symbols(further, measures),
-        *ground_symbols(pose, measures),
-        *_contact_symbols(pose, measures),
-        *guide_symbols(found, measures),
-        *link_symbols(pose, track_gaps(found, measures)),
-        *cylinder_symbols(pose, measures),
-        *trace_symbols(pose, names, measures),
-        *pin_symbols(pose, measures),
+        *_symbols(pose, found, names, measures),
         *marks,
     ]
     if chosen.arrows:
@@ -140,6 +134,19 @@ def scene_of(
         title=position.mechanism if chosen.title is None else chosen.title,
         caption=_caption(position, motion if further else None),
     )
+
+
+def _symbols(
+    pose: Pose, found: list[Track], names: tuple[str, ...], measures: Measures
+) -> Iterator[Primitive]:
+    """One position from the ground up to its pins, with the paths of points."""
+    yield from ground_symbols(pose, measures)
+    yield from _contact_symbols(pose, measures)
+    yield from guide_symbols(found, measures)
+    yield from link_symbols(pose, track_gaps(found, measures))
+    yield from cylinder_symbols(pose, measures)
+    yield from trace_symbols(pose, names, measures)
+    yield from pin_symbols(pose, measures)
 
 
 def _contact_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
