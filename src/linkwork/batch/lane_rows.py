@@ -44,14 +44,21 @@ class DesignRows:
     alone: BoolArray
 
     @classmethod
-    def blank(cls, unknowns: int, rows: int, designs: int, certify: bool) -> DesignRows:
-        """No positions yet; unknowns are left as they come."""
+    def blank(
+        cls, unknowns: int, rows: int, designs: int, certify: bool, falling: bool
+    ) -> DesignRows:
+        """No positions yet; unknowns are left as they come.
+
+        Where inputs fall, unknowns and radii stand in memory by rising inputs: so does the march
+        write them.
+        """
+        way = slice(None, None, -1 if falling else 1)
         none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
         return cls(
-            v=np.empty((unknowns, rows, designs)),
+            v=np.empty((unknowns, rows, designs))[:, way],
             status=np.full((rows, designs), Status.NO_START.code, dtype=np.int8),
             certification=np.full((rows, designs), none.code, dtype=np.int8),
-            radius=np.empty((rows, designs)),
+            radius=np.empty((rows, designs))[way],
             alone=np.zeros(designs, dtype=bool),
         )
 
@@ -64,9 +71,15 @@ def design_rows(designs: Designs, *, certify: bool, threads: int = 1) -> DesignR
     equations are swept one at a time, so that every row has the status that it has by itself.
     """
     model = designs.base
-    found = DesignRows.blank(model.compiled.solver.unknowns, len(model.rows), len(designs), certify)
     left = designs.problem == 0
     march = _Path.of(model)
+    found = DesignRows.blank(
+        model.compiled.solver.unknowns,
+        len(model.rows),
+        len(designs),
+        certify,
+        falling=march is not None and march.falling,
+    )
     if march is None:
         found.v[:] = np.nan
         found.radius[:] = np.nan
@@ -98,6 +111,12 @@ class _Path:
         path = drive.path
         return cls(model=model, lead=lead, origin=path.origin, rate=path.rate, size=path.size)
 
+    @property
+    def falling(self) -> bool:
+        """Whether the table goes towards smaller values of t."""
+        t = self.model.rows[:, self.lead]
+        return bool(t[-1] < t[0])
+
     def spread(self, start: Array) -> Array:
         """How far inputs asked for, or computed on the way from ``start`` (D,), are off, (p,)."""
         t = self.model.rows[:, self.lead]
@@ -118,7 +137,7 @@ class _Path:
             axis=1
         )
         t = self.model.rows[:, self.lead]
-        way = slice(None, None, -1 if t[-1] < t[0] else 1)
+        way = slice(None, None, -1 if self.falling else 1)
         march = _March(self, designs, served, certify, threads)
         whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
         self._note(found, reached[way], whole, certify)

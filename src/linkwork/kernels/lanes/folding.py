@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.kernels.lanes.compiling import compiled
 from linkwork.kernels.lanes.fold_programs import fold_programs
-from linkwork.kernels.lanes.machine import LANES, compiled, run
+from linkwork.kernels.lanes.machine import LANES, run
 from linkwork.kernels.loop_table import LoopTable
 
 __all__ = ["Folds", "LastNodes", "dead_points"]

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.kernels.lanes.beginning import begin
 from linkwork.kernels.lanes.closure import BlockPart
 from linkwork.kernels.lanes.folding import LastNodes
+from linkwork.kernels.lanes.lockstep import in_step
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import ROLES, march_programs
-from linkwork.kernels.lanes.marching import begin, march
+from linkwork.kernels.lanes.marching import march
+from linkwork.kernels.lanes.printing import trial_source
+from linkwork.kernels.lanes.tasks import Found, Table, Tasks
+from linkwork.kernels.lanes.trial import Topology, by_machine
 from linkwork.kernels.loop_table import LoopTable
 
 __all__ = ["LaneKernel", "LaneRows", "Steps"]
@@ -112,17 +117,28 @@ class LaneKernel:
         self.table, self.certified = table, certified
         programs = march_programs(table, parts, zeros, certified)
         self.registers = reg = programs.registers
-        turns = [
-            np.concatenate([section.code for section in programs.turned(moves)])
-            for moves in range(ROLES)
-        ]
-        self.codes = np.ascontiguousarray(np.stack(turns))
+        self.code = np.concatenate(
+            [section.code for moves in range(ROLES) for section in programs.turned(moves)]
+        )
         ends = np.cumsum([len(section.code) for section in programs.sections])
         self.spans = np.stack([np.concatenate([[0], ends[:-1]]), ends], axis=1)
         self.nodes = programs.nodes
         self.common = reg.all_of(_COMMON)
         self.live = reg.all_of([f"live{b}" for b in range(len(parts))])
         self.height = max(programs.height, reg.count)
+        self._sections = programs
+        self.trial: Callable[..., None] = by_machine
+
+    def source(self) -> str:
+        """A trial of this topology written out: prediction, one correction, proof, judgement."""
+        sections = self._sections
+        ordered = [sections.predict, *sections.begin, *sections.prove, sections.judge]
+        return trial_source(
+            [section.code for section in ordered],
+            self.nodes.shape[1],
+            sorted(self.registers.named.values()),
+            {register: value for value, register in self.registers.constants.items()},
+        )
 
     def run(
         self,
@@ -196,18 +212,47 @@ class LaneKernel:
                 space[self.registers.named[name]] = value
         design = np.ascontiguousarray(design)
         given = np.ascontiguousarray(given)
-        count = design.shape[1]
-        node = np.empty((self.nodes.shape[1], count))
-        begun = np.zeros(count, dtype=bool)
-        begin(
-            self.codes[0], self.spans, space, self.common, self.live,
-            places, design, self.nodes, given, node, begun,
-        )  # fmt: skip
+        size, count = self.nodes.shape[1], design.shape[1]
+        node, begun = np.empty((size, count)), np.zeros(count, dtype=bool)
+        topology = self._topology(places)
+        begin(topology, space, design, given, node, begun)
         found.found[part] = begun
+        table = Table(
+            rows, np.array([steps.first, steps.largest, steps.smallest]), self.table.unknowns
+        )
+        kept = Found(part.start, found.v, found.radius, found.reached, found.stopped, found.last)
+        tasks = Tasks.room(2 * count, size)
+        many = in_step(
+            topology,
+            self.trial,
+            self.trial is not by_machine,
+            space,
+            design,
+            node,
+            begun,
+            table,
+            tasks,
+            kept,
+        )
         march(
-            self.codes, self.spans, space, self.common, self.live,
-            places, design, self.nodes, node, begun,
-            rows, np.array([steps.first, steps.largest, steps.smallest]), self.table.unknowns,
-            found.v[:, :, part], found.radius[:, part], found.reached[:, part],
-            found.stopped[:, part], found.last[:, :, part],
-        )  # fmt: skip
+            topology,
+            self.trial,
+            self.trial is not by_machine,
+            space,
+            design,
+            table,
+            tasks,
+            many,
+            kept,
+        )
+
+    def _topology(self, coefficients: IndexArray) -> Topology:
+        return Topology(
+            self.code,
+            len(self.code) // ROLES,
+            self.spans,
+            self.common,
+            self.live,
+            self.nodes,
+            coefficients,
+        )

@@ -1,0 +1,58 @@
+"""Where motions begin: every mechanism solved at the input of its guess."""
+
+from __future__ import annotations
+
+import math
+
+from linkwork.kernels.lanes.compiling import compiled_for, types
+from linkwork.kernels.lanes.machine import LANES
+from linkwork.kernels.lanes.trial import (
+    GOOD,
+    TOPOLOGY,
+    WEIGHTS,
+    copied,
+    loaded,
+    solved_slowly,
+    tangent,
+)
+
+__all__ = ["begin"]
+
+
+_PLAIN = types.Array(types.float64, 2, "C")
+
+
+@compiled_for(
+    types.void(TOPOLOGY, _PLAIN, _PLAIN, _PLAIN, _PLAIN, types.Array(types.boolean, 1, "C"))
+)
+def begin(topology, w, design, guess, node, found):  # type: ignore[no-untyped-def]
+    """Solve every mechanism at its guess's input value.
+
+    Parameters
+    ----------
+    topology : Topology
+    w : (registers, LANES) workspace with constants and options in place
+    design : (C, M) coefficients
+    guess, node : (S, M) the guess, and what is found from there
+    found : (M,) bool, set
+    """
+    count, nodes, good = design.shape[1], topology.nodes, topology.common[GOOD]
+    for base in range(0, count, LANES):
+        for lane in range(LANES):
+            member = min(base + lane, count - 1)
+            loaded(w, lane, topology.coefficients, design, member)
+            loaded(w, lane, nodes[1], guess, member)
+            for role in (0, 2, 3):
+                copied(w, lane, nodes[role], nodes[1])
+            tangent(w, lane, topology.common[WEIGHTS:], 0.0)
+            w[good, lane] = 1.0
+        solved_slowly(topology, w)
+        for lane in range(min(LANES, count - base)):
+            member = base + lane
+            fine = w[good, lane] > 0.5
+            for b in range(len(topology.live)):
+                fine &= w[topology.live[b], lane] == 0.0
+            for j in range(nodes.shape[1]):
+                node[j, member] = w[nodes[0, j], lane]
+                fine &= math.isfinite(node[j, member])
+            found[member] = fine

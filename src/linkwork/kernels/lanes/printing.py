@@ -1,0 +1,125 @@
+"""Programs written out as Python source: one statement for each instruction.
+
+What is written knows no names but registers, so nothing of a mechanism's text gets into it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from linkwork.kernels.lanes.machine import LANES
+from linkwork.kernels.lanes.program import Op
+
+__all__ = ["trial_source"]
+
+Code = np.ndarray[tuple[int, int], np.dtype[np.uint32]]
+
+_STATEMENT = {
+    Op.COPY: "{a}",
+    Op.ADD: "{a} + {b}",
+    Op.SUB: "{a} - {b}",
+    Op.MUL: "{a} * {b}",
+    Op.DIV: "{a} / {b}",
+    Op.FMA: "{a} * {b} + {c}",
+    Op.FMS: "{a} * {b} - {c}",
+    Op.FNMA: "{c} - {a} * {b}",
+    Op.NEG: "-{a}",
+    Op.ABS: "abs({a})",
+    Op.MAX: "{a} if ({a} > {b}) | ({a} != {a}) else {b}",
+    Op.MIN: "{a} if ({a} < {b}) | ({a} != {a}) else {b}",
+    Op.SQRT: "math.sqrt({a})",
+    Op.WHERE: "{b} if {a} > 0.5 else {c}",
+    Op.LE: "1.0 if {a} <= {b} else 0.0",
+    Op.AND: "{a} * {b}",
+    Op.KEEP: "{b} if {a} > 0.5 else {d}",
+    Op.LESS: "{d} - {a}",
+}
+
+
+@dataclass
+class _Body:
+    """Statements over local names; registers are read where first needed and written at the end."""
+
+    place: Mapping[int, str]
+    constants: Mapping[int, float]
+    lines: list[str] = field(default_factory=list)
+    known: set[int] = field(default_factory=set)
+    changed: set[int] = field(default_factory=set)
+
+    def value(self, register: int) -> str:
+        if register in self.constants:
+            return repr(self.constants[register])
+        if register not in self.known:
+            self.known.add(register)
+            self.lines.append(f"r{register} = {self.place[register]}")
+        return f"r{register}"
+
+    def _set(self, *registers: int) -> None:
+        self.known.update(registers)
+        self.changed.update(registers)
+
+    def add(self, code: Code) -> None:
+        for number, d, a, b, c in code.tolist():
+            op = Op(number)
+            if op is Op.SIN:
+                self.lines.append(f"r{d}, r{c} = sin_cos({self.value(a)})")
+                self._set(d, c)
+                continue
+            form = _STATEMENT[op]
+            used = {
+                key: self.value(register)
+                for key, register in (("a", a), ("b", b), ("c", c), ("d", d))
+                if "{" + key + "}" in form
+            }
+            self.lines.append(f"r{d} = {form.format(**used)}")
+            self._set(d)
+
+    def end(self) -> None:
+        for register in sorted(self.changed & set(self.place)):
+            self.lines.append(f"{self.place[register]} = r{register}")
+
+
+def trial_source(
+    programs: Sequence[Code], nodes: int, named: Sequence[int], constants: Mapping[int, float]
+) -> str:
+    """A function ``trial`` over 64 lanes that runs programs one after the other.
+
+    Parameters
+    ----------
+    programs : sequence of (K, 5)
+        In the first turn.
+    nodes : int
+        How many registers a position has; those of the four places come first.
+    named : sequence of int
+        Registers that stay; others are local.
+    constants : Mapping[int, float]
+        Registers of constants.
+    """
+    body = _Body({r: _lane_place(r, nodes) for r in named}, constants)
+    for code in programs:
+        body.add(code)
+    body.end()
+    statements = "\n".join(f"        {line}" for line in body.lines)
+    return f"""\
+import math
+
+from linkwork.kernels.lanes.compiling import compiled_for
+from linkwork.kernels.lanes.sine import sin_cos
+from linkwork.kernels.lanes.trial import TRIAL
+
+
+@compiled_for(TRIAL)
+def trial(place0, place1, place2, place3, others):
+    for i in range({LANES}):
+{statements}
+"""
+
+
+def _lane_place(register: int, nodes: int) -> str:
+    role, number = divmod(register, nodes)
+    if role < 4:
+        return f"place{role}[{number * LANES} + i]"
+    return f"others[{(register - 4 * nodes) * LANES} + i]"

@@ -1,0 +1,249 @@
+"""One trial of 64 lanes: predict, correct block by block, prove, judge.
+
+A position has four places (roles) in a lane: the trial and the last three nodes. The places change
+roles when a trial is taken (``turn`` counts that), so nothing is copied: programs are at hand for
+all four turns.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from linkwork.foundation.arrays import IndexArray
+from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
+from linkwork.kernels.lanes.machine import LANES, run_part
+
+__all__ = [
+    "GOOD",
+    "RADIUS",
+    "TOPOLOGY",
+    "TRIAL",
+    "WEIGHTS",
+    "Topology",
+    "by_machine",
+    "copied",
+    "extrapolated",
+    "loaded",
+    "placed",
+    "settled",
+    "solved_slowly",
+    "tangent",
+]
+
+# where a program stands in the packed code; behind BLOCKS: begin, damped, iterate, prove
+PREDICT, JUDGE, BLOCKS = 0, 1, 2
+# registers that every topology has
+GOOD, RADIUS, WEIGHTS = 0, 1, 2
+_STEPS = 6
+_FAR = 2.5  # times the step before: further ahead fewer nodes are trusted
+_START_STEPS = 50
+
+#: What a written-out trial is called with: the four places of positions, and all other registers.
+TRIAL = types.void(*[types.Array(types.float64, 1, "C")] * 5)
+
+
+class Topology(NamedTuple):
+    """Programs and registers of one topology.
+
+    Parameters
+    ----------
+    code : (4 K, 5) all programs, in all four turns
+    length : K
+    spans : (P, 2) where each program begins and ends in the first turn
+    common : registers of good, radius, a1, b1, a2, b2, a3, b3
+    live : (B,) registers of the blocks' masks
+    nodes : (4, S) registers of positions, t last; role by role the first ones of the workspace
+    coefficients : (C,) registers of a design's coefficients
+    """
+
+    code: np.ndarray[tuple[int, int], np.dtype[np.uint32]]
+    length: int
+    spans: IndexArray
+    common: IndexArray
+    live: IndexArray
+    nodes: IndexArray
+    coefficients: IndexArray
+
+
+TOPOLOGY = types.NamedTuple(
+    [
+        types.Array(types.uint32, 2, "C"),
+        types.int64,
+        types.Array(types.int64, 2, "C"),
+        types.Array(types.int64, 1, "C"),
+        types.Array(types.int64, 1, "C"),
+        types.Array(types.int64, 2, "C"),
+        types.Array(types.int64, 1, "C"),
+    ],
+    Topology,
+)
+
+
+@compiled_for(TRIAL)
+def by_machine(trial, one, two, three, others):  # type: ignore[no-untyped-def]
+    """Stands for a trial that is not written out: the machine does it."""
+
+
+@compiled
+def _one(topology, turn, w, number):  # type: ignore[no-untyped-def]
+    first = turn * topology.length
+    run_part(topology.code, first + topology.spans[number, 0], first + topology.spans[number, 1], w)
+
+
+@compiled
+def _any(w, row, standing):  # type: ignore[no-untyped-def]
+    """Whether a mask holds in a lane that counts."""
+    found = 0
+    for i in range(LANES):
+        found += w[row, i] * standing[i] != 0.0
+    return found > 0
+
+
+@compiled
+def _iterate(topology, turn, w, program, live, most, standing):  # type: ignore[no-untyped-def]
+    """Newton-Raphson of one block until no lane iterates."""
+    for _ in range(most):
+        if not _any(w, live, standing):
+            break
+        _one(topology, turn, w, program)
+
+
+@compiled
+def _judged(topology, turn, w):  # type: ignore[no-untyped-def]
+    for program in range(BLOCKS + 3 * len(topology.live), len(topology.spans)):
+        _one(topology, turn, w, program)
+    _one(topology, turn, w, JUDGE)
+
+
+@compiled
+def settled(topology, written, is_written, turn, w, places, standing):  # type: ignore[no-untyped-def]
+    """From the prediction to the judgement.
+
+    Parameters
+    ----------
+    written : TRIAL
+        The programs of a trial with one correction, written out as one function.
+    is_written : bool
+        Whether there is such a function.
+    places : see :func:`placed`
+    standing : (LANES,)
+        1.0 in lanes that count, 0.0 in others.
+    """
+    live = topology.live
+    blocks = len(live)
+    if is_written:
+        trial, one, two, three, others = places
+        if turn == 0:
+            written(trial, one, two, three, others)
+        elif turn == 1:
+            written(three, trial, one, two, others)
+        elif turn == 2:
+            written(two, three, trial, one, others)
+        else:
+            written(one, two, three, trial, others)
+        again = False
+        for b in range(blocks):
+            again |= _any(w, live[b], standing)
+        if not again:
+            return
+    else:
+        _one(topology, turn, w, PREDICT)
+    for b in range(blocks):
+        if not is_written:
+            _one(topology, turn, w, BLOCKS + b)
+        elif _any(w, live[b], standing):  # what follows was computed with a worse position
+            for later in range(b + 1, blocks):
+                w[live[later], :] = 1.0
+        _iterate(topology, turn, w, BLOCKS + 2 * blocks + b, live[b], _STEPS - 1, standing)
+    _judged(topology, turn, w)
+
+
+@compiled
+def placed(topology, w):  # type: ignore[no-untyped-def]
+    """The workspace as a written trial sees it in the first turn."""
+    size = topology.nodes.shape[1] * LANES
+    flat = w.reshape(-1)
+    return (
+        flat[:size],
+        flat[size : 2 * size],
+        flat[2 * size : 3 * size],
+        flat[3 * size : 4 * size],
+        flat[4 * size :],
+    )
+
+
+@compiled
+def solved_slowly(topology, w):  # type: ignore[no-untyped-def]
+    """From a guess in role 1 to a position, with small steps; its own proof.
+
+    The first proof knows nothing of the node it compares with, the second that it is this position.
+    """
+    blocks, nodes = len(topology.live), topology.nodes
+    everywhere = np.ones(LANES)
+    _one(topology, 0, w, PREDICT)
+    for b in range(blocks):
+        live = topology.live[b]
+        w[live, :] = 1.0
+        _iterate(topology, 0, w, BLOCKS + blocks + b, live, _START_STEPS, everywhere)
+    if len(topology.spans) > BLOCKS + 3 * blocks:
+        for _ in range(2):
+            for lane in range(LANES):
+                copied(w, lane, nodes[1], nodes[0])
+            _judged(topology, 0, w)
+
+
+@compiled
+def loaded(w, lane, registers, data, member):  # type: ignore[no-untyped-def]
+    """One column of data into a lane."""
+    for j in range(len(registers)):
+        w[registers[j], lane] = data[j, member]
+
+
+@compiled
+def copied(w, lane, to, source):  # type: ignore[no-untyped-def]
+    """Registers of one lane into others."""
+    for j in range(len(to)):
+        w[to[j], lane] = w[source[j], lane]
+
+
+@compiled
+def tangent(w, lane, weights, h):  # type: ignore[no-untyped-def]
+    """Predict from the last node alone."""
+    for j in range(6):
+        w[weights[j], lane] = 0.0
+    w[weights[0], lane] = 1.0
+    w[weights[1], lane] = h
+
+
+@compiled
+def extrapolated(w, lane, weights, t, times, known):  # type: ignore[no-untyped-def]
+    """Predict at t by the polynomial through the last nodes with their derivatives.
+
+    Parameters
+    ----------
+    times : (3,) of the last nodes
+    known : how many of them there are; fewer are trusted far ahead
+    """
+    step, used = abs(t - times[0]), known
+    if used >= 3 and step > _FAR * abs(times[1] - times[2]):
+        used = 2
+    if used >= 2 and step > _FAR * abs(times[0] - times[1]):
+        used = 1
+    _polynomial(w, lane, weights, t, times, min(used, 3))
+
+
+@compiled
+def _polynomial(w, lane, weights, t, nodes, count):  # type: ignore[no-untyped-def]
+    for j in range(6):
+        w[weights[j], lane] = 0.0
+    for i in range(count):
+        basis, slope = 1.0, 0.0
+        for j in range(count):
+            if j != i:
+                basis *= (t - nodes[j]) / (nodes[i] - nodes[j])
+                slope += 1.0 / (nodes[i] - nodes[j])
+        square = basis * basis
+        w[weights[2 * i], lane] = (1.0 - 2.0 * slope * (t - nodes[i])) * square
+        w[weights[2 * i + 1], lane] = (t - nodes[i]) * square

@@ -1,0 +1,94 @@
+"""Trials written out as modules of their own, in a folder where compiled code is kept."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import os
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from platformdirs import user_cache_path
+
+from linkwork.foundation.errors import InputError
+from linkwork.kernels.lanes import compiling, sine, trial
+
+__all__ = ["is_written", "written"]
+
+#: A folder that takes the place of the user's cache.
+FOLDER = "LINKWORK_CACHE"
+
+
+def written(source: str, function: str) -> Callable[..., Any]:
+    """A function of a module of which the source is given; compiled at most once.
+
+    Raises
+    ------
+    InputError
+        If nothing can be written to the folder of the cache.
+    """
+    name = _name(source)
+    known = sys.modules.get(name)
+    if known is None:
+        path = _path(name)
+        if not path.exists() or path.read_text(encoding="utf-8") != source:
+            _write(path, source)
+        known = _loaded(name, path)
+    found: Callable[..., Any] = getattr(known, function)
+    return found
+
+
+def is_written(source: str) -> bool:
+    """Whether the module is there already, so that it costs next to nothing."""
+    return _name(source) in sys.modules or _path(_name(source)).exists()
+
+
+def _path(name: str) -> Path:
+    return _folder() / f"{name.rpartition('.')[2]}.py"
+
+
+def _folder() -> Path:
+    given = os.environ.get(FOLDER)
+    return Path(given) if given else user_cache_path("linkwork") / "kernels"
+
+
+def _name(source: str) -> str:
+    """By the text and all that it is compiled with."""
+    digest = hashlib.sha256(source.encode())
+    for module in (compiling, sine, trial):
+        assert module.__file__ is not None
+        digest.update(Path(module.__file__).read_bytes())
+    return f"linkwork_kernel_{digest.hexdigest()[:24]}"
+
+
+def _write(path: Path, source: str) -> None:
+    """All or nothing, whoever else writes the same."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(
+            "w", dir=path.parent, suffix=".part", delete=False, encoding="utf-8"
+        ) as part:
+            part.write(source)
+        os.replace(part.name, path)
+    except OSError as error:
+        raise InputError(
+            f"compiled code cannot be kept in {path.parent} ({error.strerror}): "
+            f"name another folder in {FOLDER}, or ask for specialised=False"
+        ) from None
+
+
+def _loaded(name: str, path: Path) -> Any:
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
+    return module
