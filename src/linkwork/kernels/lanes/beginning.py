@@ -8,8 +8,8 @@ from linkwork.kernels.lanes.compiling import compiled_for, types
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.trial import (
     GOOD,
+    LIVE,
     TOPOLOGY,
-    WEIGHTS,
     copied,
     loaded,
     solved_slowly,
@@ -36,22 +36,22 @@ def begin(topology, w, design, guess, node, found):  # type: ignore[no-untyped-d
     guess, node : (S, M) the guess, and what is found from there
     found : (M,) bool, set
     """
-    count, nodes, good = design.shape[1], topology.nodes, topology.common[GOOD]
+    count, nodes, good = design.shape[1], topology.nodes, topology.noted[0, GOOD]
     for base in range(0, count, LANES):
         for lane in range(LANES):
             member = min(base + lane, count - 1)
             loaded(w, lane, topology.coefficients, design, member)
             loaded(w, lane, nodes[1], guess, member)
-            for role in (0, 2, 3):
+            for role in range(len(nodes)):
                 copied(w, lane, nodes[role], nodes[1])
-            tangent(w, lane, topology.common[WEIGHTS:], 0.0)
+            tangent(w, lane, topology.weights, 0.0)
             w[good, lane] = 1.0
         solved_slowly(topology, w)
         for lane in range(min(LANES, count - base)):
             member = base + lane
             fine = w[good, lane] > 0.5
-            for b in range(len(topology.live)):
-                fine &= w[topology.live[b], lane] == 0.0
+            for live in topology.noted[0, LIVE:]:
+                fine &= w[live, lane] == 0.0
             for j in range(nodes.shape[1]):
                 node[j, member] = w[nodes[0, j], lane]
                 fine &= math.isfinite(node[j, member])

@@ -6,7 +6,7 @@ Everything stands by name in registers: ``v3`` the fourth variable, ``c5.re`` a 
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -19,6 +19,7 @@ from linkwork.kernels.loop_table import LoopTable
 __all__ = ["BlockPart", "Closure", "Linear", "Phase", "phasor_name", "solved", "turned"]
 
 Pair = tuple[Value | float, Value | float]
+Moves = Mapping[int, Value | float]
 #: Variables with their weights, one twice only where adding these would round; empty for a fixed
 #: direction.
 Phase = tuple[tuple[int, float], ...]
@@ -159,6 +160,43 @@ class Closure:
         ]
         return [*real, *imag, *lines]
 
+    def bending(self, first: Moves, second: Moves) -> list[Value | float]:
+        """d²F for two directions: how dF of the one changes along the other.
+
+        Parameters
+        ----------
+        first, second : Mapping[int, Value]
+            By variable; what is missing does not move.
+        """
+        rec, real, imag = self.rec, [], []
+        for k in self.loops:
+            parts = [self._bent(term, first, second) for term in self.terms[k]]
+            real.append(rec.total([x for x, _ in parts]))
+            imag.append(rec.total([y for _, y in parts]))
+        return [*real, *imag, *[0.0] * len(self.lines)]
+
+    def _bent(self, term: int, first: Moves, second: Moves) -> Pair:
+        """d² of c s e^{iψ}: c e^{iψ} (i (δs ψ̇ + ṡ δψ) - s δψ ψ̇)."""
+        rec, phase, length = self.rec, self.phases.get(term, ()), int(self.table.loops.length[term])
+        turn, other = (
+            rec.total([rec.multiply(moves[k], w) for k, w in phase if k in moves])
+            for moves in (first, second)
+        )
+        a, b = self.whole(term)
+        product = rec.multiply(turn, other)
+        x, y = (
+            rec.subtract(0.0, rec.multiply(product, a)),
+            rec.subtract(0.0, rec.multiply(product, b)),
+        )
+        if length >= 0:
+            a, b = self.bare(term)
+            mixed = rec.add(
+                rec.multiply(first.get(length, 0.0), other),
+                rec.multiply(second.get(length, 0.0), turn),
+            )
+            x, y = rec.subtract(x, rec.multiply(mixed, b)), rec.add(y, rec.multiply(mixed, a))
+        return x, y
+
     def known(self) -> list[int]:
         """The variables behind the block's unknowns that its equations contain."""
         found: set[int] = set()
@@ -191,8 +229,8 @@ def _merged(phase: Sequence[tuple[int, float]]) -> Phase:
 
 
 def phasor_name(part: str, phase: Phase) -> str:
-    """The register of the cosine or sine of a phase that only inputs turn."""
-    return part + "".join(f" {weight:g}*{k}" for k, weight in phase)
+    """The register of the cosine or sine of a phase that only inputs turn, at the trial."""
+    return part + "".join(f" {weight:g}*{k}" for k, weight in phase) + ".0"
 
 
 def turned(rec: Recorder, variables: Sequence[Value], phase: Phase) -> tuple[Value, Value]:

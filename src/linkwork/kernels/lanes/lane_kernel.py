@@ -17,13 +17,14 @@ from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import ROLES, march_programs
 from linkwork.kernels.lanes.marching import march
 from linkwork.kernels.lanes.printing import trial_source
+from linkwork.kernels.lanes.program import SOURCES, Op, Program
 from linkwork.kernels.lanes.tasks import Found, Table, Tasks
 from linkwork.kernels.lanes.trial import Topology, by_machine
 from linkwork.kernels.loop_table import LoopTable
 
 __all__ = ["LaneKernel", "LaneRows", "Steps"]
 
-_COMMON = ("good", "radius", "a1", "b1", "a2", "b2", "a3", "b3")
+_WEIGHTS = [f"{name}{role}" for role in range(1, ROLES) for name in "ab"]
 _PART = 4096  # designs that one thread works on at a time
 
 
@@ -122,9 +123,13 @@ class LaneKernel:
         )
         ends = np.cumsum([len(section.code) for section in programs.sections])
         self.spans = np.stack([np.concatenate([[0], ends[:-1]]), ends], axis=1)
-        self.nodes = programs.nodes
-        self.common = reg.all_of(_COMMON)
-        self.live = reg.all_of([f"live{b}" for b in range(len(parts))])
+        self.nodes = np.ascontiguousarray(programs.nodes)
+        self.places = programs.places
+        noted = ["good", "radius", *[f"live{b}" for b in range(len(parts))]]
+        self.noted = np.stack(
+            [reg.all_of([f"{name}.{role}" for name in noted]) for role in range(ROLES)]
+        )
+        self.weights = reg.all_of(_WEIGHTS)
         self.height = max(programs.height, reg.count)
         self._sections = programs
         self.trial: Callable[..., None] = by_machine
@@ -133,10 +138,12 @@ class LaneKernel:
         """A trial of this topology written out: prediction, one correction, proof, judgement."""
         sections = self._sections
         ordered = [sections.predict, *sections.begin, *sections.prove, sections.judge]
+        after = [*sections.iterate, *sections.prove, sections.judge]
+        kept = {*self.nodes[0].tolist(), *self.noted[0].tolist(), *_read(after)}
         return trial_source(
             [section.code for section in ordered],
-            self.nodes.shape[1],
-            sorted(self.registers.named.values()),
+            self.places.shape[1],
+            kept,
             {register: value for value, register in self.registers.constants.items()},
         )
 
@@ -222,37 +229,32 @@ class LaneKernel:
         )
         kept = Found(part.start, found.v, found.radius, found.reached, found.stopped, found.last)
         tasks = Tasks.room(2 * count, size)
-        many = in_step(
-            topology,
-            self.trial,
-            self.trial is not by_machine,
-            space,
-            design,
-            node,
-            begun,
-            table,
-            tasks,
-            kept,
-        )
-        march(
-            topology,
-            self.trial,
-            self.trial is not by_machine,
-            space,
-            design,
-            table,
-            tasks,
-            many,
-            kept,
-        )
+        trial = self.trial, self.trial is not by_machine
+        many = in_step(topology, *trial, space, design, node, begun, table, tasks, kept)
+        march(topology, *trial, space, design, table, tasks, many, kept)
 
     def _topology(self, coefficients: IndexArray) -> Topology:
         return Topology(
-            self.code,
-            len(self.code) // ROLES,
-            self.spans,
-            self.common,
-            self.live,
-            self.nodes,
-            coefficients,
+            code=self.code,
+            length=len(self.code) // ROLES,
+            spans=self.spans,
+            weights=self.weights,
+            nodes=self.nodes,
+            noted=self.noted,
+            height=self.places.shape[1],
+            coefficients=coefficients,
         )
+
+
+def _read(programs: Sequence[Program]) -> set[int]:
+    """Registers that programs read before they write them."""
+    read, written = set[int](), set[int]()
+    for program in programs:
+        for number, target, *sources in program.code.tolist():
+            op = Op(number)
+            count = SOURCES[op]
+            read.update(set(sources[:count]) - written)
+            if op in (Op.KEEP, Op.LESS):
+                read.update({target} - written)
+            written.update({target, sources[2]} if op is Op.SIN else {target})
+    return read

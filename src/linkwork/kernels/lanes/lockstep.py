@@ -13,13 +13,13 @@ import numpy as np
 
 from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
 from linkwork.kernels.lanes.machine import LANES
+from linkwork.kernels.lanes.march_programs import NODES, ROLES
 from linkwork.kernels.lanes.tasks import FOUND, TABLE, TASKS
 from linkwork.kernels.lanes.trial import (
     GOOD,
     RADIUS,
     TOPOLOGY,
     TRIAL,
-    WEIGHTS,
     extrapolated,
     loaded,
     placed,
@@ -39,7 +39,7 @@ def _left(lane, member, way, topology, turn, w, tasks, count):  # type: ignore[n
     tasks.member[count], tasks.way[count] = member, way
     nodes = topology.nodes
     for j in range(nodes.shape[1]):
-        tasks.node[j, count] = w[nodes[(1 - turn) % 4, j], lane]
+        tasks.node[j, count] = w[nodes[(1 - turn) % ROLES, j], lane]
     return count + 1
 
 
@@ -47,29 +47,28 @@ def _left(lane, member, way, topology, turn, w, tasks, count):  # type: ignore[n
 def _weighted(w, topology, turn, steps, spacing):  # type: ignore[no-untyped-def]
     """The weights of the prediction: for each lane by itself until all have the same nodes behind.
 
-    ``spacing`` (3,): of the trial and the nodes before, for which the weights are at hand.
+    ``spacing`` (4,): of the trial and the nodes before, for which the weights are at hand.
     """
-    nodes, weights = topology.nodes, topology.common[WEIGHTS:]
-    last = nodes.shape[1] - 1
-    t0, t1 = nodes[-turn % 4, last], nodes[(1 - turn) % 4, last]
-    t2, t3 = nodes[(2 - turn) % 4, last], nodes[(3 - turn) % 4, last]
-    now, one, two = w[t0, 0] - w[t1, 0], w[t1, 0] - w[t2, 0], w[t2, 0] - w[t3, 0]
-    near = _SAME * abs(now)
-    if (
-        abs(now - spacing[0]) <= near
-        and abs(one - spacing[1]) <= near
-        and abs(two - spacing[2]) <= near
-    ):
-        return
-    shared = steps > 3
-    spacing[0] = now if shared else np.inf
-    spacing[1], spacing[2] = one, two
-    times = np.zeros(3)
+    nodes, weights = topology.nodes, topology.weights
+    last, times = nodes.shape[1] - 1, np.zeros(NODES)
+    trial = nodes[-turn % ROLES, last]
+    shared = steps > NODES
     for lane in range(1 if shared else LANES):
-        times[0], times[1], times[2] = w[t1, lane], w[t2, lane], w[t3, lane]
-        extrapolated(w, lane, weights, w[t0, lane], times, steps)
+        for role in range(1, ROLES):
+            times[role - 1] = w[nodes[(role - turn) % ROLES, last], lane]
+        if shared:
+            near = _SAME * abs(w[trial, 0] - times[0])
+            same = abs(w[trial, 0] - times[0] - spacing[0]) <= near
+            for k in range(1, NODES):
+                same &= abs(times[k - 1] - times[k] - spacing[k]) <= near
+            if same:
+                return
+            spacing[0] = w[trial, 0] - times[0]
+            for k in range(1, NODES):
+                spacing[k] = times[k - 1] - times[k]
+        extrapolated(w, lane, weights, w[trial, lane], times, steps)
     if shared:
-        for j in range(6):
+        for j in range(len(weights)):
             w[weights[j], 1:] = w[weights[j], 0]
 
 
@@ -77,11 +76,11 @@ def _weighted(w, topology, turn, steps, spacing):  # type: ignore[no-untyped-def
 def _kept(first, width, row, topology, turn, w, standing, all_stand, table, found):  # type: ignore[no-untyped-def]
     """A row is reached by the lanes that stand."""
     target, radius, reached = found.unknowns, found.radius, found.reached
-    place, error = topology.nodes, topology.common[RADIUS]
+    place, error = topology.nodes, topology.noted[-turn % ROLES, RADIUS]
     proofs = radius.shape[0] > 0
     if all_stand:
         for j in range(table.unknowns):
-            source = place[-turn % 4, j]
+            source = place[-turn % ROLES, j]
             for i in range(width):
                 target[j, row, first + i] = w[source, i]
         if proofs:
@@ -93,7 +92,7 @@ def _kept(first, width, row, topology, turn, w, standing, all_stand, table, foun
     for i in range(width):
         if standing[i] > 0.5:
             for j in range(table.unknowns):
-                target[j, row, first + i] = w[place[-turn % 4, j], i]
+                target[j, row, first + i] = w[place[-turn % ROLES, j], i]
             if proofs:
                 radius[row, first + i] = w[error, i]
             reached[row, first + i] = True
@@ -105,13 +104,13 @@ def _one_way(
 ):  # type: ignore[no-untyped-def]
     """64 mechanisms in one direction; how many tasks there are now."""
     rows, nodes = table.rows, topology.nodes
-    size, good = nodes.shape[1], topology.common[GOOD]
+    size = nodes.shape[1]
     width = min(LANES, node.shape[1] - base)
     standing = np.zeros(LANES)
     ahead, there = -1, False  # the first row, and whether the start lies on it: the same for all
     for i in range(LANES):
         member = base + min(i, width - 1)
-        for role in range(1, 4):
+        for role in range(1, ROLES):
             loaded(w, i, nodes[role], node, member)
         if i >= width or not begun[member]:
             continue
@@ -126,7 +125,7 @@ def _one_way(
             standing[i] = 1.0
         else:
             count = _left(i, member, way, topology, 0, w, tasks, count)
-    turn, steps, spacing = 0, 0, np.full(3, np.inf)
+    turn, steps, spacing = 0, 0, np.full(NODES, np.inf)
     row = ahead
     while 0 <= row < len(rows):
         left = 0
@@ -134,7 +133,7 @@ def _one_way(
             left += standing[i] > 0.5
         if left < min(_WORTH, (width + 1) // 2):
             break
-        last, trial = nodes[(1 - turn) % 4, size - 1], nodes[-turn % 4, size - 1]
+        last, trial = nodes[(1 - turn) % ROLES, size - 1], nodes[-turn % ROLES, size - 1]
         lead = 0
         while standing[lead] == 0.0:
             lead += 1
@@ -146,7 +145,7 @@ def _one_way(
         steps += 1
         _weighted(w, topology, turn, steps, spacing)
         settled(topology, written, is_written, turn, w, places, standing)
-        bad = 0
+        bad, good = 0, topology.noted[-turn % ROLES, GOOD]
         for i in range(LANES):
             bad += standing[i] > w[good, i]
         if bad:
@@ -170,7 +169,7 @@ def _one_way(
             )
             row += 2 * way - 1
         if away != 0.0:
-            turn = (turn + 1) % 4
+            turn = (turn + 1) % ROLES
         else:
             steps = 0
     if 0 <= row < len(rows):

@@ -1,24 +1,29 @@
 """The programs of one topology: predict, solve block by block, prove or judge the step.
 
-A lane keeps four positions: the trial (role 0) and the last three nodes (roles 1 to 3). Registers
+A lane keeps five positions: the trial (role 0) and the last four nodes (roles 1 to 4). Registers
 by name, one number per lane each; ``.s`` is a role:
 
 ``t.s``                   the value of the path
 ``x<k>.s`` ``d<k>.s``     unknowns, and their derivatives by t
 ``e<k>.s``                how far the true position may be from there
 ``side<b>.s``             det J of a block
-``u<j>``                  inputs at the trial, u = ``u<j>.origin`` + ``u<j>.rate`` t
+``u<j>.origin`` ``.rate`` inputs are u = origin + rate t
 ``u<j>.spread``           how far the inputs of a row may be from those, beside their own rounding
-``a1`` … ``b3``           weights of the nodes' unknowns and derivatives in the prediction
+``a1`` … ``b4``           weights of the nodes' unknowns and derivatives in the prediction
 ``scale<k>``              weights of variables that are lengths
-``live<b>``               1.0 where block b still iterates
-``step<b>`` ``begin<b>``  weighted size of the latest and of the first correction
-``y<k>``                  how far the true position may get from the trial on the way to it
-``radius``                the largest error of the trial, weighted
-``good``                  1.0 where the step may be taken
+
+and what is noted of the trial on the way (role 0):
+
+``u<j>.0``                inputs; phasors of phases that only inputs turn
+``live<b>.0``             1.0 where block b still iterates
+``step<b>.0`` ``begin<b>.0``  weighted size of the latest and of the first correction
+``y<k>.0``                how far the true position may get from the trial on the way to it
+``radius.0``              the largest error of the trial, weighted
+``good.0``                1.0 where the step may be taken
 
 When the trial has become the last node, roles move on by one: nothing is copied, the same program
-is run with its registers renamed (:meth:`MarchPrograms.turned`).
+is run with its registers renamed (:meth:`MarchPrograms.turned`). Nothing is written to registers
+without a role.
 """
 
 from __future__ import annotations
@@ -45,7 +50,8 @@ from linkwork.kernels.loop_table import LoopTable
 
 __all__ = ["ROLES", "MarchPrograms", "march_programs"]
 
-ROLES = 4
+ROLES = 5
+NODES = ROLES - 1  # that a prediction can use
 _UNIT = float(np.finfo(float).eps) / 2.0
 
 
@@ -54,7 +60,8 @@ class MarchPrograms:
     """``predict`` the trial; ``begin`` and ``iterate`` every block, ``damped`` at the start;
     ``prove`` every block, if asked; ``judge``.
 
-    ``nodes`` (4, S): registers of a position, role by role.
+    ``places`` (5, P): registers by role, the first ones of all; ``nodes`` (5, S): those of them
+    that make up a position.
     """
 
     registers: Registers
@@ -66,6 +73,7 @@ class MarchPrograms:
     iterate: tuple[Program, ...]
     prove: tuple[Program, ...]
     nodes: IndexArray
+    places: IndexArray
 
     @property
     def sections(self) -> tuple[Program, ...]:
@@ -76,7 +84,7 @@ class MarchPrograms:
         """The sections when roles have moved on so many times: the trial is one further down."""
         place = np.arange(self.height, dtype=np.uint32)
         for role in range(ROLES):
-            place[self.nodes[role]] = self.nodes[(role - moves) % ROLES]
+            place[self.places[role]] = self.places[(role - moves) % ROLES]
         return tuple(
             replace(program, code=np.hstack([program.code[:, :1], place[program.code[:, 1:]]]))
             for program in self.sections
@@ -96,7 +104,7 @@ class _Writer:
     def _variables(self, rec: Recorder) -> list[Value]:
         """All variables at the trial."""
         inputs = range(self.count - self.n)
-        own = [rec.input("t.0")] if self.alone else [rec.input(f"u{j}") for j in inputs]
+        own = [rec.input("t.0")] if self.alone else [rec.input(f"u{j}.0") for j in inputs]
         return [*[rec.input(f"x{k}.0") for k in range(self.n)], *own]
 
     def _scale(self, rec: Recorder, k: int) -> Value:
@@ -124,7 +132,7 @@ class _Writer:
         rec = Recorder()
         for k in range(self.n):
             value: Value = rec.constant(0.0)
-            for role in (1, 2, 3):
+            for role in range(1, ROLES):
                 value = value + rec.input(f"a{role}") * rec.input(f"x{k}.{role}")
                 value = value + rec.input(f"b{role}") * rec.input(f"d{k}.{role}")
             rec.write(f"x{k}.0", value)
@@ -136,7 +144,7 @@ class _Writer:
                 for j in range(self.count - self.n)
             ]
             for j, value in enumerate(inputs):
-                rec.write(f"u{j}", value)
+                rec.write(f"u{j}.0", value)
         variables = [t] * self.n + inputs  # phases of inputs alone know no unknowns
         for phase in sorted(self._given_phases()):
             cosine, sine = turned(rec, variables, phase)
@@ -152,11 +160,11 @@ class _Writer:
         """One Newton-Raphson step of a block; without proofs with rates and the sign of det J."""
         part, rec = self.parts[number], Recorder()
         closure = self._closure(number, rec)
-        sides = [closure.residual()]
+        matrix, sides = closure.jacobian(part.unknowns), [closure.residual()]
         if not self.certified:
             sides.append(self._drives(closure, rec))
-        answer = solved(rec, closure.jacobian(part.unknowns), sides)
-        change, live = answer.columns[0], rec.input(f"live{number}")
+        answer = solved(rec, matrix, sides)
+        change, live = answer.columns[0], rec.input(f"live{number}.0")
         turns = [abs(d) for d, k in zip(change, part.unknowns, strict=True) if self.table.turns[k]]
         if damped and turns:
             factor = rec.smallest([1.0, rec.input("most_turn") / rec.largest(turns)])
@@ -171,16 +179,32 @@ class _Writer:
         for d, k in zip(change, part.unknowns, strict=True):
             put(f"x{k}.0", closure.v[k] - d)
         for moved in answer.columns[1:]:
-            for r, k in zip(moved, part.unknowns, strict=True):
-                put(f"d{k}.0", -r)
+            rates = self._rates(closure, matrix, moved, change)
+            for r, k in zip(rates, part.unknowns, strict=True):
+                put(f"d{k}.0", r)
         if not self.certified:
             put(f"side{number}.0", answer.determinant)
-            put(f"step{number}", size)
+            put(f"step{number}.0", size)
             if first:
-                rec.write(f"begin{number}", size)
+                rec.write(f"begin{number}.0", size)
         done = rec.at_most(size, rec.input("tolerance"))
-        rec.write(f"live{number}", 1.0 - done if first else rec.where(done, 0.0, live))
+        rec.write(f"live{number}.0", 1.0 - done if first else rec.where(done, 0.0, live))
         return rec
+
+    def _rates(
+        self,
+        closure: Closure,
+        matrix: Sequence[Sequence[Value | float]],
+        moved: Sequence[Value],
+        change: Sequence[Value],
+    ) -> list[Value]:
+        """Rates after the correction, from those before it: the Jacobian is not solved again."""
+        rec, unknowns = closure.rec, closure.part.unknowns
+        rates = {k: self._moved(rec, k) for k in closure.known()}
+        rates |= {k: -r for k, r in zip(unknowns, moved, strict=True)}
+        correction = {k: -d for k, d in zip(unknowns, change, strict=True)}
+        (more,) = solved(rec, matrix, [closure.bending(correction, rates)]).columns
+        return [rec.subtract(rates[k], m) for k, m in zip(unknowns, more, strict=True)]
 
     def _drives(self, closure: Closure, rec: Recorder) -> list[Value]:
         """F_k times the rates of the known variables."""
@@ -202,7 +226,7 @@ class _Writer:
         step = abs(rec.input("t.0") - rec.input("t.1")) * (1.0 + 16.0 * _UNIT)
         for k in proof.known:
             if k < self.n:
-                near[k], far[k] = rec.input(f"e{k}.0"), rec.input(f"y{k}")
+                near[k], far[k] = rec.input(f"e{k}.0"), rec.input(f"y{k}.0")
             else:
                 near[k] = abs(closure.v[k]) * (4.0 * _UNIT) + rec.input(f"u{k - self.n}.spread")
                 far[k] = step * abs(self._rate(rec, k - self.n)) + 2.0 * near[k]
@@ -214,23 +238,23 @@ class _Writer:
             part.unknowns, here.each, there.each, there.alone, strict=True
         ):
             rec.write(f"e{k}.0", error)
-            rec.write(f"y{k}", reach)
+            rec.write(f"y{k}.0", reach)
             away = abs(closure.v[k] - rec.input(f"x{k}.1"))
             away = away + rec.largest([error, rec.input(f"e{k}.1")])
             masks.append(rec.at_most(away, alone * (1.0 - 4.0 * _UNIT)))
-        rec.write(f"ok{number}", rec.all_of(masks))
-        rec.write(f"radius{number}", here.radius)
+        rec.write(f"ok{number}.0", rec.all_of(masks))
+        rec.write(f"radius{number}.0", here.radius)
         return rec
 
     def judge_proof(self) -> Recorder:
         """``good``: where everything is proved."""
         rec = Recorder()
         blocks = range(len(self.parts))
-        masks = [rec.input(f"ok{b}") for b in blocks]
+        masks = [rec.input(f"ok{b}.0") for b in blocks]
         # what has not converged may be proved, but its radius would be of no use
-        masks += [rec.at_most(rec.input(f"live{b}"), 0.0) for b in blocks]
-        rec.write("good", rec.all_of(masks))
-        rec.write("radius", rec.largest(rec.input(f"radius{b}") for b in blocks))
+        masks += [rec.at_most(rec.input(f"live{b}.0"), 0.0) for b in blocks]
+        rec.write("good.0", rec.all_of(masks))
+        rec.write("radius.0", rec.largest(rec.input(f"radius{b}.0") for b in blocks))
         return rec
 
     def judge(self) -> Recorder:
@@ -238,8 +262,8 @@ class _Writer:
         rec = Recorder()
         masks = []
         for b in range(len(self.parts)):
-            masks.append(rec.at_most(rec.input(f"step{b}"), rec.input("tolerance")))
-            masks.append(rec.at_most(rec.input(f"begin{b}"), rec.input("most_correction")))
+            masks.append(rec.at_most(rec.input(f"step{b}.0"), rec.input("tolerance")))
+            masks.append(rec.at_most(rec.input(f"begin{b}.0"), rec.input("most_correction")))
             product = rec.input(f"side{b}.0") * rec.input(f"side{b}.1")
             masks.append(rec.at_most(0.0, product))
         h = rec.input("t.0") - rec.input("t.1")
@@ -248,7 +272,7 @@ class _Writer:
             for k in range(self.n)
         ]
         masks.append(rec.at_most(rec.largest(drifts), rec.input("most_drift")))
-        rec.write("good", rec.all_of(masks))
+        rec.write("good.0", rec.all_of(masks))
         return rec
 
     def node_names(self, role: int) -> list[str]:
@@ -287,8 +311,20 @@ def march_programs(
         *[writer.iterate(b, first=False, damped=False) for b in blocks],
         *[writer.prove(b) for b in blocks if certified],
     ]
+    noted = {name for rec in recorded for name in rec.writes} | {"good.0", "radius.0"}
+    noted -= set(writer.node_names(0))
     registers = Registers()
-    nodes = np.stack([registers.all_of(writer.node_names(role)) for role in range(ROLES)])
+    places = np.stack(
+        [
+            registers.all_of(
+                [
+                    *writer.node_names(role),
+                    *[f"{name.removesuffix('.0')}.{role}" for name in sorted(noted)],
+                ]
+            )
+            for role in range(ROLES)
+        ]
+    )
     for rec in recorded:
         reserve(rec, registers)
     programs = [lowered(rec, registers, registers.count) for rec in recorded]
@@ -303,5 +339,6 @@ def march_programs(
         damped=tuple(rest[count : 2 * count]),
         iterate=tuple(rest[2 * count : 3 * count]),
         prove=tuple(rest[3 * count :]),
-        nodes=nodes,
+        nodes=places[:, : len(writer.node_names(0))],
+        places=places,
     )

@@ -15,13 +15,13 @@ import numpy as np
 
 from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
 from linkwork.kernels.lanes.machine import LANES
+from linkwork.kernels.lanes.march_programs import NODES, ROLES
 from linkwork.kernels.lanes.tasks import FOUND, TABLE, TASKS
 from linkwork.kernels.lanes.trial import (
     GOOD,
     RADIUS,
     TOPOLOGY,
     TRIAL,
-    WEIGHTS,
     copied,
     extrapolated,
     loaded,
@@ -39,17 +39,16 @@ _SAME = 1e-9  # relative: steps so nearly equal share the weights of their predi
 def _chosen(w, lane, weights, times, step, known, spacing):  # type: ignore[no-untyped-def]
     """The weights of a lane's prediction, computed anew where its spacing has changed.
 
-    ``times``: of the last three nodes.
+    ``times``: of the last nodes.
     """
-    one, two = times[0] - times[1], times[1] - times[2]
-    near = _SAME * abs(step)
-    if (
-        abs(step - spacing[0]) <= near
-        and abs(one - spacing[1]) <= near
-        and abs(two - spacing[2]) <= near
-    ):
+    same = abs(step - spacing[0]) <= _SAME * abs(step)
+    for k in range(1, len(times)):
+        same &= abs(times[k - 1] - times[k] - spacing[k]) <= _SAME * abs(step)
+    if same:
         return
-    spacing[0], spacing[1], spacing[2] = step, one, two
+    spacing[0] = step
+    for k in range(1, len(times)):
+        spacing[k] = times[k - 1] - times[k]
     extrapolated(w, lane, weights, times[0] + step, times, known)
 
 
@@ -59,9 +58,9 @@ def _noted(w, lane, topology, turn, row, member, unknowns, found):  # type: igno
     place = found.first + member
     found.reached[row, place] = True
     for j in range(unknowns):
-        found.unknowns[j, row, place] = w[topology.nodes[-turn % 4, j], lane]
+        found.unknowns[j, row, place] = w[topology.nodes[-turn % ROLES, j], lane]
     if found.radius.shape[0]:
-        found.radius[row, place] = w[topology.common[RADIUS], lane]
+        found.radius[row, place] = w[topology.noted[-turn % ROLES, RADIUS], lane]
 
 
 @compiled
@@ -69,10 +68,10 @@ def _stopped(w, lane, topology, turn, way, member, found):  # type: ignore[no-un
     """A mechanism goes no further."""
     nodes = topology.nodes
     size, place = nodes.shape[1], found.first + member
-    found.end[way, place] = w[nodes[(1 - turn) % 4, size - 1], lane]
+    found.end[way, place] = w[nodes[(1 - turn) % ROLES, size - 1], lane]
     for j in range(size):
-        found.last[way, j, place] = w[nodes[(1 - turn) % 4, j], lane]
-        found.last[way, size + j, place] = w[nodes[(2 - turn) % 4, j], lane]
+        found.last[way, j, place] = w[nodes[(1 - turn) % ROLES, j], lane]
+        found.last[way, size + j, place] = w[nodes[(2 - turn) % ROLES, j], lane]
 
 
 @compiled_for(
@@ -96,19 +95,19 @@ def march(topology, written, is_written, w, design, table, tasks, count, found):
     found : Found
     """
     rows, steps, nodes = table.rows, table.steps, topology.nodes
-    good, weights, size = topology.common[GOOD], topology.common[WEIGHTS:], nodes.shape[1]
+    weights, size = topology.weights, nodes.shape[1]
     task = np.full(LANES, -2)  # to be given work; -1: there is none
     row = np.zeros(LANES, np.int64)
     way = np.zeros(LANES, np.int64)
     known = np.zeros(LANES, np.int64)  # nodes that a prediction can use
     h, standing = np.zeros(LANES), np.ones(LANES)
-    spacing, times = np.zeros((LANES, 3)), np.zeros(3)
+    spacing, times = np.zeros((LANES, NODES)), np.zeros(NODES)
     following, busy, turn = 0, LANES, 0
-    w[: 4 * size] = 0.0
+    w[: ROLES * topology.height] = 0.0
     places = placed(topology, w)
     while True:
-        t0, t1 = nodes[-turn % 4, size - 1], nodes[(1 - turn) % 4, size - 1]
-        t2, t3 = nodes[(2 - turn) % 4, size - 1], nodes[(3 - turn) % 4, size - 1]
+        t0, t1 = nodes[-turn % ROLES, size - 1], nodes[(1 - turn) % ROLES, size - 1]
+        good = topology.noted[-turn % ROLES, GOOD]
         for i in range(LANES):
             while task[i] == -2 or (task[i] >= 0 and (row[i] < 0 or row[i] >= len(rows))):
                 if following == count:
@@ -120,8 +119,8 @@ def march(topology, written, is_written, w, design, table, tasks, count, found):
                 following += 1
                 way[i] = tasks.way[task[i]]
                 loaded(w, i, topology.coefficients, design, tasks.member[task[i]])
-                for role in range(1, 4):
-                    loaded(w, i, nodes[(role - turn) % 4], tasks.node, task[i])
+                for role in range(1, ROLES):
+                    loaded(w, i, nodes[(role - turn) % ROLES], tasks.node, task[i])
                 known[i] = 1
                 spacing[i, :] = np.inf  # like no other
                 h[i] = steps[0]
@@ -133,7 +132,8 @@ def march(topology, written, is_written, w, design, table, tasks, count, found):
             away = goal - w[t1, i]
             step = away if abs(away) <= h[i] else math.copysign(h[i], away)
             w[t0, i] = goal if abs(away) <= h[i] else w[t1, i] + step
-            times[0], times[1], times[2] = w[t1, i], w[t2, i], w[t3, i]
+            for role in range(1, ROLES):
+                times[role - 1] = w[nodes[(role - turn) % ROLES, size - 1], i]
             _chosen(w, i, weights, times, step, known[i], spacing[i])
         if busy == 0:
             break
@@ -151,7 +151,7 @@ def march(topology, written, is_written, w, design, table, tasks, count, found):
                     row[i] += 2 * way[i] - 1
                 if moved >= 0.5 * h[i]:
                     h[i] = min(_GROWTH * h[i], steps[1])
-                known[i] = min(known[i] + 1, 3)
+                known[i] = min(known[i] + 1, NODES)
             else:
                 h[i] = 0.5 * moved
                 if h[i] < steps[2]:
@@ -160,6 +160,6 @@ def march(topology, written, is_written, w, design, table, tasks, count, found):
             if not taken or moved == 0.0:  # the trial is no new node: move the others on
                 if taken:
                     known[i] = 1
-                for role in range(3):
-                    copied(w, i, nodes[(role - turn) % 4], nodes[(role + 1 - turn) % 4])
-        turn = (turn + 1) % 4
+                for role in range(NODES):
+                    copied(w, i, nodes[(role - turn) % ROLES], nodes[(role + 1 - turn) % ROLES])
+        turn = (turn + 1) % ROLES

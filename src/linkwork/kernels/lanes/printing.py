@@ -5,12 +5,13 @@ What is written knows no names but registers, so nothing of a mechanism's text g
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from linkwork.kernels.lanes.machine import LANES
+from linkwork.kernels.lanes.march_programs import ROLES
 from linkwork.kernels.lanes.program import Op
 
 __all__ = ["trial_source"]
@@ -43,7 +44,7 @@ _STATEMENT = {
 class _Body:
     """Statements over local names; registers are read where first needed and written at the end."""
 
-    place: Mapping[int, str]
+    place: Callable[[int], str]
     constants: Mapping[int, float]
     lines: list[str] = field(default_factory=list)
     known: set[int] = field(default_factory=set)
@@ -54,7 +55,7 @@ class _Body:
             return repr(self.constants[register])
         if register not in self.known:
             self.known.add(register)
-            self.lines.append(f"r{register} = {self.place[register]}")
+            self.lines.append(f"r{register} = {self.place(register)}")
         return f"r{register}"
 
     def _set(self, *registers: int) -> None:
@@ -77,13 +78,13 @@ class _Body:
             self.lines.append(f"r{d} = {form.format(**used)}")
             self._set(d)
 
-    def end(self) -> None:
-        for register in sorted(self.changed & set(self.place)):
-            self.lines.append(f"{self.place[register]} = r{register}")
+    def end(self, kept: Set[int]) -> None:
+        for register in sorted(self.changed & kept):
+            self.lines.append(f"{self.place(register)} = r{register}")
 
 
 def trial_source(
-    programs: Sequence[Code], nodes: int, named: Sequence[int], constants: Mapping[int, float]
+    programs: Sequence[Code], height: int, kept: Set[int], constants: Mapping[int, float]
 ) -> str:
     """A function ``trial`` over 64 lanes that runs programs one after the other.
 
@@ -91,17 +92,17 @@ def trial_source(
     ----------
     programs : sequence of (K, 5)
         In the first turn.
-    nodes : int
-        How many registers a position has; those of the four places come first.
-    named : sequence of int
-        Registers that stay; others are local.
+    height : int
+        How many registers each of the five places has; they come first.
+    kept : set of int
+        Registers that are written; others that change are local.
     constants : Mapping[int, float]
         Registers of constants.
     """
-    body = _Body({r: _lane_place(r, nodes) for r in named}, constants)
+    body = _Body(lambda register: _lane_place(register, height), constants)
     for code in programs:
         body.add(code)
-    body.end()
+    body.end(kept)
     statements = "\n".join(f"        {line}" for line in body.lines)
     return f"""\
 import math
@@ -112,14 +113,14 @@ from linkwork.kernels.lanes.trial import TRIAL
 
 
 @compiled_for(TRIAL)
-def trial(place0, place1, place2, place3, others):
+def trial(place0, place1, place2, place3, place4, others):
     for i in range({LANES}):
 {statements}
 """
 
 
-def _lane_place(register: int, nodes: int) -> str:
-    role, number = divmod(register, nodes)
-    if role < 4:
+def _lane_place(register: int, height: int) -> str:
+    role, number = divmod(register, height)
+    if role < ROLES:
         return f"place{role}[{number * LANES} + i]"
-    return f"others[{(register - 4 * nodes) * LANES} + i]"
+    return f"others[{(register - ROLES * height) * LANES} + i]"

@@ -15,7 +15,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
 
-__all__ = ["Op", "Program", "Registers"]
+__all__ = ["SOURCES", "Op", "Program", "Registers"]
 
 
 class Op(IntEnum):
@@ -43,6 +43,12 @@ class Op(IntEnum):
     LESS = 19  # what the target holds, less a
     INPUT = 20  # a named register; no instruction
     CONSTANT = 21  # no instruction
+
+
+_ONE = (Op.COPY, Op.NEG, Op.ABS, Op.SQRT, Op.SIN, Op.LESS)
+_THREE = (Op.FMA, Op.FMS, Op.FNMA, Op.WHERE)
+#: How many of a, b, c an instruction reads.
+SOURCES = {op: 1 if op in _ONE else 3 if op in _THREE else 2 for op in Op}
 
 
 @dataclass

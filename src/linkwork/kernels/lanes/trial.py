@@ -1,8 +1,8 @@
 """One trial of 64 lanes: predict, correct block by block, prove, judge.
 
-A position has four places (roles) in a lane: the trial and the last three nodes. The places change
+Positions have five places in a lane: the trial (role 0) and the last four nodes. The places change
 roles when a trial is taken (``turn`` counts that), so nothing is copied: programs are at hand for
-all four turns.
+all five turns.
 """
 
 from __future__ import annotations
@@ -14,13 +14,14 @@ import numpy as np
 from linkwork.foundation.arrays import IndexArray
 from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
 from linkwork.kernels.lanes.machine import LANES, run_part
+from linkwork.kernels.lanes.march_programs import ROLES
 
 __all__ = [
     "GOOD",
+    "LIVE",
     "RADIUS",
     "TOPOLOGY",
     "TRIAL",
-    "WEIGHTS",
     "Topology",
     "by_machine",
     "copied",
@@ -34,14 +35,15 @@ __all__ = [
 
 # where a program stands in the packed code; behind BLOCKS: begin, damped, iterate, prove
 PREDICT, JUDGE, BLOCKS = 0, 1, 2
-# registers that every topology has
-GOOD, RADIUS, WEIGHTS = 0, 1, 2
+# what is noted of a trial; behind LIVE: block by block
+GOOD, RADIUS, LIVE = 0, 1, 2
 _STEPS = 6
 _FAR = 2.5  # times the step before: further ahead fewer nodes are trusted
 _START_STEPS = 50
 
-#: What a written-out trial is called with: the four places of positions, and all other registers.
-TRIAL = types.void(*[types.Array(types.float64, 1, "C")] * 5)
+#: What a written-out trial is called with: the five places of positions by role, and all other
+#: registers, which it only reads.
+TRIAL = types.void(*[types.Array(types.float64, 1, "C")] * 6)
 
 
 class Topology(NamedTuple):
@@ -49,21 +51,23 @@ class Topology(NamedTuple):
 
     Parameters
     ----------
-    code : (4 K, 5) all programs, in all four turns
+    code : (5 K, 5) all programs, in all five turns
     length : K
-    spans : (P, 2) where each program begins and ends in the first turn
-    common : registers of good, radius, a1, b1, a2, b2, a3, b3
-    live : (B,) registers of the blocks' masks
-    nodes : (4, S) registers of positions, t last; role by role the first ones of the workspace
+    spans : (Q, 2) where each program begins and ends in the first turn
+    weights : registers of a1, b1, …, b4
+    nodes : (5, S) registers of positions, t last
+    noted : (5, 2 + B) registers of good, radius, and live of each block
+    height : P, registers of each place; places are the first ones of the workspace
     coefficients : (C,) registers of a design's coefficients
     """
 
     code: np.ndarray[tuple[int, int], np.dtype[np.uint32]]
     length: int
     spans: IndexArray
-    common: IndexArray
-    live: IndexArray
+    weights: IndexArray
     nodes: IndexArray
+    noted: IndexArray
+    height: int
     coefficients: IndexArray
 
 
@@ -73,8 +77,9 @@ TOPOLOGY = types.NamedTuple(
         types.int64,
         types.Array(types.int64, 2, "C"),
         types.Array(types.int64, 1, "C"),
-        types.Array(types.int64, 1, "C"),
         types.Array(types.int64, 2, "C"),
+        types.Array(types.int64, 2, "C"),
+        types.int64,
         types.Array(types.int64, 1, "C"),
     ],
     Topology,
@@ -82,7 +87,7 @@ TOPOLOGY = types.NamedTuple(
 
 
 @compiled_for(TRIAL)
-def by_machine(trial, one, two, three, others):  # type: ignore[no-untyped-def]
+def by_machine(trial, one, two, three, four, others):  # type: ignore[no-untyped-def]
     """Stands for a trial that is not written out: the machine does it."""
 
 
@@ -90,6 +95,11 @@ def by_machine(trial, one, two, three, others):  # type: ignore[no-untyped-def]
 def _one(topology, turn, w, number):  # type: ignore[no-untyped-def]
     first = turn * topology.length
     run_part(topology.code, first + topology.spans[number, 0], first + topology.spans[number, 1], w)
+
+
+@compiled
+def _blocks(topology):  # type: ignore[no-untyped-def]
+    return topology.noted.shape[1] - LIVE
 
 
 @compiled
@@ -112,7 +122,7 @@ def _iterate(topology, turn, w, program, live, most, standing):  # type: ignore[
 
 @compiled
 def _judged(topology, turn, w):  # type: ignore[no-untyped-def]
-    for program in range(BLOCKS + 3 * len(topology.live), len(topology.spans)):
+    for program in range(BLOCKS + 3 * _blocks(topology), len(topology.spans)):
         _one(topology, turn, w, program)
     _one(topology, turn, w, JUDGE)
 
@@ -131,46 +141,48 @@ def settled(topology, written, is_written, turn, w, places, standing):  # type: 
     standing : (LANES,)
         1.0 in lanes that count, 0.0 in others.
     """
-    live = topology.live
-    blocks = len(live)
+    blocks, live = _blocks(topology), topology.noted[-turn % ROLES, LIVE:]
     if is_written:
-        trial, one, two, three, others = places
+        a, b, c, d, e, others = places
         if turn == 0:
-            written(trial, one, two, three, others)
+            written(a, b, c, d, e, others)
         elif turn == 1:
-            written(three, trial, one, two, others)
+            written(e, a, b, c, d, others)
         elif turn == 2:
-            written(two, three, trial, one, others)
+            written(d, e, a, b, c, others)
+        elif turn == 3:
+            written(c, d, e, a, b, others)
         else:
-            written(one, two, three, trial, others)
+            written(b, c, d, e, a, others)
         again = False
-        for b in range(blocks):
-            again |= _any(w, live[b], standing)
+        for k in range(blocks):
+            again |= _any(w, live[k], standing)
         if not again:
             return
     else:
         _one(topology, turn, w, PREDICT)
-    for b in range(blocks):
+    for k in range(blocks):
         if not is_written:
-            _one(topology, turn, w, BLOCKS + b)
-        elif _any(w, live[b], standing):  # what follows was computed with a worse position
-            for later in range(b + 1, blocks):
+            _one(topology, turn, w, BLOCKS + k)
+        elif _any(w, live[k], standing):  # what follows was computed with a worse position
+            for later in range(k + 1, blocks):
                 w[live[later], :] = 1.0
-        _iterate(topology, turn, w, BLOCKS + 2 * blocks + b, live[b], _STEPS - 1, standing)
+        _iterate(topology, turn, w, BLOCKS + 2 * blocks + k, live[k], _STEPS - 1, standing)
     _judged(topology, turn, w)
 
 
 @compiled
 def placed(topology, w):  # type: ignore[no-untyped-def]
     """The workspace as a written trial sees it in the first turn."""
-    size = topology.nodes.shape[1] * LANES
+    size = topology.height * LANES
     flat = w.reshape(-1)
     return (
         flat[:size],
         flat[size : 2 * size],
         flat[2 * size : 3 * size],
         flat[3 * size : 4 * size],
-        flat[4 * size :],
+        flat[4 * size : 5 * size],
+        flat[5 * size :],
     )
 
 
@@ -180,11 +192,11 @@ def solved_slowly(topology, w):  # type: ignore[no-untyped-def]
 
     The first proof knows nothing of the node it compares with, the second that it is this position.
     """
-    blocks, nodes = len(topology.live), topology.nodes
+    blocks, nodes = _blocks(topology), topology.nodes
     everywhere = np.ones(LANES)
     _one(topology, 0, w, PREDICT)
     for b in range(blocks):
-        live = topology.live[b]
+        live = topology.noted[0, LIVE + b]
         w[live, :] = 1.0
         _iterate(topology, 0, w, BLOCKS + blocks + b, live, _START_STEPS, everywhere)
     if len(topology.spans) > BLOCKS + 3 * blocks:
@@ -211,7 +223,7 @@ def copied(w, lane, to, source):  # type: ignore[no-untyped-def]
 @compiled
 def tangent(w, lane, weights, h):  # type: ignore[no-untyped-def]
     """Predict from the last node alone."""
-    for j in range(6):
+    for j in range(len(weights)):
         w[weights[j], lane] = 0.0
     w[weights[0], lane] = 1.0
     w[weights[1], lane] = h
@@ -223,20 +235,19 @@ def extrapolated(w, lane, weights, t, times, known):  # type: ignore[no-untyped-
 
     Parameters
     ----------
-    times : (3,) of the last nodes
+    times : (4,) of the last nodes
     known : how many of them there are; fewer are trusted far ahead
     """
-    step, used = abs(t - times[0]), known
-    if used >= 3 and step > _FAR * abs(times[1] - times[2]):
-        used = 2
-    if used >= 2 and step > _FAR * abs(times[0] - times[1]):
-        used = 1
-    _polynomial(w, lane, weights, t, times, min(used, 3))
+    step, used = abs(t - times[0]), min(known, len(times))
+    for k in range(len(times) - 1, 0, -1):
+        if used > k and step > _FAR * abs(times[k - 1] - times[k]):
+            used = k
+    _polynomial(w, lane, weights, t, times, used)
 
 
 @compiled
 def _polynomial(w, lane, weights, t, nodes, count):  # type: ignore[no-untyped-def]
-    for j in range(6):
+    for j in range(len(weights)):
         w[weights[j], lane] = 0.0
     for i in range(count):
         basis, slope = 1.0, 0.0
