@@ -19,6 +19,7 @@ from linkwork.foundation.status import Status
 from linkwork.motion import sweep
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
+from tests.batch.rate_referee import assert_same_evidence, assert_same_limits, assert_same_rates
 from tests.oracles.balls import BallTable, exactly, newton
 
 Array = npt.NDArray[np.float64]
@@ -83,6 +84,9 @@ def assert_agrees(family: Family, motion: FamilyMotion, certify: bool = True) ->
         assert (motion.radius[k][proved] < 1e-3).all()
         _assert_same_place(family, motion, k, alone)
         _assert_same_names(family, motion, k, alone)
+        assert_same_rates(motion, k, alone)
+        assert_same_evidence(motion, k, alone)
+        assert_same_limits(motion, k, alone)
 
 
 def _assert_same_place(family: Family, motion: FamilyMotion, k: int, alone: Motion) -> None:
