@@ -29,6 +29,10 @@ def assert_same_rates(motion: FamilyMotion, k: int, alone: Motion) -> None:
         assert own.quantity.kind is other.quantity.kind
         is_length = own.quantity.kind is Kind.LENGTH
         unit = float(motion.designs.length_scale[k]) if is_length else 1.0
+        found = motion.found[k]  # where whole turns away, there in both
+        np.testing.assert_allclose(
+            own.value[k][found], other.value[asked][found], rtol=1e-9, atol=1e-9 * max(unit, 360.0)
+        )
         for order, ours, theirs in ((1, own.first, other.first), (2, own.second, other.second)):
             there = theirs[asked]
             np.testing.assert_array_equal(
