@@ -180,6 +180,19 @@ def test_designs_with_limits_change_points_problems_and_without_numbers() -> Non
     assert motion.counts.total() == motion.status.size
 
 
+def test_rows_right_in_front_of_dead_points_are_found() -> None:
+    # |O4 A| = b - c at the dead point, of which the row of 14 deg is so far away
+    away = np.array([2e-3, 1e-4, 1e-5])  # deg
+    a, c, d = 60.0, 60.0, 100.0
+    b = c + np.sqrt(a**2 + d**2 - 2 * a * d * np.cos(np.radians(14.0 - away)))
+    family = lw.example("four-bar").family({"O2 A": a, "A B": b, "O4 B": c})
+    motion = family.sweep()
+    assert not motion.rows.alone.any()
+    assert motion.certified[:, 14].all()
+    np.testing.assert_allclose(motion.limits.lower, 14.0 - away, rtol=0, atol=1e-9)
+    assert_agrees(family, motion)
+
+
 def test_change_points_stop_designs_as_they_do_by_themselves() -> None:
     mechanism = lw.example("parallelogram").driven_by(link="crank", start=5, stop=355, step=5)
     length = mechanism.description.lengths["O2 A"]

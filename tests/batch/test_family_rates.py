@@ -187,7 +187,7 @@ def test_random_four_bars_move_between_the_dead_points_of_their_triangles() -> N
     assert not any(limits.lower_kind[~starts])
     for kind in (np.isinf(lower), near < 1.0, far > -1.0):  # all sorts are there
         assert np.count_nonzero(kind & starts) > 10
-    assert motion.rows.alone[starts].sum() < 0.1 * count
+    assert not motion.rows.alone[starts].any()
     assert "0 change points" in repr(limits)
 
 

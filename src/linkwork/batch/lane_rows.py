@@ -31,6 +31,7 @@ from linkwork.results.motion import LimitKind
 __all__ = ["DesignRows", "design_rows", "message_alone"]
 
 _ON_PATH = 1e-12
+_FINEST = 1e-8  # step, of a radian or a length, where a row lies right in front of a dead point
 _UNIT = float(np.finfo(float).eps) / 2.0
 
 
@@ -197,8 +198,11 @@ class _March:
             return done, reached
         limits = np.repeat([[-np.inf], [np.inf]], len(stopped), axis=1)
         self._limit(limits, rows.take(stopped), stopped)
-        for turns in (-1, 1) if self.free else ():
+        around = (-1, 1) if self.free else ()
+        for turns in around:
             self._wind(t, turns, v, radius, reached, stopped, limits)
+        for turns in (0, *around):  # rows right in front of dead points
+            self._wind(t, turns, v, radius, reached, stopped, limits, _FINEST)
         self.limits[:, stopped] = limits
         settled = self._settled(t, reached[:, stopped], limits)
         done[stopped[settled]] = True
@@ -211,8 +215,13 @@ class _March:
         radius: Array,
         where: IndexArray | slice,
         apart: float = 0.0,
+        smallest: float | None = None,
     ) -> LaneRows:
-        """Rows at values of t that may be ``apart`` from those that are meant."""
+        """Rows at values of t that may be ``apart`` from those that are meant.
+
+        ``smallest``: of the steps, if it is another one than usual.
+        """
+        steps = Steps() if smallest is None else Steps(smallest=smallest)
         found = LaneRows.over(v, radius if self.certify else radius[:0], self.kernel)
         coefficients = {name: values[where] for name, values in self.coefficients.items()}
         coefficients["u0.spread"] = coefficients["u0.spread"] + apart
@@ -221,7 +230,7 @@ class _March:
             self.guess[:, where],
             self.start[where],
             t,
-            Steps().times(self.path.size),
+            steps.times(self.path.size),
             found,
             self.threads,
         )
@@ -256,8 +265,9 @@ class _March:
         reached: BoolArray,
         stopped: IndexArray,
         limits: Array,
+        smallest: float | None = None,
     ) -> None:
-        """Fill the rows that designs reach so many turns away."""
+        """Fill the rows that designs reach so many turns away, with steps as small as that."""
         moved = t + turns * FULL_TURN
         inside = (moved[:, None] >= limits[0]) & (moved[:, None] <= limits[1])
         those = np.flatnonzero((~reached[:, stopped] & inside).any(axis=0))
@@ -266,8 +276,8 @@ class _March:
         mine = stopped[those]
         own, radii = np.empty((len(v), len(t), len(mine))), np.empty((len(t), len(mine)))
         # neither 2π nor the sum is exact
-        apart = 4.0 * _UNIT * (float(np.abs(t).max()) + abs(turns) * FULL_TURN)
-        further = self._marched(moved, own, radii, mine, apart)
+        apart = 4.0 * _UNIT * (float(np.abs(t).max()) + abs(turns) * FULL_TURN) if turns else 0.0
+        further = self._marched(moved, own, radii, mine, apart, smallest)
         row, column = np.nonzero(further.reached & ~reached[:, mine])
         v[:, row, mine[column]] = own[:, row, column]
         radius[row, mine[column]] = radii[row, column]
