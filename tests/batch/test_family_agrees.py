@@ -25,15 +25,9 @@ from tests.oracles.balls import BallTable, exactly, newton
 Array = npt.NDArray[np.float64]
 DRIVEN = [name for name in lw.examples() if lw.example(name).description.inputs]
 #: What the compiled march does not lead through all rows, and why.
-ALONE = {
-    "cam-roller-follower": "a law",
-    "curved-slot": "a law",
-    "garage-door": "the guess lies beside the table's path",
-    "excavator": "the guess lies beside the table's path",
-    "five-bar-robot": "the guess lies beside the table's path",
-    "kempe-translator": "the guess lies beside the table's path",
-    "three-rpr": "the guess lies beside the table's path",
-}
+ALONE = {"cam-roller-follower": "a law", "curved-slot": "a law", "garage-door": "a curve"}
+#: Whose guess lies beside the table's path of inputs.
+BESIDE = ("excavator", "five-bar-robot", "kempe-translator", "three-rpr")
 #: Tables that end right at a dead point: the steps in front of it get too small for the march.
 NEARLY_DEAD = ("chebyshev",)
 
@@ -275,12 +269,43 @@ def test_all_designs_keep_to_the_table_of_the_family() -> None:
             lw.Input(variable="a", start=1.0, stop="top", step=0.01),
             lw.Input(variable="b", start=0.6, stop=0.6),
         ),
-    )  # whose guess lies beside the table: every design goes alone
+    )  # whose guess lies beside the table
     family = mechanism.family({"top": [1.2, 1.3, 1.1]})
     motion = family.sweep()
-    assert motion.rows.alone.all()
+    assert not motion.rows.alone.any()
     assert motion.found.all()
     np.testing.assert_allclose(motion["p"][1], motion["p"][0], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", BESIDE)
+def test_starts_beside_the_path_are_led_to_it_together(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    family = family_of(name, 0.999, 1.0, 1.001)
+    for certify in (True, False):
+        motion = family.sweep(certify=certify)
+        assert not motion.rows.alone.any()
+        assert_agrees(family, motion, certify)
+    monkeypatch.setattr("linkwork.batch.entering._CHUNK", 1)  # one design after the other
+    again = family.sweep(certify=False)
+    np.testing.assert_array_equal(again.rows.v, motion.rows.v)
+
+
+def test_starts_that_cannot_be_led_to_the_path_go_alone() -> None:
+    # between the start and the nearest row the cranks lock; other rows may be reached
+    mechanism = two_inputs(1.0, 0.5).changed(
+        dimensions={"r": 1.0, "l": 1.2, "g": 1.5},
+        guess={"a": 1.0, "b": 0.5, "p": 0.7, "q": 2.0},
+        inputs=(
+            lw.Input(variable="a", start=3.0, stop=3.3, step=0.1),
+            lw.Input(variable="b", start=0.0, stop=0.0),
+        ),
+    )
+    family = mechanism.family({"l": [1.2, 2.6, 1.3]})
+    motion = family.sweep()
+    assert motion.rows.alone.tolist() == [True, False, True]
+    assert_agrees(family, motion)
+    assert motion.found[1].all()
 
 
 def test_threads_and_parts_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from linkwork.batch.coefficients import block_parts, loop_coefficients, zero_coefficients
 from linkwork.batch.designs import Designs
+from linkwork.batch.entering import led_to_rows
 from linkwork.batch.limits import LIMIT_KINDS
 from linkwork.batch.own_rows import OwnRows, ends_as_limits
 from linkwork.foundation.angles import FULL_TURN
@@ -131,9 +132,7 @@ class _Path:
         inputs = designs.start[:, n:]
         start = inputs[:, self.lead]
         away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
-        served = (designs.problem == 0) & (away <= _ON_PATH * np.maximum(1.0, np.abs(inputs))).all(
-            axis=1
-        )
+        served: BoolArray = np.all(away <= _ON_PATH * np.maximum(1.0, np.abs(inputs)), axis=1)
         t = self.model.rows[:, self.lead]
         way = slice(None, None, -1 if t[-1] < t[0] else 1)
         march = _March(self, designs, served, certify, threads)
@@ -167,14 +166,27 @@ class _March:
         self.path, self.certify, self.threads = path, certify, threads
         compiled, model = path.model.compiled, path.model
         n = compiled.solver.unknowns
+        fine = designs.problem == 0
         self.coefficients = _coefficients(path, designs)
         self.zeros = zero_coefficients(designs, self.coefficients)
         self.kernel = LaneKernel(compiled.table, block_parts(model), self.zeros, certify)
-        self.guess = np.where(served, designs.start[:, :n].T, np.nan)  # else not found
+        self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # else not found
         self.start = designs.start[:, n + path.lead].copy()
+        self._enter(designs, np.flatnonzero(fine & ~served))
         self.free = turns_freely(model)
         self.turns = np.zeros((len(model.rows), len(designs)), dtype=np.int32)
         self.limits = np.repeat([[-np.inf], [np.inf]], len(designs), axis=1)
+
+    def _enter(self, designs: Designs, beside: IndexArray) -> None:
+        """Let designs whose start lies beside the path begin at the row they can be led to."""
+        if not len(beside):
+            return
+        t = self.path.model.rows[:, self.path.lead]
+        rows = self.path.origin + np.outer(t, self.path.rate)
+        v, nearest = led_to_rows(
+            designs, rows, self.kernel, self.coefficients, beside, self.threads
+        )
+        self.guess[:, beside], self.start[beside] = v, t[nearest]
 
     def note_limits(self, found: DesignRows, which: BoolArray) -> None:
         """Enter where some designs can move; what the march has located are dead points."""
