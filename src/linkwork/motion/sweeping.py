@@ -98,7 +98,8 @@ def swept_rows(model: Model, *, certify: bool = True) -> tuple[SolvedRows, tuple
 
     No row is added for limits, and limits are told where they were met, not whole turns away.
     """
-    work = _begun(model, certify, NewtonOptions(), ChangePointPolicy.STOP, None)
+    options, policy = NewtonOptions(), ChangePointPolicy.STOP
+    work = _begun(model, certify, options, policy, None, explained=False)
     if isinstance(work, Start):
         return _no_rows(model), ()
     rows, added = work.tables[0].finished()
@@ -112,10 +113,12 @@ def _begun(
     options: NewtonOptions,
     policy: ChangePointPolicy,
     progress: Callable[[float], None] | None,
+    *,
+    explained: bool = True,
 ) -> _Sweep | Start:
-    """The sweep of the start's branch; the start itself if there is none."""
+    """The sweep of the start's branch; the start itself, with the reason, if there is none."""
     rows = model.rows
-    start = first_position(model, model.start_inputs, options)
+    start = first_position(model, model.start_inputs, options, explained=explained)
     if not start.status.ok:
         return start
     lead, rate = lock_step(rows)
