@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -19,18 +19,25 @@ from linkwork.batch.quantity_values import (
     quantity_found,
     quantity_names,
 )
-from linkwork.batch.rates import DesignEvidence, design_evidence, design_rates, design_speeds
+from linkwork.batch.rates import (
+    DesignEvidence,
+    DesignRates,
+    design_evidence,
+    design_rates,
+    design_speeds,
+)
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import InputError, MissingPackageError
 from linkwork.foundation.status import Status
 from linkwork.motion.lock_step import lock_step
 from linkwork.results.motion import Series
-from linkwork.results.quantity import Rate
+from linkwork.results.quantity import Quantity, Rate
 
 __all__ = ["FamilyMotion"]
 
 _MOST_BYTES = 4 << 30  # of labelled arrays that nobody named
+_NEAR = 1 << 16  # positions whose rates are read at a time: temporaries stay in the cache
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -68,9 +75,18 @@ class FamilyMotion:
         return QuantityValues(self.designs, self.inputs, self.rows.v, self.rows.turns)
 
     @cached_property
-    def _moving(self) -> QuantityValues:
-        rates = design_rates(self.designs, self.rows, self.threads)
-        return QuantityValues(self.designs, self.inputs, self.rows.v, self.rows.turns, rates)
+    def _rates(self) -> DesignRates:
+        return design_rates(self.designs, self.rows, self.threads)
+
+    def _moving(self) -> Iterator[tuple[slice, QuantityValues]]:
+        """Quantities with rates, some designs at a time, so that what is computed stays near."""
+        rates, rows = self._rates, self.rows
+        step = max(1, _NEAR // max(1, len(self.inputs)))
+        for begin in range(0, len(self), step):
+            part = slice(begin, begin + step)
+            own = self.designs.take(part)
+            v, turns = rows.v[:, :, part], rows.turns[:, part]
+            yield part, QuantityValues(own, self.inputs, v, turns, rates.take(part))
 
     @cached_property
     def _evidence(self) -> DesignEvidence:
@@ -92,8 +108,11 @@ class FamilyMotion:
         if rate is None:
             return self._values.of(name)
         self._check_rate(quantity, rate)
-        series = self._moving.series(quantity)
-        return rate.of(series.first, series.second, self._speeds)
+        found = np.empty(self.status.shape)
+        for part, values in self._moving():
+            _, jet = values.jet(quantity)
+            found[part] = (jet.d1 if rate.order == 1 else jet.d2).T
+        return rate.of(found, found, None if self.speed is None else self.speed[:, None])
 
     def series(self, name: str) -> Series:
         """A quantity with both derivatives by the leading input, (D, R) each, as in a motion.
@@ -103,8 +122,13 @@ class FamilyMotion:
         UnknownNameError
             With the names that exist.
         """
-        quantity_found(self.designs.base, name)  # before anything is computed
-        return self._moving.series(name)
+        kind, _, _ = quantity_found(self.designs.base, name)  # before anything is computed
+        value, first, second = (np.empty(self.status.shape) for _ in range(3))
+        for part, values in self._moving():
+            _, jet = values.jet(name)
+            value[part], first[part], second[part] = jet.v.T, jet.d1.T, jet.d2.T
+        quantity = Quantity(name=name, kind=kind)
+        return Series(quantity=quantity, value=value, first=first, second=second)
 
     def check_names(self, names: Iterable[str]) -> None:
         """Refuse names that :meth:`__getitem__` does not know.
@@ -135,10 +159,6 @@ class FamilyMotion:
     def speed(self) -> Array | None:
         """The rate of every design's first input, (D,) [rad/s or length/s]; ``None`` without."""
         return design_speeds(self.designs)
-
-    @property
-    def _speeds(self) -> Array | None:
-        return None if self.speed is None else self.speed[:, None]
 
     @property
     def condition(self) -> Array:

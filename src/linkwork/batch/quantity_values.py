@@ -17,8 +17,7 @@ from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.names import canonical, spelled
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
-from linkwork.results.motion import Series
-from linkwork.results.quantity import Kind, Quantity
+from linkwork.results.quantity import Kind
 
 __all__ = ["QuantityValues", "point_named", "quantity_found", "quantity_names"]
 
@@ -81,28 +80,21 @@ class QuantityValues:
         if own in inputs:
             column = self.inputs[:, inputs.index(own)]
             return np.broadcast_to(column, (len(self.designs), len(self.inputs)))
-        return self._jet(name)[1].v.T
-
-    def series(self, name: str) -> Series:
-        """Values (D, R) in everyday units with both derivatives in radians and lengths.
-
-        Raises
-        ------
-        UnknownNameError
-            With the names that exist.
-        """
-        kind, jet = self._jet(name)
-        first, second = (np.broadcast_to(part, self._lost.shape).T for part in (jet.d1, jet.d2))
-        quantity = Quantity(name=name, kind=kind)
-        return Series(quantity=quantity, value=jet.v.T, first=first, second=second)
+        return self.jet(name)[1].v.T
 
     def trace(self, point: str) -> ComplexArray:
         """Positions of a point as x + iy, (D, R)."""
         places: ComplexArray = self._place(point_named(self.model, point))[0].T
         return places
 
-    def _jet(self, name: str) -> tuple[Kind, Jet]:
-        """What is named, (R, D): the value in everyday units, rates in radians and lengths."""
+    def jet(self, name: str) -> tuple[Kind, Jet]:
+        """What is named, (R, D): the value in everyday units, rates in radians and lengths.
+
+        Raises
+        ------
+        UnknownNameError
+            With the names that exist.
+        """
         kind, own, what = quantity_found(self.model, name)
         if what == "output":
             return kind, self._output(own)

@@ -40,6 +40,14 @@ class DesignRates:
     second: Array
     driven: BoolArray
 
+    def take(self, part: slice) -> DesignRates:
+        """Those of some designs."""
+        return DesignRates(
+            first=self.first[:, :, part],
+            second=self.second[:, :, part],
+            driven=self.driven[:, :, part],
+        )
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DesignEvidence:
