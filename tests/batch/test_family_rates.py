@@ -127,6 +127,11 @@ def test_rates_and_limits_are_reduced_in_parts(
         found["B.x.velocity.max"], np.fmax.reduce(motion["B.x.velocity"], axis=1), rtol=1e-12
     )
     np.testing.assert_allclose(found["rocker.d2.<lambda>"], motion["rocker.d2"][:, 0], rtol=1e-9)
+    worst = family.reduced({"condition": "max", "residual": "max"})
+    np.testing.assert_allclose(
+        worst["condition.max"], np.fmax.reduce(motion.condition, axis=1), rtol=1e-12
+    )
+    assert (worst["residual.max"][:3] < 1e-9).all()
     np.testing.assert_array_equal(found["limit.lower"], motion.limits.lower)
     np.testing.assert_array_equal(found["limit.upper"], motion.limits.upper)
     monkeypatch.setattr("linkwork.batch.family._PART_BYTES", 1)
@@ -139,6 +144,10 @@ def test_labelled_arrays_hold_rates_with_units(motion: FamilyMotion) -> None:
         np.testing.assert_array_equal(data[name].values, motion[name])
         assert data[name].attrs["units"] == motion.unit(name)
     assert "crank.d1" not in data
+    np.testing.assert_array_equal(data["condition"].values, motion.condition)
+    own = lw.example("four-bar").changed(outputs={"condition": "2*rocker"})
+    named = own.family({"O2 A": CRANKS}).sweep()
+    np.testing.assert_allclose(named["condition"], 2 * named["rocker"], rtol=1e-14)
     few = motion.to_xarray("B.y.velocity")
     assert "B.y.velocity" in few.data_vars
     assert "B.y" not in few.data_vars

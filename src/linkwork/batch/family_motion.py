@@ -37,6 +37,7 @@ from linkwork.results.quantity import Quantity, Rate
 __all__ = ["FamilyMotion"]
 
 _MOST_BYTES = 4 << 30  # of labelled arrays that nobody named
+_EVIDENCE = ("residual", "condition")  # columns of a motion's table
 _NEAR = 1 << 16  # positions whose rates are read at a time: temporaries stay in the cache
 
 
@@ -97,13 +98,16 @@ class FamilyMotion:
 
         Names are those of a :class:`~linkwork.results.motion.Motion`: ``family["B.x"]``, and of its
         rates ``family["B.x.d1"]``, ``family["B.x.velocity"]`` (angles in radians): NaN at dead
-        points too.
+        points too. ``condition`` and ``residual`` are names as in its table.
 
         Raises
         ------
         UnknownNameError
             With the names that exist.
         """
+        if self._is_evidence(name):
+            evidence: Array = getattr(self, name)
+            return evidence
         quantity, rate = Rate.split(name)
         if rate is None:
             return self._values.of(name)
@@ -139,7 +143,12 @@ class FamilyMotion:
             With the names that exist.
         """
         for name in names:
-            self._check_rate(*Rate.split(name))
+            if not self._is_evidence(name):
+                self._check_rate(*Rate.split(name))
+
+    def _is_evidence(self, name: str) -> bool:
+        """Whether a name is a column of evidence, and not the mechanism's own."""
+        return name in _EVIDENCE and name not in quantity_names(self.designs.base)
 
     def _check_rate(self, quantity: str, rate: Rate | None) -> None:
         quantity_found(self.designs.base, quantity)
@@ -270,6 +279,7 @@ class FamilyMotion:
         own = [name for name in quantity_names(model) if name not in inputs]
         asked = [rate for rate in Rate if not (rate.by_time and self.speed is None)]
         names = [*own, *(f"{name}.{rate.value}" for rate in asked for name in own)]
+        names += [name for name in _EVIDENCE if self._is_evidence(name)]
         needed = 8 * len(names) * self.status.size
         if needed > _MOST_BYTES:
             raise InputError(
@@ -280,6 +290,8 @@ class FamilyMotion:
 
     def unit(self, name: str) -> str:
         """The unit of a quantity or rate, "" for none."""
+        if self._is_evidence(name):
+            return ""
         model = self.designs.base
         quantity, rate = Rate.split(name)
         kind = quantity_found(model, quantity)[0]
