@@ -48,7 +48,10 @@ def test_reductions_leave_out_rows_without_a_position(family: Family, motion: Fa
         assert found["B.x.mean"][k] == pytest.approx(there.mean(), rel=1e-12)
     np.testing.assert_array_equal(found["found"], motion.found.sum(axis=1))
     np.testing.assert_array_equal(found["certified"], motion.certified.sum(axis=1))
-    assert list(found) == ["B.x.min", "B.x.max", "B.x.mean", "B.x.stroke", "found", "certified"]
+    named = ["B.x.min", "B.x.max", "B.x.mean", "B.x.stroke", "found", "certified"]
+    assert list(found) == [*named, "limit.lower", "limit.upper"]
+    np.testing.assert_array_equal(found["limit.lower"], motion.limits.lower)
+    np.testing.assert_array_equal(found["limit.upper"], motion.limits.upper)
 
 
 def test_reductions_may_be_functions_and_stand_alone(family: Family, motion: FamilyMotion) -> None:
@@ -119,7 +122,7 @@ def test_no_designs_have_no_motions() -> None:
     assert list(none.parts()) == []
     found = none.reduced({"rocker": ("min", "stroke")})
     assert {key: values.shape for key, values in found.items()} == dict.fromkeys(
-        ("rocker.min", "rocker.stroke", "found", "certified"), (0,)
+        ("rocker.min", "rocker.stroke", "found", "certified", "limit.lower", "limit.upper"), (0,)
     )
 
 
@@ -192,7 +195,10 @@ def test_labelled_arrays_hold_the_same_with_units(motion: FamilyMotion) -> None:
     np.testing.assert_array_equal(data["certified"].values, motion.certified)
     assert f"{Status.OUT_OF_REACH.code} OUT_OF_REACH" in data["status"].attrs["meaning"]
     few = motion.to_xarray("B.y")
-    assert set(few.data_vars) == {"B.y", "status", "certified", "O2 A"}
+    limits = {"limit.lower", "limit.upper"}
+    assert set(few.data_vars) == {"B.y", "status", "certified", "O2 A"} | limits
+    np.testing.assert_array_equal(few["limit.upper"].values, motion.limits.upper)
+    assert few["limit.upper"].attrs["units"] == "deg"
 
 
 def test_outputs_and_angles_of_designs_follow_their_own_numbers() -> None:

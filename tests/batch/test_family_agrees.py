@@ -19,20 +19,15 @@ from linkwork.foundation.status import Status
 from linkwork.motion import sweep
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
+from tests.batch.rate_referee import assert_same_evidence, assert_same_limits, assert_same_rates
 from tests.oracles.balls import BallTable, exactly, newton
 
 Array = npt.NDArray[np.float64]
 DRIVEN = [name for name in lw.examples() if lw.example(name).description.inputs]
 #: What the compiled march does not lead through all rows, and why.
-ALONE = {
-    "cam-roller-follower": "a law",
-    "curved-slot": "a law",
-    "garage-door": "the guess lies beside the table's path",
-    "excavator": "the guess lies beside the table's path",
-    "five-bar-robot": "the guess lies beside the table's path",
-    "kempe-translator": "the guess lies beside the table's path",
-    "three-rpr": "the guess lies beside the table's path",
-}
+ALONE = {"cam-roller-follower": "a law", "curved-slot": "a law", "garage-door": "a curve"}
+#: Whose guess lies beside the table's path of inputs.
+BESIDE = ("excavator", "five-bar-robot", "kempe-translator", "three-rpr")
 #: Tables that end right at a dead point: the steps in front of it get too small for the march.
 NEARLY_DEAD = ("chebyshev",)
 
@@ -83,6 +78,9 @@ def assert_agrees(family: Family, motion: FamilyMotion, certify: bool = True) ->
         assert (motion.radius[k][proved] < 1e-3).all()
         _assert_same_place(family, motion, k, alone)
         _assert_same_names(family, motion, k, alone)
+        assert_same_rates(motion, k, alone)
+        assert_same_evidence(motion, k, alone)
+        assert_same_limits(motion, k, alone)
 
 
 def _assert_same_place(family: Family, motion: FamilyMotion, k: int, alone: Motion) -> None:
@@ -176,6 +174,19 @@ def test_designs_with_limits_change_points_problems_and_without_numbers() -> Non
     assert motion.counts.total() == motion.status.size
 
 
+def test_rows_right_in_front_of_dead_points_are_found() -> None:
+    # |O4 A| = b - c at the dead point, of which the row of 14 deg is so far away
+    away = np.array([2e-3, 1e-4, 1e-5])  # deg
+    a, c, d = 60.0, 60.0, 100.0
+    b = c + np.sqrt(a**2 + d**2 - 2 * a * d * np.cos(np.radians(14.0 - away)))
+    family = lw.example("four-bar").family({"O2 A": a, "A B": b, "O4 B": c})
+    motion = family.sweep()
+    assert not motion.rows.alone.any()
+    assert motion.certified[:, 14].all()
+    np.testing.assert_allclose(motion.limits.lower, 14.0 - away, rtol=0, atol=1e-9)
+    assert_agrees(family, motion)
+
+
 def test_change_points_stop_designs_as_they_do_by_themselves() -> None:
     mechanism = lw.example("parallelogram").driven_by(link="crank", start=5, stop=355, step=5)
     length = mechanism.description.lengths["O2 A"]
@@ -258,12 +269,43 @@ def test_all_designs_keep_to_the_table_of_the_family() -> None:
             lw.Input(variable="a", start=1.0, stop="top", step=0.01),
             lw.Input(variable="b", start=0.6, stop=0.6),
         ),
-    )  # whose guess lies beside the table: every design goes alone
+    )  # whose guess lies beside the table
     family = mechanism.family({"top": [1.2, 1.3, 1.1]})
     motion = family.sweep()
-    assert motion.rows.alone.all()
+    assert not motion.rows.alone.any()
     assert motion.found.all()
     np.testing.assert_allclose(motion["p"][1], motion["p"][0], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", BESIDE)
+def test_starts_beside_the_path_are_led_to_it_together(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    family = family_of(name, 0.999, 1.0, 1.001)
+    for certify in (True, False):
+        motion = family.sweep(certify=certify)
+        assert not motion.rows.alone.any()
+        assert_agrees(family, motion, certify)
+    monkeypatch.setattr("linkwork.batch.entering._CHUNK", 1)  # one design after the other
+    again = family.sweep(certify=False)
+    np.testing.assert_array_equal(again.rows.v, motion.rows.v)
+
+
+def test_starts_that_cannot_be_led_to_the_path_go_alone() -> None:
+    # between the start and the nearest row the cranks lock; other rows may be reached
+    mechanism = two_inputs(1.0, 0.5).changed(
+        dimensions={"r": 1.0, "l": 1.2, "g": 1.5},
+        guess={"a": 1.0, "b": 0.5, "p": 0.7, "q": 2.0},
+        inputs=(
+            lw.Input(variable="a", start=3.0, stop=3.3, step=0.1),
+            lw.Input(variable="b", start=0.0, stop=0.0),
+        ),
+    )
+    family = mechanism.family({"l": [1.2, 2.6, 1.3]})
+    motion = family.sweep()
+    assert motion.rows.alone.tolist() == [True, False, True]
+    assert_agrees(family, motion)
+    assert motion.found[1].all()
 
 
 def test_threads_and_parts_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from linkwork.batch.designs import Designs, designs_of
     from linkwork.batch.family import Family, family_of
     from linkwork.batch.family_motion import FamilyMotion
+    from linkwork.batch.limits import FamilyLimits
     from linkwork.batch.sampling import Plan, from_table, grid, latin_hypercube, random
 else:
     __getattr__ = loader(
@@ -18,6 +19,7 @@ else:
             "designs": ("Designs", "designs_of"),
             "family": ("Family", "family_of"),
             "family_motion": ("FamilyMotion",),
+            "limits": ("FamilyLimits",),
             "sampling": ("Plan", "from_table", "grid", "latin_hypercube", "random"),
         },
     )
@@ -25,6 +27,7 @@ else:
 __all__ = [
     "Designs",
     "Family",
+    "FamilyLimits",
     "FamilyMotion",
     "Plan",
     "designs_of",

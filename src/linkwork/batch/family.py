@@ -20,7 +20,8 @@ __all__ = ["Family", "Reduction", "family_of"]
 Reduction = str | Callable[[Array], Array]
 
 _MOST_BYTES = 4 << 30  # of unknowns that one call may hold in memory
-_PART = 16_384  # designs reduced at a time
+_PART = 16_384  # designs reduced at a time, fewer where unknowns and rates take more than
+_PART_BYTES = 1 << 30
 
 
 class Family:
@@ -75,8 +76,11 @@ class Family:
                 f"{len(self)} designs × {len(model.rows)} rows take {8 * count / 2**30:.0f} GiB: "
                 "go through family.parts(), or ask for family.reduced({...})"
             )
-        rows = design_rows(self.designs, certify=certify, threads=threads or _cores())
-        return FamilyMotion(designs=self.designs, inputs=model.everyday_rows, rows=rows)
+        threads = threads or _cores()
+        rows = design_rows(self.designs, certify=certify, threads=threads)
+        return FamilyMotion(
+            designs=self.designs, inputs=model.everyday_rows, rows=rows, threads=threads
+        )
 
     def parts(
         self, designs: int = _PART, *, certify: bool = True, threads: int | None = None
@@ -86,6 +90,12 @@ class Family:
             raise InputError(f"a part needs at least one design, got {designs}")
         parts = (self.take(slice(k, k + designs)) for k in range(0, len(self), designs))
         return (part.sweep(certify=certify, threads=threads) for part in parts)
+
+    def _part(self) -> int:
+        """How many designs are reduced at a time, rates included."""
+        model = self.designs.base
+        each = 8 * len(model.rows) * (3 * len(model.equations.unknowns) + 1)
+        return max(1, min(_PART, _PART_BYTES // each))
 
     def reduced(
         self,
@@ -99,15 +109,16 @@ class Family:
         Parameters
         ----------
         wanted : Mapping
-            Quantity → ``min``, ``max``, ``mean``, ``stroke`` (largest less smallest), a function
-            of values (D, R) to (D,), or several of these. Missing positions are NaN; the named
-            reductions leave them out.
+            Quantity or rate (``B.x.velocity``) → ``min``, ``max``, ``mean``, ``stroke`` (largest
+            less smallest), a function of values (D, R) to (D,), or several of these. Missing
+            positions are NaN; the named reductions leave them out.
 
         Returns
         -------
         dict
             ``"mu.min"`` and so on, (D,) each, with ``found`` and ``certified``: how many rows hold
-            a position, and how many are proved.
+            a position, and how many are proved; ``limit.lower`` and ``limit.upper``: between which
+            inputs a design can move, see :class:`FamilyLimits`.
 
         Raises
         ------
@@ -119,12 +130,12 @@ class Family:
             for name, several in wanted.items()
             for reduction in (several if isinstance(several, tuple) else (several,))
         ]
-        nothing = self.take(slice(0)).sweep(certify=False)
-        for name in wanted:
-            nothing[name]  # what does not exist is refused before anything is computed
+        # what does not exist is refused before anything is computed
+        self.take(slice(0)).sweep(certify=False).check_names(wanted)
         found: dict[str, list[Array]] = {key: [np.empty(0)] for _, key, _ in columns}
         found |= {"found": [np.empty(0, dtype=int)], "certified": [np.empty(0, dtype=int)]}
-        for part in self.parts(certify=certify, threads=threads):
+        found |= {"limit.lower": [np.empty(0)], "limit.upper": [np.empty(0)]}
+        for part in self.parts(self._part(), certify=certify, threads=threads):
             for name, key, function in columns:
                 value = np.asarray(function(part[name]), dtype=float)
                 if value.shape != (len(part),):
@@ -134,6 +145,8 @@ class Family:
                 found[key].append(value)
             found["found"].append(part.found.sum(axis=1))
             found["certified"].append(part.certified.sum(axis=1))
+            found["limit.lower"].append(part.limits.lower)
+            found["limit.upper"].append(part.limits.upper)
         return {key: np.concatenate(values) for key, values in found.items()}
 
 

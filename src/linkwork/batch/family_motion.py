@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -12,13 +12,33 @@ import numpy as np
 
 from linkwork.batch.designs import Designs
 from linkwork.batch.lane_rows import DesignRows, message_alone
-from linkwork.batch.quantity_values import QuantityValues
+from linkwork.batch.limits import FamilyLimits
+from linkwork.batch.quantity_values import (
+    QuantityValues,
+    point_named,
+    quantity_found,
+    quantity_names,
+)
+from linkwork.batch.rates import (
+    DesignEvidence,
+    DesignRates,
+    design_evidence,
+    design_rates,
+    design_speeds,
+)
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
 from linkwork.foundation.certification import Certification
-from linkwork.foundation.errors import MissingPackageError
+from linkwork.foundation.errors import InputError, MissingPackageError
 from linkwork.foundation.status import Status
+from linkwork.motion.lock_step import lock_step
+from linkwork.results.motion import Series
+from linkwork.results.quantity import Quantity, Rate
 
 __all__ = ["FamilyMotion"]
+
+_MOST_BYTES = 4 << 30  # of labelled arrays that nobody named
+_EVIDENCE = ("residual", "condition")  # columns of a motion's table
+_NEAR = 1 << 16  # positions whose rates are read at a time: temporaries stay in the cache
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -32,11 +52,14 @@ class FamilyMotion:
         What was asked, everyday units.
     rows : DesignRows
         Unknowns, statuses and proofs, internal units.
+    threads : int
+        How many cores compute rates, which happens when the first one is asked for.
     """
 
     designs: Designs
     inputs: Array
     rows: DesignRows
+    threads: int = 1
 
     def __len__(self) -> int:
         return len(self.designs)
@@ -50,23 +73,120 @@ class FamilyMotion:
 
     @cached_property
     def _values(self) -> QuantityValues:
-        return QuantityValues(self.designs, self.inputs, self.rows.v)
+        return QuantityValues(self.designs, self.inputs, self.rows.v, self.rows.turns)
+
+    @cached_property
+    def _rates(self) -> DesignRates:
+        return design_rates(self.designs, self.rows, self.threads)
+
+    def _moving(self) -> Iterator[tuple[slice, QuantityValues]]:
+        """Quantities with rates, some designs at a time, so that what is computed stays near."""
+        rates, rows = self._rates, self.rows
+        step = max(1, _NEAR // max(1, len(self.inputs)))
+        for begin in range(0, len(self), step):
+            part = slice(begin, begin + step)
+            own = self.designs.take(part)
+            v, turns = rows.v[:, :, part], rows.turns[:, part]
+            yield part, QuantityValues(own, self.inputs, v, turns, rates.take(part))
+
+    @cached_property
+    def _evidence(self) -> DesignEvidence:
+        return design_evidence(self.designs, self.rows, self.threads)
 
     def __getitem__(self, name: str) -> Array:
         """Values of a quantity by name, (D, R), everyday units; NaN where there is no position.
 
-        Names are those of a :class:`~linkwork.results.motion.Motion`: ``family["B.x"]``.
+        Names are those of a :class:`~linkwork.results.motion.Motion`: ``family["B.x"]``, and of its
+        rates ``family["B.x.d1"]``, ``family["B.x.velocity"]`` (angles in radians): NaN at dead
+        points too. ``condition`` and ``residual`` are names as in its table.
 
         Raises
         ------
         UnknownNameError
             With the names that exist.
         """
-        return self._values.of(name)
+        if self._is_evidence(name):
+            evidence: Array = getattr(self, name)
+            return evidence
+        quantity, rate = Rate.split(name)
+        if rate is None:
+            return self._values.of(name)
+        self._check_rate(quantity, rate)
+        found = np.empty(self.status.shape)
+        for part, values in self._moving():
+            _, jet = values.jet(quantity)
+            found[part] = (jet.d1 if rate.order == 1 else jet.d2).T
+        return rate.of(found, found, None if self.speed is None else self.speed[:, None])
+
+    def series(self, name: str) -> Series:
+        """A quantity with both derivatives by the leading input, (D, R) each, as in a motion.
+
+        Raises
+        ------
+        UnknownNameError
+            With the names that exist.
+        """
+        kind, _, _ = quantity_found(self.designs.base, name)  # before anything is computed
+        value, first, second = (np.empty(self.status.shape) for _ in range(3))
+        for part, values in self._moving():
+            _, jet = values.jet(name)
+            value[part], first[part], second[part] = jet.v.T, jet.d1.T, jet.d2.T
+        quantity = Quantity(name=name, kind=kind)
+        return Series(quantity=quantity, value=value, first=first, second=second)
+
+    def check_names(self, names: Iterable[str]) -> None:
+        """Refuse names that :meth:`__getitem__` does not know.
+
+        Raises
+        ------
+        UnknownNameError
+            With the names that exist.
+        """
+        for name in names:
+            if not self._is_evidence(name):
+                self._check_rate(*Rate.split(name))
+
+    def _is_evidence(self, name: str) -> bool:
+        """Whether a name is a column of evidence, and not the mechanism's own."""
+        return name in _EVIDENCE and name not in quantity_names(self.designs.base)
+
+    def _check_rate(self, quantity: str, rate: Rate | None) -> None:
+        quantity_found(self.designs.base, quantity)
+        if rate is not None:
+            rate.check(quantity, self.speed)
 
     def trace(self, point: str) -> ComplexArray:
-        """The path of a point as x + iy, (D, R)."""
-        return self._values.trace(point)
+        """The path of a point as x + iy, (D, R); ``trace("B.velocity")`` its velocity likewise."""
+        own, rate = Rate.split(point)
+        own = point_named(self.designs.base, own)
+        if rate is None:
+            return self._values.trace(own)
+        place: ComplexArray = self[f"{own}.x.{rate.value}"] + 1j * self[f"{own}.y.{rate.value}"]
+        return place
+
+    @cached_property
+    def speed(self) -> Array | None:
+        """The rate of every design's first input, (D,) [rad/s or length/s]; ``None`` without."""
+        return design_speeds(self.designs)
+
+    @property
+    def condition(self) -> Array:
+        """Of the equations at every position, (D, R): how much they magnify errors; see
+        :class:`~linkwork.results.motion.Motion`.
+        """
+        return self._evidence.condition.T
+
+    @property
+    def residual(self) -> Array:
+        """How well every position closes, (D, R), relative to the longest link."""
+        return self._evidence.residual.T
+
+    @cached_property
+    def limits(self) -> FamilyLimits:
+        """Between which inputs every design can move, on the branch of its start."""
+        model = self.designs.base
+        unit = float(model.input_scale[lock_step(model.rows)[0]])
+        return FamilyLimits.of(self.rows.limits, self.rows.limit_kinds, unit)
 
     @property
     def dimensions(self) -> Mapping[str, Array]:
@@ -121,7 +241,14 @@ class FamilyMotion:
         Parameters
         ----------
         names : str
-            Quantities; all of them if none is named.
+            Quantities and rates; all of them if none is named.
+
+        Raises
+        ------
+        UnknownNameError
+            With the names that exist.
+        InputError
+            If all of them would not fit into memory.
         """
         try:
             import xarray
@@ -129,20 +256,48 @@ class FamilyMotion:
             raise MissingPackageError(
                 'labelled arrays need xarray: pip install "linkwork[tables]"'
             ) from None
+        self.check_names(names)
         model = self.designs.base
         lead = model.equations.inputs[0].name
         axes = ("design", lead)
-        inputs = {v.name for v in model.equations.inputs}
         data: dict[str, tuple[Any, Any, dict[str, str]]] = {
-            name: (axes, self[name], {"units": self._values.unit(name)})
-            for name in (names or self._values.names())
-            if name not in inputs
+            name: (axes, self[name], {"units": self.unit(name)})
+            for name in (names or self._all_names())
         }
         data["status"] = (axes, self.status, {"meaning": _codes(Status)})
         data["certified"] = (axes, self.certified, {})
+        data["limit.lower"] = ("design", self.limits.lower, {"units": model.input_units[lead]})
+        data["limit.upper"] = ("design", self.limits.upper, {"units": model.input_units[lead]})
         data |= {name: ("design", values, {}) for name, values in self.dimensions.items()}
         units = {"units": model.input_units[lead]}
         return xarray.Dataset(data, coords={lead: (lead, self.inputs[:, 0], units)})
+
+    def _all_names(self) -> list[str]:
+        """All quantities but inputs, then their rates."""
+        model = self.designs.base
+        inputs = {v.name for v in model.equations.inputs}
+        own = [name for name in quantity_names(model) if name not in inputs]
+        asked = [rate for rate in Rate if not (rate.by_time and self.speed is None)]
+        names = [*own, *(f"{name}.{rate.value}" for rate in asked for name in own)]
+        names += [name for name in _EVIDENCE if self._is_evidence(name)]
+        needed = 8 * len(names) * self.status.size
+        if needed > _MOST_BYTES:
+            raise InputError(
+                f"{len(names)} quantities and rates of {len(self)} designs take "
+                f"{needed / 2**30:.0f} GiB: name those that are wanted"
+            )
+        return names
+
+    def unit(self, name: str) -> str:
+        """The unit of a quantity or rate, "" for none."""
+        if self._is_evidence(name):
+            return ""
+        model = self.designs.base
+        quantity, rate = Rate.split(name)
+        kind = quantity_found(model, quantity)[0]
+        if rate is None:
+            return model.units.of(kind)
+        return rate.unit(kind, model.units, model.derivative_unit)
 
 
 def _codes(kind: type[Status]) -> str:

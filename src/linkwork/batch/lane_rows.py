@@ -2,29 +2,37 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from linkwork.batch.coefficients import block_parts, loop_coefficients, zero_coefficients
 from linkwork.batch.designs import Designs
+from linkwork.batch.entering import led_to_rows
+from linkwork.batch.limits import LIMIT_KINDS
+from linkwork.batch.own_rows import OwnRows, ends_as_limits
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array, BoolArray, IndexArray, StatusArray
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray, StatusArray, TurnArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.status import Status
-from linkwork.kernels.lanes.closure import BlockPart
 from linkwork.kernels.lanes.folding import dead_points
 from linkwork.kernels.lanes.lane_kernel import LaneKernel, LaneRows, Steps
 from linkwork.mechanism.parts import Input
 from linkwork.motion import sweep
 from linkwork.motion.drive import Drive
+from linkwork.motion.limits import BranchEnd
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
+from linkwork.motion.rows import SolvedRows
+from linkwork.motion.sweeping import swept_rows
 from linkwork.motion.tracking import turns_freely
+from linkwork.results.motion import LimitKind
 
 __all__ = ["DesignRows", "design_rows", "message_alone"]
 
 _ON_PATH = 1e-12
+_FINEST = 1e-8  # step, of a radian or a length, where a row lies right in front of a dead point
 _UNIT = float(np.finfo(float).eps) / 2.0
 
 
@@ -33,15 +41,22 @@ class DesignRows:
     """D designs over R rows of inputs, internal units.
 
     ``v`` (n, R, D): unknowns, NaN where there is no position. ``status``, ``certification``
-    (R, D): codes. ``radius`` (R, D): of the proof, weighted; NaN without one.
-    ``alone`` (D,): designs that were computed one at a time.
+    (R, D): codes. ``radius`` (R, D): of the proof, weighted; NaN without one. ``turns`` (R, D): how
+    many whole turns further the position of a row was found. ``limits`` (2, D): where the branch
+    ends below and above, and ``limit_kinds`` (2, D) what ends it, see
+    :func:`linkwork.batch.own_rows.ends_as_limits`; NaN without a position.
+    ``alone`` (D,): designs that were computed one at a time; ``own``: what they say themselves.
     """
 
     v: Array
     status: StatusArray
     certification: StatusArray
     radius: Array
+    turns: TurnArray
+    limits: Array
+    limit_kinds: StatusArray
     alone: BoolArray
+    own: dict[int, OwnRows] = field(default_factory=dict)
 
     @classmethod
     def blank(
@@ -59,6 +74,9 @@ class DesignRows:
             status=np.full((rows, designs), Status.NO_START.code, dtype=np.int8),
             certification=np.full((rows, designs), none.code, dtype=np.int8),
             radius=np.empty((rows, designs))[way],
+            turns=np.zeros((rows, designs), dtype=np.int32),
+            limits=np.full((2, designs), np.nan),
+            limit_kinds=np.zeros((2, designs), dtype=np.int8),
             alone=np.zeros(designs, dtype=bool),
         )
 
@@ -133,14 +151,14 @@ class _Path:
         inputs = designs.start[:, n:]
         start = inputs[:, self.lead]
         away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
-        served = (designs.problem == 0) & (away <= _ON_PATH * np.maximum(1.0, np.abs(inputs))).all(
-            axis=1
-        )
+        served: BoolArray = np.all(away <= _ON_PATH * np.maximum(1.0, np.abs(inputs)), axis=1)
         t = self.model.rows[:, self.lead]
         way = slice(None, None, -1 if self.falling else 1)
         march = _March(self, designs, served, certify, threads)
         whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
         self._note(found, reached[way], whole, certify)
+        found.turns[:] = march.turns[way]
+        march.note_limits(found, whole)
         return whole
 
     def _note(self, found: DesignRows, reached: BoolArray, whole: BoolArray, certify: bool) -> None:
@@ -167,17 +185,33 @@ class _March:
         self.path, self.certify, self.threads = path, certify, threads
         compiled, model = path.model.compiled, path.model
         n = compiled.solver.unknowns
-        self.coefficients = _coefficients(path, designs)
         fine = designs.problem == 0
-        self.zeros = {name for name, values in self.coefficients.items() if not values[fine].any()}
-        parts = [
-            BlockPart(equations=block.equations, unknowns=tuple(block.unknowns.tolist()))
-            for block in compiled.solver.blocks
-        ]
-        self.kernel = LaneKernel(compiled.table, parts, self.zeros, certify)
-        self.guess = np.where(served, designs.start[:, :n].T, np.nan)  # else not found
+        self.coefficients = _coefficients(path, designs)
+        self.zeros = zero_coefficients(designs, self.coefficients)
+        self.kernel = LaneKernel(compiled.table, block_parts(model), self.zeros, certify)
+        self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # else not found
         self.start = designs.start[:, n + path.lead].copy()
+        self._enter(designs, np.flatnonzero(fine & ~served))
         self.free = turns_freely(model)
+        self.turns = np.zeros((len(model.rows), len(designs)), dtype=np.int32)
+        self.limits = np.repeat([[-np.inf], [np.inf]], len(designs), axis=1)
+
+    def _enter(self, designs: Designs, beside: IndexArray) -> None:
+        """Let designs whose start lies beside the path begin at the row they can be led to."""
+        if not len(beside):
+            return
+        t = self.path.model.rows[:, self.path.lead]
+        rows = self.path.origin + np.outer(t, self.path.rate)
+        v, nearest = led_to_rows(
+            designs, rows, self.kernel, self.coefficients, beside, self.threads
+        )
+        self.guess[:, beside], self.start[beside] = v, t[nearest]
+
+    def note_limits(self, found: DesignRows, which: BoolArray) -> None:
+        """Enter where some designs can move; what the march has located are dead points."""
+        found.limits[:, which] = self.limits[:, which]
+        dead = LIMIT_KINDS.index(LimitKind.DEAD_POINT)
+        found.limit_kinds[:, which] = np.where(np.isfinite(self.limits[:, which]), dead, 0)
 
     def through(self, t: Array, v: Array, radius: Array) -> tuple[BoolArray, BoolArray]:
         """March through increasing values of t.
@@ -195,8 +229,12 @@ class _March:
             return done, reached
         limits = np.repeat([[-np.inf], [np.inf]], len(stopped), axis=1)
         self._limit(limits, rows.take(stopped), stopped)
-        for turns in (-1, 1) if self.free else ():
+        around = (-1, 1) if self.free else ()
+        for turns in around:
             self._wind(t, turns, v, radius, reached, stopped, limits)
+        for turns in (0, *around):  # rows right in front of dead points
+            self._wind(t, turns, v, radius, reached, stopped, limits, _FINEST)
+        self.limits[:, stopped] = limits
         settled = self._settled(t, reached[:, stopped], limits)
         done[stopped[settled]] = True
         return done, reached
@@ -208,8 +246,13 @@ class _March:
         radius: Array,
         where: IndexArray | slice,
         apart: float = 0.0,
+        smallest: float | None = None,
     ) -> LaneRows:
-        """Rows at values of t that may be ``apart`` from those that are meant."""
+        """Rows at values of t that may be ``apart`` from those that are meant.
+
+        ``smallest``: of the steps, if it is another one than usual.
+        """
+        steps = Steps() if smallest is None else Steps(smallest=smallest)
         found = LaneRows.over(v, radius if self.certify else radius[:0], self.kernel)
         coefficients = {name: values[where] for name, values in self.coefficients.items()}
         coefficients["u0.spread"] = coefficients["u0.spread"] + apart
@@ -218,7 +261,7 @@ class _March:
             self.guess[:, where],
             self.start[where],
             t,
-            Steps().times(self.path.size),
+            steps.times(self.path.size),
             found,
             self.threads,
         )
@@ -253,8 +296,9 @@ class _March:
         reached: BoolArray,
         stopped: IndexArray,
         limits: Array,
+        smallest: float | None = None,
     ) -> None:
-        """Fill the rows that designs reach so many turns away."""
+        """Fill the rows that designs reach so many turns away, with steps as small as that."""
         moved = t + turns * FULL_TURN
         inside = (moved[:, None] >= limits[0]) & (moved[:, None] <= limits[1])
         those = np.flatnonzero((~reached[:, stopped] & inside).any(axis=0))
@@ -263,12 +307,13 @@ class _March:
         mine = stopped[those]
         own, radii = np.empty((len(v), len(t), len(mine))), np.empty((len(t), len(mine)))
         # neither 2π nor the sum is exact
-        apart = 4.0 * _UNIT * (float(np.abs(t).max()) + abs(turns) * FULL_TURN)
-        further = self._marched(moved, own, radii, mine, apart)
+        apart = 4.0 * _UNIT * (float(np.abs(t).max()) + abs(turns) * FULL_TURN) if turns else 0.0
+        further = self._marched(moved, own, radii, mine, apart, smallest)
         row, column = np.nonzero(further.reached & ~reached[:, mine])
         v[:, row, mine[column]] = own[:, row, column]
         radius[row, mine[column]] = radii[row, column]
         reached[row, mine[column]] = True
+        self.turns[row, mine[column]] = turns
         known = limits[:, those]
         self._limit(known, further, mine)
         limits[:, those] = known
@@ -286,16 +331,7 @@ class _March:
 
 def _coefficients(path: _Path, designs: Designs) -> dict[str, Array]:
     """What the programs of a family read, by register, (D,) each."""
-    found: dict[str, Array] = {}
-    for term in range(designs.loops.shape[1]):
-        column = designs.loops[:, term]
-        found[f"c{term}.re"] = np.ascontiguousarray(column.real)
-        found[f"c{term}.im"] = np.ascontiguousarray(column.imag)
-    for row in range(designs.linear.shape[1]):
-        found[f"k{row}"] = np.ascontiguousarray(designs.linear[:, row])
-    for k, turns in enumerate(path.model.compiled.table.turns):
-        if not turns:
-            found[f"scale{k}"] = designs.length_scale
+    found = loop_coefficients(designs)
     spread = path.spread(designs.start[:, path.model.compiled.solver.unknowns + path.lead])
     for j, (origin, rate) in enumerate(zip(path.origin, path.rate, strict=True)):
         found[f"u{j}.origin"] = np.full(len(designs), origin)
@@ -326,20 +362,31 @@ def _alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
     """One design by the ordinary sweep."""
     found.alone[k] = True
     try:
-        motion = sweep(_at_shared_inputs(designs, k), certify=certify)
+        rows, ends = swept_rows(_at_shared_inputs(designs, k), certify=certify)
     except LinkworkError:  # told by ``message_alone``
         found.v[:, :, k] = found.radius[:, k] = np.nan
         found.status[:, k] = Status.NO_START.code
         none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
         found.certification[:, k] = none.code
         return
-    asked = ~motion.added
-    found.v[:, :, k] = motion.q[asked].T
-    found.status[:, k] = [s.code for s, a in zip(motion.status, asked, strict=True) if a]
-    found.certification[:, k] = [
-        c.code for c, a in zip(motion.certification, asked, strict=True) if a
-    ]
-    found.radius[:, k] = motion.radius[asked]
+    n = len(found.v)
+    found.v[:, :, k] = rows.v[:, :n].T
+    found.status[:, k], found.certification[:, k] = rows.status, rows.certification
+    found.radius[:, k] = rows.radius
+    found.own[k] = OwnRows.of(rows, n)
+    _note_way(designs.base, k, rows, ends, found)
+
+
+def _note_way(
+    base: Model, k: int, rows: SolvedRows, ends: tuple[BranchEnd, ...], found: DesignRows
+) -> None:
+    """Whole turns to the rows of a design that went alone, and the limits it met."""
+    if not (rows.status == Status.CONVERGED.code).any():
+        return
+    found.limits[:, k], found.limit_kinds[:, k] = ends_as_limits(ends)
+    if base.equations.inputs[0].kind == "angle":
+        gap = (rows.v[:, len(found.v)] - base.rows[:, 0]) / FULL_TURN
+        found.turns[:, k] = np.round(np.where(np.isnan(gap), 0.0, gap))
 
 
 def message_alone(designs: Designs, k: int) -> str:

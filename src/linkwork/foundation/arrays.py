@@ -21,9 +21,10 @@ if TYPE_CHECKING:
     CountArray = npt.NDArray[np.int64]
     IndexArray = npt.NDArray[np.intp]
     StatusArray = npt.NDArray[np.int8]
+    TurnArray = npt.NDArray[np.int32]
 else:
     AnyArray = Array = BoolArray = ComplexArray = np.ndarray
-    CountArray = IndexArray = StatusArray = np.ndarray
+    CountArray = IndexArray = StatusArray = TurnArray = np.ndarray
 
 __all__ = [
     "AnyArray",
@@ -33,4 +34,5 @@ __all__ = [
     "CountArray",
     "IndexArray",
     "StatusArray",
+    "TurnArray",
 ]

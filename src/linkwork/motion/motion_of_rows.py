@@ -13,13 +13,12 @@ from linkwork.motion.redundancy import FITS, largest_misfits, misfit
 from linkwork.motion.rows import SolvedRows
 from linkwork.results.motion import Motion
 
-__all__ = ["motion_of_rows"]
+__all__ = ["fitting", "motion_of_rows"]
 
 
 def motion_of_rows(model: Model, rows: SolvedRows, message: str, added: BoolArray) -> Motion:
     """Name the columns of solved rows; ``added`` marks rows that were not asked for."""
-    if model.equations.redundant:
-        rows = _fitting(model, rows)
+    rows = fitting(model, rows)
     found = rows.status == Status.CONVERGED.code
     named = named_series(model, rows.v, rows.first, rows.second, rows.inputs, found)
     return Motion(
@@ -52,8 +51,10 @@ def motion_of_rows(model: Model, rows: SolvedRows, message: str, added: BoolArra
     )
 
 
-def _fitting(model: Model, rows: SolvedRows) -> SolvedRows:
+def fitting(model: Model, rows: SolvedRows) -> SolvedRows:
     """Rows at which redundant links fit; the others have no position."""
+    if not model.equations.redundant:
+        return rows
     rows = rows.take(np.arange(len(rows)))
     fits = misfit(model.equations, rows.v) <= FITS
     lost = (rows.status == Status.CONVERGED.code) & ~fits

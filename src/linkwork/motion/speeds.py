@@ -12,7 +12,7 @@ from linkwork.mechanism.description import Description
 from linkwork.mechanism.speed import speed_per_second
 from linkwork.motion.lock_step import lock_step
 
-__all__ = ["input_speed"]
+__all__ = ["input_speed", "leading_speeds"]
 
 
 def input_speed(description: Description, inputs: Sequence[Variable], rows: Array) -> float | None:
@@ -23,21 +23,33 @@ def input_speed(description: Description, inputs: Sequence[Variable], rows: Arra
     MechanismError
         For a speed that cannot be read, or speeds that contradict the lock-step of the inputs.
     """
-    given = [
-        (k, _speed(description, k, inputs[k].kind))
-        for k, which in enumerate(description.inputs)
-        if which.speed is not None
-    ]
-    if not given:
-        return None
-    _, rate = lock_step(rows)
-    rates = [speed / rate[k] if rate[k] else math.nan for k, speed in given]
-    for (k, _), leading in zip(given, rates, strict=True):
-        if not math.isclose(leading, rates[0], rel_tol=1e-9):
+    rates = leading_speeds(description, inputs, rows)
+    first = next(iter(rates.values()), None)
+    for k, leading in rates.items():
+        assert first is not None
+        if not math.isclose(leading, first, rel_tol=1e-9):
             message = "contradicts the first speed: in lock-step, speeds are as the steps"
             problem = Problem(key=(*description.input_key(k), "speed"), message=message)
             raise MechanismError([problem], f'mechanism "{description.name}"')
-    return rates[0]
+    return first
+
+
+def leading_speeds(
+    description: Description, inputs: Sequence[Variable], rows: Array
+) -> dict[int, float]:
+    """What the speed of every input that has one makes of the leading input's rate.
+
+    Raises
+    ------
+    MechanismError
+        For a speed that cannot be read.
+    """
+    _, rate = lock_step(rows)
+    return {
+        k: _speed(description, k, inputs[k].kind) / rate[k] if rate[k] else math.nan
+        for k, which in enumerate(description.inputs)
+        if which.speed is not None
+    }
 
 
 def _speed(description: Description, k: int, kind: str) -> float:

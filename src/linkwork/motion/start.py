@@ -35,9 +35,17 @@ class Start:
 
 
 def first_position(
-    model: Model, inputs: Array, options: NewtonOptions, with_steps: bool = False
+    model: Model,
+    inputs: Array,
+    options: NewtonOptions,
+    with_steps: bool = False,
+    *,
+    explained: bool = True,
 ) -> Start:
-    """Newton-Raphson from the guess with the given input values (p,), internal units."""
+    """Newton-Raphson from the guess with the given input values (p,), internal units.
+
+    Explaining why there is no position takes many times longer than looking for it.
+    """
     solver = model.compiled.solver
     v = model.equations.start.copy()
     v[solver.unknowns :] = inputs
@@ -46,7 +54,7 @@ def first_position(
     done = solver.solve(v[None, :], options, watches)
     status = Status.of_code(int(done.status[0]))
     failure = None
-    if not status.ok:
+    if not status.ok and explained:
         status, failure = why.no_position(model, v, status, int(done.failed_block[0]), options)
     trails = []
     for k, watcher in enumerate(watchers):

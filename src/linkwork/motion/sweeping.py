@@ -21,7 +21,7 @@ from linkwork.motion.extremes import check_quantities, output_limit_at, output_l
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
-from linkwork.motion.motion_of_rows import motion_of_rows
+from linkwork.motion.motion_of_rows import fitting, motion_of_rows
 from linkwork.motion.proving import way_is_proved
 from linkwork.motion.redundancy import FITS, misfit
 from linkwork.motion.rows import SolvedRows
@@ -33,7 +33,7 @@ from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.track import InputPath, Node, Track, follow, node_at
 from linkwork.results.motion import Limit, Motion, OutputLimit
 
-__all__ = ["sweep"]
+__all__ = ["sweep", "swept_rows"]
 
 _ENTRIES = (
     24  # rows, from the nearest on, at which a table of several inputs is tried to be entered
@@ -80,27 +80,58 @@ def sweep(
     InputError, UnknownNameError
         For a policy or a quantity that does not exist.
     """
-    options = options or NewtonOptions()
     policy = ChangePointPolicy.of(change_points)
-    rows = model.rows  # without an input there is nothing to sweep: an error
+    _ = model.rows  # without an input there is nothing to sweep: an error
     check_quantities(model, limits_of)
-    start = first_position(model, model.start_inputs, options)
+    work = _begun(model, certify, options or NewtonOptions(), policy, progress)
+    if isinstance(work, Start):
+        return _without_start(model, work)
+    if through:
+        work.go_around(work.tables[0].asked)
+    for name in limits_of:
+        work.locate_extremes(name)
+    return work.motion()
+
+
+def swept_rows(model: Model, *, certify: bool = True) -> tuple[SolvedRows, tuple[BranchEnd, ...]]:
+    """What :func:`sweep` finds for the rows of the table, and the ends of the branch they lie on.
+
+    No row is added for limits, and limits are told where they were met, not whole turns away.
+    """
+    options, policy = NewtonOptions(), ChangePointPolicy.STOP
+    work = _begun(model, certify, options, policy, None, explained=False)
+    if isinstance(work, Start):
+        return _no_rows(model), ()
+    rows, added = work.tables[0].finished()
+    asked = rows.take(np.flatnonzero(~added))
+    return fitting(model, asked), work.branches[0].found.ends
+
+
+def _begun(
+    model: Model,
+    certify: bool,
+    options: NewtonOptions,
+    policy: ChangePointPolicy,
+    progress: Callable[[float], None] | None,
+    *,
+    explained: bool = True,
+) -> _Sweep | Start:
+    """The sweep of the start's branch; the start itself, with the reason, if there is none."""
+    rows = model.rows
+    start = first_position(model, model.start_inputs, options, explained=explained)
     if not start.status.ok:
-        return _without_start(model, start)
+        return start
     lead, rate = lock_step(rows)
     drive = Drive.through(model, rows[0], rate, lead)
     asked = Asked(t=rows[:, lead], inputs=rows, everyday=model.everyday_rows)
     entry = _onto_path(drive, start, asked.t, certify)
     if entry is None:
         message = "no row of the table could be reached from the guess's own input values"
-        return _without_start(model, replace(start, message=message))
+        return replace(start, message=message)
     work = _Sweep(drive, certify, Report(progress, entry[0].t, *_span(asked.t)))
+    work.message = start.message
     work.run(*entry, asked, policy)
-    if through:
-        work.go_around(asked)
-    for name in limits_of:
-        work.locate_extremes(name)
-    return work.motion(start.message)
+    return work
 
 
 def _span(t: Array) -> tuple[float, float]:
@@ -133,6 +164,7 @@ class _Sweep:
         self.limits: list[Limit] = []
         self.output_limits: list[OutputLimit] = []
         self.circuit: CircuitEnd | None = None
+        self.message = ""
 
     def run(self, anchor: Node, entered: bool, asked: Asked, policy: ChangePointPolicy) -> None:
         """The table of the start's branch, and of those beyond change points if asked."""
@@ -291,13 +323,13 @@ class _Sweep:
         anchor = track.nodes[track.start]
         return self._branch(anchor, asked, branch.name, branch.standing).rows
 
-    def motion(self, message: str) -> Motion:
+    def motion(self) -> Motion:
         """Everything in one result."""
         first, *further = (table.finished() for table in self.tables)
         added = [first[1], *(np.ones(len(rows), dtype=bool) for rows, _ in further)]
         rows = SolvedRows.joined([first[0], *(rows for rows, _ in further)])
         motion = replace(
-            motion_of_rows(self.model, rows, message, np.concatenate(added)),
+            motion_of_rows(self.model, rows, self.message, np.concatenate(added)),
             limits=tuple(self.limits),
             output_limits=tuple(self.output_limits),
             circuit=self.circuit,
@@ -352,8 +384,12 @@ def _led_to(drive: Drive, start: Start, t: float, certify: bool) -> tuple[Node, 
     return node_at(solver, path, t, nodes[-1].v), entered
 
 
+def _no_rows(model: Model) -> SolvedRows:
+    return SolvedRows.blank(model.everyday_rows, model.compiled.solver.variables, Status.NO_START)
+
+
 def _without_start(model: Model, start: Start) -> Motion:
-    rows = SolvedRows.blank(model.everyday_rows, model.compiled.solver.variables, Status.NO_START)
+    rows = _no_rows(model)
     nothing_added = np.zeros(len(rows), dtype=bool)
     motion = motion_of_rows(model, rows, start.message, nothing_added)
     return replace(motion, failure=start.failure)

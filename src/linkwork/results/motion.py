@@ -19,7 +19,7 @@ from linkwork.foundation.names import spelled
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
-from linkwork.results.quantity import Quantity, Units
+from linkwork.results.quantity import Quantity, Rate, Units
 from linkwork.results.summary import motion_summary
 from linkwork.results.table import Table, table_of
 
@@ -258,11 +258,20 @@ class Motion:
         return len(self.status)
 
     def __getitem__(self, name: str) -> Array:
-        """Values of one column by name, shape (N,): ``motion["s16"]``, ``motion["A.x"]``."""
+        """Values of one column by name, shape (N,): ``motion["s16"]``, ``motion["A.x"]``.
+
+        Rates are columns too: ``motion["A.x.d1"]``, ``motion["A.x.velocity"]``; see
+        :class:`~linkwork.results.quantity.Rate`.
+        """
         own = spelled(name, self.inputs)
         if own in self.inputs:
             return self.inputs[own]
-        return self.series(name).value
+        quantity, rate = Rate.split(name)
+        series = self.series(quantity)
+        if rate is None:
+            return series.value
+        rate.check(quantity, self.speed)
+        return rate.of(series.first, series.second, self.speed)
 
     def series(self, name: str) -> Series:
         """The series of a name: unknown, link, slider, output or ``<point>.x``."""
@@ -321,11 +330,15 @@ class Motion:
         return Counter(self.status)
 
     def trace(self, point: str) -> ComplexArray:
-        """The path of a point as x + iy, shape (N,), NaN where there is no position."""
-        point = spelled(point, self.points)
-        if point not in self.points:
+        """The path of a point as x + iy, shape (N,), NaN where there is no position.
+
+        ``motion.trace("B.velocity")`` is its velocity likewise.
+        """
+        own, rate = Rate.split(point)
+        own = spelled(own, self.points)
+        if own not in self.points:
             raise UnknownNameError(
-                f'there is no point "{point}" {choices("points", self.points, point)}'
+                f'there is no point "{own}" {choices("points", self.points, own)}'
             )
-        x, y = self.points[point]
-        return x.value + 1j * y.value
+        suffix = "" if rate is None else f".{rate.value}"
+        return self[f"{own}.x{suffix}"] + 1j * self[f"{own}.y{suffix}"]

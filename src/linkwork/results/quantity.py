@@ -5,9 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from linkwork.foundation.angles import AngleUnit
+import numpy as np
 
-__all__ = ["Kind", "Quantity", "Units"]
+from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import UnknownNameError
+
+__all__ = ["Kind", "Quantity", "Rate", "Units"]
 
 
 class Kind(Enum):
@@ -44,3 +48,62 @@ class Quantity:
 
     name: str
     kind: Kind
+
+
+class Rate(Enum):
+    """How a rate is asked for: ``B.x.d1`` and ``.d2`` are the derivatives of ``B.x`` by the leading
+    input, ``.velocity`` and ``.acceleration`` those by time.
+
+    Angles count in radians.
+    """
+
+    FIRST = "d1"
+    SECOND = "d2"
+    VELOCITY = "velocity"
+    ACCELERATION = "acceleration"
+
+    @classmethod
+    def split(cls, name: str) -> tuple[str, Rate | None]:
+        """What is named, and which of its rates; ``None`` for a quantity itself."""
+        own, _, last = name.rpartition(".")
+        rate = next((rate for rate in cls if own and rate.value == last), None)
+        return (name, None) if rate is None else (own, rate)
+
+    @property
+    def order(self) -> int:
+        """1 or 2: how often the quantity is differentiated."""
+        return 1 if self in (Rate.FIRST, Rate.VELOCITY) else 2
+
+    @property
+    def by_time(self) -> bool:
+        """Whether the input needs a speed."""
+        return self in (Rate.VELOCITY, Rate.ACCELERATION)
+
+    def check(self, name: str, speed: Array | float | None) -> None:
+        """Refuse a rate by time of a quantity if the input has no speed.
+
+        Raises
+        ------
+        UnknownNameError
+            With the name of the rate by the input.
+        """
+        if self.by_time and speed is None:
+            by_input = Rate.FIRST if self.order == 1 else Rate.SECOND
+            raise UnknownNameError(
+                f'there is no "{name}.{self.value}" without a speed of the input: give it one, or '
+                f'ask for "{name}.{by_input.value}", which is by the input'
+            )
+
+    def of(self, first: Array, second: Array, speed: Array | float | None) -> Array:
+        """The rate, given both derivatives by the input and the input's speed."""
+        derivative = first if self.order == 1 else second
+        if not self.by_time:
+            return derivative
+        assert speed is not None
+        found: Array = derivative * np.asarray(speed) ** self.order
+        return found
+
+    def unit(self, kind: Kind, units: Units, by: str) -> str:
+        """Its unit; ``by`` is that of the input in derivatives."""
+        power = "" if self.order == 1 else "^2"
+        return f"{units.of_rate(kind)}/{'s' if self.by_time else by}{power}"

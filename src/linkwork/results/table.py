@@ -10,6 +10,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.errors import MissingPackageError
+from linkwork.results.quantity import Rate
 
 if TYPE_CHECKING:
     from linkwork.results.motion import Motion, Series
@@ -100,16 +101,14 @@ def table_of(motion: Motion) -> Table:
     everything |= motion.outputs
     for name, series in everything.items():
         add(name, series.value, units.of(series.quantity.kind))
-    by = motion.derivative_unit
-    for name, series in everything.items():
-        rate = units.of_rate(series.quantity.kind)
-        add(f"{name}.d1", series.first, f"{rate}/{by}")
-        add(f"{name}.d2", series.second, f"{rate}/{by}^2")
-    if motion.speed is not None:
+    asked = [rate for rate in Rate if not (rate.by_time and motion.speed is None)]
+    for pair in (asked[:2], asked[2:]):
         for name, series in everything.items():
-            rate = units.of_rate(series.quantity.kind)
-            add(f"{name}.velocity", series.first * motion.speed, f"{rate}/s")
-            add(f"{name}.acceleration", series.second * motion.speed**2, f"{rate}/s^2")
+            kind = series.quantity.kind
+            for rate in pair:
+                values = rate.of(series.first, series.second, motion.speed)
+                unit = rate.unit(kind, units, motion.derivative_unit)
+                add(f"{name}.{rate.value}", values, unit)
     add("status", np.array([status.name for status in motion.status]), "")
     add("residual", motion.residual, "")
     add("iterations", motion.iterations, "")

@@ -8,6 +8,10 @@ method on the curve. Registers as in :mod:`march_programs`, and
 ``bend``               d²t/dλ² between the last two places
 ``move``               the weighted size of the last change of λ
 ``seeking``            1.0 while the place is still improved
+``w<k>`` ``x<k>``      the place that an arc is proved from, and how far the true one may be
+``e<k>``               how far the true place may be from where the arc was proved to
+``p<k>`` ``pr<k>``     the node with its rates by λ; ``z<k>`` ``zr<k>`` the dead point with its own
+``along``              which part of the way from the node to the dead point a place between has
 """
 
 from __future__ import annotations
@@ -32,15 +36,20 @@ _FARTHEST = 0.3  # weighted: how far λ may go in one step
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FoldPrograms:
-    """``iterate``: Newton-Raphson at a fixed λ with the rates by λ; ``move``: to the next λ;
-    ``prove``: the arc from the node to the dead point (``None`` without proofs).
+    """``iterate``: Newton-Raphson at a fixed λ with the rates by λ; ``move``: to the next λ.
+
+    Without proofs ``None``: ``prove``: the arc from ``w`` to the place reached. For proofs in parts
+    ``between`` predicts a place between node and dead point; after ``advance`` the place reached is
+    what the next part begins from.
     """
 
     registers: Registers
     height: int
     iterate: Program
     move: Program
-    prove: Program | None
+    prove: Program | None = None
+    between: Program | None = None
+    advance: Program | None = None
 
 
 class _Writer:
@@ -100,24 +109,50 @@ class _Writer:
         return rec
 
     def prove(self) -> Recorder:
-        """That the dead point lies on the curve of the node."""
+        """That the place reached lies on the curve of the one before, the node at first."""
         rec = Recorder()
         closure = self._closure(rec)
         used = (*self.part.unknowns, *closure.known())
         proof = BlockProof(closure, {k: self._scale(rec, k) for k in used})
         here, node = closure.v[self.lead], rec.input(f"w{self.lead}")
         near = rec.absolute(here) * (4.0 * _UNIT)
-        # the node's own λ is known as well as its position
+        # a node's own λ is known as well as its position
         away = rec.absolute(here - node) * (1.0 + 16.0 * _UNIT)
         far = away + 2.0 * near + rec.input(f"x{self.lead}")
         place = proof.within(dict.fromkeys(proof.known, near))
         arc = proof.within(dict.fromkeys(proof.known, far))
         masks = [place.holds, arc.holds]
         for k, error, alone in zip(self.part.unknowns, place.each, arc.alone, strict=True):
+            rec.write(f"e{k}", error)
             off = rec.absolute(closure.v[k] - rec.input(f"w{k}"))
             known = rec.largest([error, rec.input(f"x{k}")])
             masks.append(rec.at_most(off + known, alone * (1.0 - 4.0 * _UNIT)))
         rec.write("good", rec.all_of(masks))
+        return rec
+
+    def between(self) -> Recorder:
+        """A place between node and dead point: the cubic through both with their rates."""
+        rec = Recorder()
+        s = rec.input("along")
+        square, cube = s * s, s * s * s
+        away = rec.input(f"z{self.lead}") - rec.input(f"p{self.lead}")
+        ahead = 3.0 * square - 2.0 * cube
+        rise, fall = (cube - 2.0 * square + s) * away, (cube - square) * away
+        rec.write(f"v{self.lead}", rec.input(f"p{self.lead}") + s * away)
+        for k in self.part.unknowns:
+            begin, end = rec.input(f"p{k}"), rec.input(f"z{k}")
+            bent = rise * rec.input(f"pr{k}") + fall * rec.input(f"zr{k}")
+            rec.write(f"v{k}", begin + ahead * (end - begin) + bent)
+        return rec
+
+    def advance(self) -> Recorder:
+        """The next part begins where this one ended, at a λ that is exact."""
+        rec = Recorder()
+        rec.write(f"w{self.lead}", rec.input(f"v{self.lead}"))
+        rec.write(f"x{self.lead}", 0.0)
+        for k in self.part.unknowns:
+            rec.write(f"w{k}", rec.input(f"v{k}"))
+            rec.write(f"x{k}", rec.input(f"e{k}"))
         return rec
 
 
@@ -134,15 +169,17 @@ def fold_programs(
         The unknown that leads.
     """
     writer = _Writer(table, lead, zeros)
-    recorded = [writer.iterate(), writer.move(), *([writer.prove()] if certified else [])]
+    recorded = {"iterate": writer.iterate(), "move": writer.move()}
+    if certified:
+        recorded["prove"] = writer.prove()
+        recorded["between"] = writer.between()
+        recorded["advance"] = writer.advance()
     registers = Registers()
-    for rec in recorded:
+    for rec in recorded.values():
         reserve(rec, registers)
-    programs = [lowered(rec, registers, registers.count) for rec in recorded]
+    programs = {name: lowered(rec, registers, registers.count) for name, rec in recorded.items()}
     return FoldPrograms(
         registers=registers,
-        height=max(program.height for program in programs),
-        iterate=programs[0],
-        move=programs[1],
-        prove=programs[2] if certified else None,
+        height=max(program.height for program in programs.values()),
+        **programs,
     )

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.kernels.lanes.compiling import compiled
-from linkwork.kernels.lanes.fold_programs import fold_programs
+from linkwork.kernels.lanes.fold_programs import FoldPrograms, fold_programs
 from linkwork.kernels.lanes.machine import LANES, run
 from linkwork.kernels.loop_table import LoopTable
 
@@ -19,6 +19,7 @@ _PLACES = 30  # that the secant method may try
 _STEPS = 8  # of Newton-Raphson at each
 _CLOSE = 1e-7  # a move of λ after which the place is found: t is off by its square and less
 _TOLERANCE = 1e-8
+_PARTS = (2, 4, 8)  # that an arc is proved in where it is not proved in one
 _STRAIGHT = 1e-4  # weighted d²t/dλ² below which it is no ordinary dead point
 
 
@@ -86,39 +87,106 @@ def _led_by(
     found: Folds,
 ) -> None:
     programs = fold_programs(table, lead, zeros, certified)
-    n, named = table.unknowns, programs.registers.named
+    n = table.unknowns
+    own = {name: values[mine] for name, values in coefficients.items()}
+    at_node = _at_node(nodes, lead, mine)
+    named = ["step", "move", "bend", "live", "seeking", "good" if certified else "live"]
+    others = [k for k in range(n + 1) if k != lead]
+    named += [*(f"v{k}" for k in range(n + 1)), *(f"r{k}" for k in others)]
+    run_on = _Runner(programs, own | at_node)
+    out = dict(zip(named, run_on.search(named), strict=True))
+    size = own.get(f"scale{lead}", np.ones(len(mine)))
+    with np.errstate(invalid="ignore"):
+        fine = (out["live"] == 0.0) & (out["seeking"] == 0.0)
+        fine &= (out["step"] <= _TOLERANCE) & (out["move"] <= _CLOSE)
+        fine &= np.abs(out["bend"]) * size**2 >= _STRAIGHT
+    if certified:
+        proved = out["good"] > 0.5
+        both = own | at_node | _both_ends(at_node, out, lead, others)
+        for parts in _PARTS:
+            left = np.flatnonzero(fine & ~proved)
+            some = _Runner(programs, {name: values[left] for name, values in both.items()})
+            proved[left] = some.proved_in(parts)
+        fine &= proved
+    found.t[mine], found.found[mine] = np.where(fine, out[f"v{n}"], np.nan), fine
+
+
+def _at_node(nodes: LastNodes, lead: int, mine: np.ndarray) -> dict[str, Array]:
+    """Registers at the nodes of some designs: places, rates by λ, what is known of the errors."""
+    n = len(nodes.w)
     slope, slope0 = 1.0 / nodes.s[lead, mine], 1.0 / nodes.p[lead, mine]
-    data: dict[str, Array] = {name: values[mine] for name, values in coefficients.items()}
-    data |= {f"v{k}": nodes.w[k, mine] for k in range(n)}
+    data = {f"v{k}": nodes.w[k, mine] for k in range(n)}
     data |= {f"w{k}": nodes.w[k, mine] for k in range(n)}
     data |= {f"x{k}": nodes.x[k, mine] for k in range(n)} | {f"x{n}": np.zeros(len(mine))}
     data |= {f"r{k}": nodes.s[k, mine] * slope for k in range(n)}
     data |= {f"v{n}": nodes.t[mine], f"w{n}": nodes.t[mine], f"r{n}": slope}
-    data |= {"lead0": nodes.q[lead, mine], "slope0": slope0}
-    names = [name for name in data if name in named]
-    places = np.array([named[name] for name in names], dtype=np.intp)
-    given = np.stack([data[name] for name in names])
-    space = programs.registers.filled(max(programs.height, programs.registers.count), LANES)
-    space[named["tolerance"]], space[named["close"]] = _TOLERANCE, _CLOSE
-    wanted = programs.registers.all_of(
-        [f"v{n}", "step", "move", "bend", "live", "seeking", "good" if certified else "live"]
-    )
-    out = np.empty((len(wanted), len(mine)))
-    prove = programs.prove.code if programs.prove is not None else np.empty((0, 5), np.uint32)
-    _search(programs.iterate.code, programs.move.code, prove, space, wanted, places, given, out)
-    t, step, move, bend, live, seeking, good = out
-    size = coefficients.get(f"scale{lead}", np.ones(len(nodes.t)))[mine]
-    regular = np.abs(bend) * size**2 >= _STRAIGHT
-    with np.errstate(invalid="ignore"):
-        fine = (live == 0.0) & (seeking == 0.0) & (step <= _TOLERANCE) & (move <= _CLOSE)
-        fine &= regular
-        if certified:
-            fine &= good > 0.5
-    found.t[mine], found.found[mine] = np.where(fine, t, np.nan), fine
+    return data | {"lead0": nodes.q[lead, mine], "slope0": slope0}
+
+
+def _both_ends(
+    node: Mapping[str, Array], dead: Mapping[str, Array], lead: int, others: Sequence[int]
+) -> dict[str, Array]:
+    """Registers of an arc: its node and its dead point, with rates by λ."""
+    data: dict[str, Array] = {}
+    for end, place, rate in ((node, "p", "pr"), (dead, "z", "zr")):
+        data |= {f"{place}{k}": end[f"v{k}"] for k in (lead, *others)}
+        data |= {f"{rate}{k}": end[f"r{k}"] for k in others}
+    return data
+
+
+class _Runner:
+    """Programs with what they read, ``given`` (D,) by register, and a workspace."""
+
+    def __init__(self, programs: FoldPrograms, given: Mapping[str, Array]) -> None:
+        self.programs, self.registers = programs, programs.registers
+        named = self.registers.named
+        names = [name for name in given if name in named]
+        self.places = np.array([named[name] for name in names], dtype=np.intp)
+        self.given = np.stack([given[name] for name in names])
+        self.space = self.registers.filled(max(programs.height, self.registers.count), LANES)
+        self.space[named["tolerance"]], self.space[named["close"]] = _TOLERANCE, _CLOSE
+
+    def search(self, wanted: Sequence[str]) -> Array:
+        """Registers (W, D) when the dead points are found, and the arcs to them tried in one."""
+        programs, prove = self.programs, self.programs.prove
+        out = np.empty((len(wanted), self.given.shape[1]))
+        _search(
+            programs.iterate.code,
+            programs.move.code,
+            np.empty((0, 5), np.uint32) if prove is None else prove.code,
+            self.space,
+            *self.registers.all_of(["live", "seeking"]),
+            self.registers.all_of(wanted),
+            self.places,
+            self.given,
+            out,
+        )
+        return out
+
+    def proved_in(self, parts: int) -> BoolArray:
+        """Whether so many parts prove the arcs, (D,)."""
+        programs = self.programs
+        assert programs.between is not None
+        assert programs.prove is not None
+        assert programs.advance is not None
+        proved = np.zeros(self.given.shape[1], dtype=bool)
+        _prove_in_parts(
+            programs.between.code,
+            programs.iterate.code,
+            programs.prove.code,
+            programs.advance.code,
+            self.space,
+            *self.registers.all_of(["live", "good", "along"]),
+            self.places,
+            self.given,
+            parts,
+            proved,
+        )
+        return proved
 
 
 @compiled
-def _solve(iterate, w, live, seeking):  # type: ignore[no-untyped-def]
+def _solve(iterate, w, live):  # type: ignore[no-untyped-def]
     w[live, :] = 1.0
     for _ in range(_STEPS):
         run(iterate, w)
@@ -130,19 +198,26 @@ def _solve(iterate, w, live, seeking):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _search(iterate, move, prove, w, wanted, places, given, out):  # type: ignore[no-untyped-def]
+def _load(w, places, given, base):  # type: ignore[no-untyped-def]
+    """The designs from ``base`` on; the last one in lanes that are left."""
+    for lane in range(LANES):
+        member = min(base + lane, given.shape[1] - 1)
+        for j in range(len(places)):
+            w[places[j], lane] = given[j, member]
+
+
+@compiled
+def _search(  # type: ignore[no-untyped-def]
+    iterate, move, prove, w, live, seeking, wanted, places, given, out
+):
     """LANES designs at a time: secant steps along the curve, a last solution, the proof."""
     count = given.shape[1]
-    live, seeking = wanted[4], wanted[5]
     for base in range(0, count, LANES):
-        for lane in range(LANES):
-            member = min(base + lane, count - 1)
-            for j in range(len(places)):
-                w[places[j], lane] = given[j, member]
-            w[seeking, lane] = 1.0
+        _load(w, places, given, base)
+        w[seeking, :] = 1.0
         for _ in range(_PLACES):
             run(move, w)
-            _solve(iterate, w, live, seeking)
+            _solve(iterate, w, live)
             open_ = 0.0
             for i in range(LANES):
                 open_ += w[seeking, i]
@@ -153,3 +228,23 @@ def _search(iterate, move, prove, w, wanted, places, given, out):  # type: ignor
         for lane in range(min(LANES, count - base)):
             for j in range(len(wanted)):
                 out[j, base + lane] = w[wanted[j], lane]
+
+
+@compiled
+def _prove_in_parts(  # type: ignore[no-untyped-def]
+    between, iterate, prove, advance, w, live, good, along, places, given, parts, proved
+):
+    """Places between node and dead point, each proved to lie on the curve of the one before."""
+    count = given.shape[1]
+    for base in range(0, count, LANES):
+        _load(w, places, given, base)
+        lanes = min(LANES, count - base)
+        proved[base : base + lanes] = True
+        for part in range(1, parts + 1):
+            w[along, :] = part / parts
+            run(between, w)
+            _solve(iterate, w, live)
+            run(prove, w)
+            for lane in range(lanes):
+                proved[base + lane] &= w[good, lane] > 0.5 and w[live, lane] == 0.0
+            run(advance, w)

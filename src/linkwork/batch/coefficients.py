@@ -1,0 +1,41 @@
+"""The coefficients of designs as compiled programs read them, by register."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwork.batch.designs import Designs
+from linkwork.foundation.arrays import Array
+from linkwork.kernels.lanes.closure import BlockPart
+from linkwork.motion.model import Model
+
+__all__ = ["block_parts", "loop_coefficients", "zero_coefficients"]
+
+
+def loop_coefficients(designs: Designs) -> dict[str, Array]:
+    """Coefficients of loops, constants of lines, weights of lengths, (D,) each."""
+    found: dict[str, Array] = {}
+    for term in range(designs.loops.shape[1]):
+        column = designs.loops[:, term]
+        found[f"c{term}.re"] = np.ascontiguousarray(column.real)
+        found[f"c{term}.im"] = np.ascontiguousarray(column.imag)
+    for row in range(designs.linear.shape[1]):
+        found[f"k{row}"] = np.ascontiguousarray(designs.linear[:, row])
+    for k, turns in enumerate(designs.base.compiled.table.turns):
+        if not turns:
+            found[f"scale{k}"] = designs.length_scale
+    return found
+
+
+def zero_coefficients(designs: Designs, coefficients: dict[str, Array]) -> set[str]:
+    """Those that are 0 in every design without a problem."""
+    fine = designs.problem == 0
+    return {name for name, values in coefficients.items() if not values[fine].any()}
+
+
+def block_parts(model: Model) -> list[BlockPart]:
+    """The blocks of a mechanism in the order in which they are solved."""
+    return [
+        BlockPart(equations=block.equations, unknowns=tuple(block.unknowns.tolist()))
+        for block in model.compiled.solver.blocks
+    ]

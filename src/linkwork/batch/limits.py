@@ -1,0 +1,58 @@
+"""Between which inputs every design of a family can move."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import AnyArray, Array, StatusArray
+from linkwork.foundation.frozen import read_only
+from linkwork.results.motion import LimitKind
+
+__all__ = ["LIMIT_KINDS", "FamilyLimits"]
+
+#: What ends a branch, by code; 0 for nothing.
+LIMIT_KINDS: tuple[LimitKind | None, ...] = (None, *LimitKind)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class FamilyLimits:
+    """The ends of the branch on which each of D designs starts.
+
+    Parameters
+    ----------
+    lower, upper : (D,)
+        The leading input there, everyday units, around the input of the design's own start: -∞, ∞
+        where nothing ended the branch on the way to the rows of the table; NaN where an end was
+        met and not located, or the design has no position.
+    lower_kind, upper_kind : (D,) text
+        ``dead point``, ``change point``, ``limit`` (not located), or "" for none.
+    """
+
+    lower: Array
+    upper: Array
+    lower_kind: AnyArray
+    upper_kind: AnyArray
+
+    def __post_init__(self) -> None:
+        for field in ("lower", "upper", "lower_kind", "upper_kind"):
+            object.__setattr__(self, field, read_only(getattr(self, field)))
+
+    @classmethod
+    def of(cls, limits: Array, kinds: StatusArray, unit: float) -> FamilyLimits:
+        """From values (2, D) and codes (2, D); ``unit``: internal units per everyday unit."""
+        words = np.array(["" if kind is None else kind.word for kind in LIMIT_KINDS])
+        lower, upper = limits / unit
+        lower_kind, upper_kind = words[kinds]
+        return cls(lower=lower, upper=upper, lower_kind=lower_kind, upper_kind=upper_kind)
+
+    def __len__(self) -> int:
+        return len(self.lower)
+
+    def __repr__(self) -> str:
+        ends = np.concatenate([self.lower_kind, self.upper_kind])
+        told = ", ".join(
+            f"{int((ends == kind.word).sum())} {kind.word}s" for kind in LIMIT_KINDS if kind
+        )
+        return f"<FamilyLimits of {len(self)} designs: {told}>"

@@ -1,0 +1,52 @@
+"""What one design says of its rows and limits that is kept when it was swept by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.batch.limits import LIMIT_KINDS
+from linkwork.foundation.arrays import Array, BoolArray, StatusArray
+from linkwork.motion.limits import BranchEnd
+from linkwork.motion.rows import SolvedRows
+
+__all__ = ["OwnRows", "ends_as_limits"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class OwnRows:
+    """Derivatives of the unknowns by the leading input, (n, R) each; ``driven`` (2, R): whether the
+    inputs have both (not at a dead point); ``condition``, ``residual`` (R,).
+    """
+
+    first: Array
+    second: Array
+    driven: BoolArray
+    condition: Array
+    residual: Array
+
+    @classmethod
+    def of(cls, rows: SolvedRows, unknowns: int) -> OwnRows:
+        """What solved rows hold."""
+        return cls(
+            first=rows.first[:, :unknowns].T.copy(),
+            second=rows.second[:, :unknowns].T.copy(),
+            driven=~np.isnan([rows.first[:, -1], rows.second[:, -1]]),
+            condition=rows.condition,
+            residual=rows.residual,
+        )
+
+
+def ends_as_limits(ends: Iterable[BranchEnd]) -> tuple[Array, StatusArray]:
+    """Where a branch ends below and above, values of the path (2,), and the kinds as codes (2,).
+
+    Infinite where nothing ended it, NaN where the place was not located.
+    """
+    limits, kinds = np.array([-np.inf, np.inf]), np.zeros(2, dtype=np.int8)
+    for end in ends:
+        which = int(end.side > 0.0)
+        limits[which] = end.t if end.limit.located else np.nan
+        kinds[which] = LIMIT_KINDS.index(end.limit.kind)
+    return limits, kinds

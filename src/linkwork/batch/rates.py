@@ -1,0 +1,171 @@
+"""Rates of the unknowns of many designs at their solved positions, with condition and residual."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.batch.coefficients import block_parts, loop_coefficients, zero_coefficients
+from linkwork.batch.designs import Designs
+from linkwork.batch.lane_rows import DesignRows
+from linkwork.batch.quantities import with_numbers
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.errors import InputError, LinkworkError
+from linkwork.foundation.lanes import Consensus, NotElementwise, many
+from linkwork.foundation.status import Status
+from linkwork.kernels.lanes.closure import BlockPart
+from linkwork.kernels.lanes.places import at_places
+from linkwork.kernels.lanes.rate_programs import PlaceProgram, evidence_program, rate_program
+from linkwork.mechanism.description import Description
+from linkwork.motion.drive import Drive
+from linkwork.motion.lock_step import lock_step
+from linkwork.motion.speeds import leading_speeds
+
+__all__ = ["DesignEvidence", "DesignRates", "design_evidence", "design_rates", "design_speeds"]
+
+_MOST_BYTES = 8 << 30  # of the rates of one family
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DesignRates:
+    """Derivatives of the unknowns by the leading input, (n, R, D) each, internal units.
+
+    NaN where there is no position, and where they do not exist (dead points). ``driven`` (2, R, D):
+    whether the inputs have a first and a second one.
+    """
+
+    first: Array
+    second: Array
+    driven: BoolArray
+
+    def take(self, part: slice) -> DesignRates:
+        """Those of some designs."""
+        return DesignRates(
+            first=self.first[:, :, part],
+            second=self.second[:, :, part],
+            driven=self.driven[:, :, part],
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DesignEvidence:
+    """``condition``, ``residual`` (R, D), as a motion has them; NaN where there is no position."""
+
+    condition: Array
+    residual: Array
+
+
+def design_rates(designs: Designs, rows: DesignRows, threads: int = 1) -> DesignRates:
+    """The rates of all unknowns, of all designs together by a compiled program.
+
+    Designs that were swept alone have those that the sweep found.
+
+    Raises
+    ------
+    InputError
+        If they would not fit into memory.
+    """
+    n, count, width = rows.v.shape
+    if 2 * rows.v.nbytes > _MOST_BYTES:
+        raise InputError(
+            f"the rates of {width} designs × {count} rows take {2 * rows.v.nbytes / 2**30:.0f} "
+            "GiB: go through family.parts(), or ask for family.reduced({...})"
+        )
+    both = np.full((2, n, count, width), np.nan)
+    if _together(designs, rows):
+        reading = _Reading.of(designs)
+        program = rate_program(designs.base.compiled.table, reading.parts, reading.zeros)
+        both = reading.run(program, rows, threads).reshape(both.shape)
+        both[~np.isfinite(both)] = np.nan
+    driven = np.ones((2, count, width), dtype=bool)
+    for k, own in rows.own.items():
+        both[0, :, :, k], both[1, :, :, k] = own.first, own.second
+        driven[:, :, k] = own.driven
+    return DesignRates(first=both[0], second=both[1], driven=driven)
+
+
+def design_evidence(designs: Designs, rows: DesignRows, threads: int = 1) -> DesignEvidence:
+    """How near every position is to a singular one, and how well it closes."""
+    condition, residual = np.full((2, *rows.v.shape[1:]), np.nan)
+    if _together(designs, rows):
+        reading, base = _Reading.of(designs), designs.base
+        lengths = {k for k, line in enumerate(base.equations.linear) if line.kind == "length"}
+        program = evidence_program(base.compiled.table, reading.parts, lengths, reading.zeros)
+        condition, residual = reading.run(program, rows, threads)
+        found = rows.status == Status.CONVERGED.code
+        condition[found & ~np.isfinite(condition)] = np.inf
+        condition[~found] = residual[~found] = np.nan
+    for k, own in rows.own.items():
+        condition[:, k], residual[:, k] = own.condition, own.residual
+    return DesignEvidence(condition=condition, residual=residual)
+
+
+def _together(designs: Designs, rows: DesignRows) -> bool:
+    """Whether there is a design that was not swept alone."""
+    return bool((~rows.alone & (designs.problem == 0)).any())
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Reading:
+    """What programs need to be run at the positions of a family."""
+
+    designs: Designs
+    coefficients: dict[str, Array]
+    parts: list[BlockPart]
+    zeros: set[str]
+
+    @classmethod
+    def of(cls, designs: Designs) -> _Reading:
+        coefficients = loop_coefficients(designs)
+        zeros = zero_coefficients(designs, coefficients)
+        coefficients["length"] = designs.length_scale
+        for j, rate in enumerate(lock_step(designs.base.rows)[1]):
+            coefficients[f"u{j}.rate"] = np.full(len(designs), rate)
+        return cls(
+            designs=designs,
+            coefficients=coefficients,
+            parts=block_parts(designs.base),
+            zeros=zeros,
+        )
+
+    def run(self, program: PlaceProgram, rows: DesignRows, threads: int) -> Array:
+        """At the inputs for which the positions were solved: on the straight line of the table."""
+        model = self.designs.base
+        lead, rate = lock_step(model.rows)
+        inputs = Drive.through(model, model.rows[0], rate, lead).path.at(model.rows[:, lead])
+        return at_places(program, self.coefficients, rows.v, inputs, rows.turns, threads)
+
+
+def design_speeds(designs: Designs) -> Array | None:
+    """The rate of every design's leading input, (D,) [rad/s] or [length/s]; ``None`` without a
+    speed, NaN for designs with a problem.
+    """
+    if designs.base.speed is None:
+        return None
+    found = np.full(len(designs), np.nan)
+    fine = np.flatnonzero(designs.problem == 0)
+    left = fine[_speeds_together(designs, fine, found)] if len(fine) else fine
+    for k in left:
+        with suppress(LinkworkError):  # a formula without a value for this design
+            found[k] = _speed_of(designs, designs.description(int(k)))
+    return found
+
+
+def _speed_of(designs: Designs, description: Description) -> float:
+    base = designs.base
+    return next(iter(leading_speeds(description, base.equations.inputs, base.rows).values()))
+
+
+def _speeds_together(designs: Designs, fine: IndexArray, found: Array) -> BoolArray:
+    """Fill in the speeds of sound designs; which of them are left to be asked one by one."""
+    consensus = Consensus(len(fine))
+    columns = zip(designs.quantities, designs.dimensions.values(), strict=True)
+    numbers = {quantity: consensus.lanes(values[fine]) for quantity, values in columns}
+    try:
+        speed = _speed_of(designs, with_numbers(designs.base.description, numbers))
+    except (NotElementwise, LinkworkError):
+        return np.ones(len(fine), dtype=bool)
+    found[fine] = speed.values if many(speed) else speed
+    return ~consensus.agreeing
