@@ -12,6 +12,7 @@ from linkwork.batch.family_motion import FamilyMotion
 from linkwork.batch.lane_rows import design_rows
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.errors import InputError
+from linkwork.kernels.lanes.lane_kernel import Gear
 from linkwork.motion.model import Model
 
 __all__ = ["Family", "Reduction", "family_of"]
@@ -52,7 +53,13 @@ class Family:
         """Some of the designs (integers, a mask or a slice)."""
         return Family(self.designs.take(index))
 
-    def sweep(self, *, certify: bool = True, threads: int | None = None) -> FamilyMotion:
+    def sweep(
+        self,
+        *,
+        certify: bool = True,
+        threads: int | None = None,
+        specialised: bool | None = None,
+    ) -> FamilyMotion:
         """Every design at every row of the mechanism's table, each on the branch of its start.
 
         Positions, statuses and proofs are those that each design has by itself.
@@ -63,12 +70,22 @@ class Family:
             Prove every position and the motion to it.
         threads : int, optional
             How many cores work; all of them by default.
+        specialised : bool, optional
+            Compile this mechanism's equations, which takes seconds once and is kept on disk. By
+            default where so many positions are asked for that it saves time.
 
         Raises
         ------
         InputError
             If the result would not fit into memory: use :meth:`parts` or :meth:`reduced`.
         """
+        gear = Gear(specialised=specialised, positions=self._positions())
+        return self._swept(certify, threads or _cores(), gear)
+
+    def _positions(self) -> int:
+        return len(self) * len(self.designs.base.rows)
+
+    def _swept(self, certify: bool, threads: int, gear: Gear) -> FamilyMotion:
         model = self.designs.base
         count = len(self) * len(model.rows) * (len(model.equations.unknowns) + 1)
         if 8 * count > _MOST_BYTES:
@@ -76,20 +93,25 @@ class Family:
                 f"{len(self)} designs × {len(model.rows)} rows take {8 * count / 2**30:.0f} GiB: "
                 "go through family.parts(), or ask for family.reduced({...})"
             )
-        threads = threads or _cores()
-        rows = design_rows(self.designs, certify=certify, threads=threads)
+        rows = design_rows(self.designs, certify=certify, threads=threads, gear=gear)
         return FamilyMotion(
             designs=self.designs, inputs=model.everyday_rows, rows=rows, threads=threads
         )
 
     def parts(
-        self, designs: int = _PART, *, certify: bool = True, threads: int | None = None
+        self,
+        designs: int = _PART,
+        *,
+        certify: bool = True,
+        threads: int | None = None,
+        specialised: bool | None = None,
     ) -> Iterator[FamilyMotion]:
         """The motions of so many designs at a time, in order; memory stays bounded."""
         if designs < 1:
             raise InputError(f"a part needs at least one design, got {designs}")
         parts = (self.take(slice(k, k + designs)) for k in range(0, len(self), designs))
-        return (part.sweep(certify=certify, threads=threads) for part in parts)
+        gear = Gear(specialised=specialised, positions=self._positions())
+        return (part._swept(certify, threads or _cores(), gear) for part in parts)
 
     def _part(self) -> int:
         """How many designs are reduced at a time, rates included."""
@@ -103,6 +125,7 @@ class Family:
         *,
         certify: bool = True,
         threads: int | None = None,
+        specialised: bool | None = None,
     ) -> dict[str, Array]:
         """One number per design and quantity over all its rows.
 
@@ -135,7 +158,9 @@ class Family:
         found: dict[str, list[Array]] = {key: [np.empty(0)] for _, key, _ in columns}
         found |= {"found": [np.empty(0, dtype=int)], "certified": [np.empty(0, dtype=int)]}
         found |= {"limit.lower": [np.empty(0)], "limit.upper": [np.empty(0)]}
-        for part in self.parts(self._part(), certify=certify, threads=threads):
+        for part in self.parts(
+            self._part(), certify=certify, threads=threads, specialised=specialised
+        ):
             for name, key, function in columns:
                 value = np.asarray(function(part[name]), dtype=float)
                 if value.shape != (len(part),):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -17,7 +18,8 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.status import Status
 from linkwork.kernels.lanes.folding import dead_points
-from linkwork.kernels.lanes.lane_kernel import LaneKernel, LaneRows, Steps
+from linkwork.kernels.lanes.lane_kernel import Gear, LaneKernel, LaneRows, Steps
+from linkwork.kernels.loop_table import LoopTable
 from linkwork.mechanism.parts import Input
 from linkwork.motion import sweep
 from linkwork.motion.drive import Drive
@@ -81,7 +83,9 @@ class DesignRows:
         )
 
 
-def design_rows(designs: Designs, *, certify: bool, threads: int = 1) -> DesignRows:
+def design_rows(
+    designs: Designs, *, certify: bool, threads: int = 1, gear: Gear | None = None
+) -> DesignRows:
     """Every design over the rows of the mechanism's table, on the branch of its own start.
 
     The compiled march serves equations of loops and lines; designs that it cannot lead through
@@ -102,7 +106,7 @@ def design_rows(designs: Designs, *, certify: bool, threads: int = 1) -> DesignR
         found.v[:] = np.nan
         found.radius[:] = np.nan
     else:
-        left &= ~march.fill(designs, found, certify, threads)
+        left &= ~march.fill(designs, found, certify, threads, gear or Gear())
     for k in np.flatnonzero(left):
         _alone(designs, int(k), found, certify)
     return found
@@ -145,7 +149,9 @@ class _Path:
         spread: Array = gap + np.where(rounds, 4.0 * _UNIT * size, 0.0)
         return spread
 
-    def fill(self, designs: Designs, found: DesignRows, certify: bool, threads: int) -> BoolArray:
+    def fill(
+        self, designs: Designs, found: DesignRows, certify: bool, threads: int, gear: Gear
+    ) -> BoolArray:
         """Designs that went through all rows are filled in; which they are, (D,)."""
         n = self.model.compiled.solver.unknowns
         inputs = designs.start[:, n:]
@@ -155,9 +161,10 @@ class _Path:
         t = self.model.rows[:, self.lead]
         way = slice(None, None, -1 if self.falling else 1)
         march = _March(self, designs, served, certify, threads)
+        march.kernel.shift(gear)
+        march.turns = found.turns[way]
         whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
         self._note(found, reached[way], whole, certify)
-        found.turns[:] = march.turns[way]
         march.note_limits(found, whole)
         return whole
 
@@ -176,6 +183,19 @@ class _Path:
             found.radius[:] = np.nan
 
 
+#: Kernels of mechanisms that are in use.
+_KERNELS: WeakKeyDictionary[LoopTable, dict[tuple[frozenset[str], bool], LaneKernel]] = (
+    WeakKeyDictionary()
+)
+
+
+def _kernel(model: Model, zeros: frozenset[str], certify: bool) -> LaneKernel:
+    known = _KERNELS.setdefault(model.compiled.table, {})
+    if (zeros, certify) not in known:
+        known[zeros, certify] = LaneKernel(model.compiled.table, block_parts(model), zeros, certify)
+    return known[zeros, certify]
+
+
 class _March:
     """The compiled march of a family, and what becomes of designs that stop at dead points."""
 
@@ -188,12 +208,12 @@ class _March:
         fine = designs.problem == 0
         self.coefficients = _coefficients(path, designs)
         self.zeros = zero_coefficients(designs, self.coefficients)
-        self.kernel = LaneKernel(compiled.table, block_parts(model), self.zeros, certify)
+        self.kernel = _kernel(model, frozenset(self.zeros), certify)
         self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # else not found
         self.start = designs.start[:, n + path.lead].copy()
         self._enter(designs, np.flatnonzero(fine & ~served))
         self.free = turns_freely(model)
-        self.turns = np.zeros((len(model.rows), len(designs)), dtype=np.int32)
+        self.turns: TurnArray | None = None  # of each row, where a design goes around for it
         self.limits = np.repeat([[-np.inf], [np.inf]], len(designs), axis=1)
 
     def _enter(self, designs: Designs, beside: IndexArray) -> None:
@@ -313,7 +333,8 @@ class _March:
         v[:, row, mine[column]] = own[:, row, column]
         radius[row, mine[column]] = radii[row, column]
         reached[row, mine[column]] = True
-        self.turns[row, mine[column]] = turns
+        if self.turns is not None:
+            self.turns[row, mine[column]] = turns
         known = limits[:, those]
         self._limit(known, further, mine)
         limits[:, those] = known

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numba  # noqa: TID253 - this module is loaded when a family is solved
 from numba import types  # noqa: TID253
 
-__all__ = ["compiled", "compiled_for", "types"]
+__all__ = ["compiled", "compiled_for", "named_tuple", "types"]
 
 
 def compiled_for(signature: object):  # type: ignore[no-untyped-def]
@@ -16,3 +16,9 @@ def compiled_for(signature: object):  # type: ignore[no-untyped-def]
 
 
 compiled = compiled_for(None)
+
+
+def named_tuple(fields: list[object], kind: type) -> object:
+    """The type of a NamedTuple in a signature."""
+    found: object = types.NamedTuple(fields, kind)  # type: ignore[no-untyped-call]
+    return found

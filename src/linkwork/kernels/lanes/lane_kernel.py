@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence, Set
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.errors import InputError
 from linkwork.kernels.lanes.beginning import begin
 from linkwork.kernels.lanes.closure import BlockPart
 from linkwork.kernels.lanes.folding import LastNodes
@@ -20,9 +22,10 @@ from linkwork.kernels.lanes.printing import trial_source
 from linkwork.kernels.lanes.program import SOURCES, Op, Program
 from linkwork.kernels.lanes.tasks import Found, Table, Tasks
 from linkwork.kernels.lanes.trial import Topology, by_machine
+from linkwork.kernels.lanes.written import is_written, written
 from linkwork.kernels.loop_table import LoopTable
 
-__all__ = ["LaneKernel", "LaneRows", "Steps"]
+__all__ = ["Gear", "LaneKernel", "LaneRows", "Steps"]
 
 _WEIGHTS = [f"{name}{role}" for role in range(1, ROLES) for name in "ab"]
 _PART = 4096  # designs that one thread works on at a time
@@ -97,6 +100,27 @@ class LaneRows:
         )
 
 
+@dataclass(frozen=True, kw_only=True)
+class Gear:
+    """Whether the trial of a topology is written out and compiled, or done by the machine.
+
+    Parameters
+    ----------
+    specialised : bool, optional
+        Asked for; by default it is whatever takes less time for so many ``positions``.
+    positions : int
+    """
+
+    specialised: bool | None = None
+    positions: int = 0
+
+
+# Compiling takes some 5 ms for each instruction, of which a position then costs 0.1 ns less.
+_PAYS = 100_000_000  # positions
+_PAYS_COMPILED = 1_000_000  # where an earlier run has left what it compiled
+_LONGEST = 4_000  # instructions: the compiler's time grows faster than they do
+
+
 class LaneKernel:
     """Programs and registers for one loop table.
 
@@ -133,6 +157,25 @@ class LaneKernel:
         self.height = max(programs.height, reg.count)
         self._sections = programs
         self.trial: Callable[..., None] = by_machine
+
+    def shift(self, gear: Gear) -> None:
+        """Write the trial out, if that is asked for or saves time.
+
+        Raises
+        ------
+        InputError
+            If it is asked for, and the folder for compiled code cannot be written to.
+        """
+        if gear.specialised is False or self.trial is not by_machine:
+            return
+        if not gear.specialised and gear.positions < _PAYS_COMPILED:
+            return
+        source = self.source()
+        if gear.specialised:
+            self.trial = written(source, "trial")
+        elif len(self.code) <= ROLES * _LONGEST and (gear.positions >= _PAYS or is_written(source)):
+            with suppress(InputError):  # nobody asked: the machine serves
+                self.trial = written(source, "trial")
 
     def source(self) -> str:
         """A trial of this topology written out: prediction, one correction, proof, judgement."""

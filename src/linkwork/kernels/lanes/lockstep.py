@@ -99,9 +99,9 @@ def _kept(first, width, row, topology, turn, w, standing, all_stand, table, foun
 
 
 @compiled
-def _one_way(
+def _one_way(  # type: ignore[no-untyped-def]
     base, way, topology, written, is_written, w, places, begun, node, table, tasks, count, found
-):  # type: ignore[no-untyped-def]
+):
     """64 mechanisms in one direction; how many tasks there are now."""
     rows, nodes = table.rows, topology.nodes
     size = nodes.shape[1]

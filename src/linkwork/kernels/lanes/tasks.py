@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
-from linkwork.kernels.lanes.compiling import types
+from linkwork.kernels.lanes.compiling import named_tuple, types
 
 __all__ = ["FOUND", "TABLE", "TASKS", "Found", "Table", "Tasks"]
 
@@ -63,10 +63,10 @@ class Found(NamedTuple):
     last: Array
 
 
-TABLE = types.NamedTuple(
+TABLE = named_tuple(
     [types.Array(types.float64, 1, "C"), types.Array(types.float64, 1, "C"), types.int64], Table
 )
-TASKS = types.NamedTuple(
+TASKS = named_tuple(
     [
         types.Array(types.int64, 1, "C"),
         types.Array(types.int64, 1, "C"),
@@ -74,7 +74,7 @@ TASKS = types.NamedTuple(
     ],
     Tasks,
 )
-FOUND = types.NamedTuple(
+FOUND = named_tuple(
     [
         types.int64,
         types.Array(types.float64, 3, "C"),

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linkwork.foundation.arrays import IndexArray
-from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
+from linkwork.kernels.lanes.compiling import compiled, compiled_for, named_tuple, types
 from linkwork.kernels.lanes.machine import LANES, run_part
 from linkwork.kernels.lanes.march_programs import ROLES
 
@@ -71,7 +71,7 @@ class Topology(NamedTuple):
     coefficients: IndexArray
 
 
-TOPOLOGY = types.NamedTuple(
+TOPOLOGY = named_tuple(
     [
         types.Array(types.uint32, 2, "C"),
         types.int64,
