@@ -334,7 +334,7 @@ def _proved_here(
     for name, values in given.items():
         put(name, values[0])
     put("u0.spread", 0.0)
-    put("live0", 0.0)
+    put("live0.0", 0.0)
     for at, before in ((node, node), (node, node), (trial, node)):  # the node's own proof first
         for k in range(n):
             put(f"x{k}.0", at[:, k])
@@ -345,7 +345,7 @@ def _proved_here(
         run(_phasors(programs), space)
         for program in (*programs.prove, programs.judge):
             run(program.code, space)
-        own = space[reg.named["good"], :count] > 0.5
+        own = space[reg.named["good.0"], :count] > 0.5
         if at is node:
             proved_node = own
     found: npt.NDArray[np.bool_] = own & proved_node

@@ -12,6 +12,7 @@ from linkwork.batch.designs import Designs
 from linkwork.batch.entering import led_to_rows
 from linkwork.batch.limits import LIMIT_KINDS
 from linkwork.batch.own_rows import OwnRows, ends_as_limits
+from linkwork.equations.compiling import Compiled
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray, StatusArray, TurnArray
 from linkwork.foundation.certification import Certification
@@ -19,7 +20,6 @@ from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.status import Status
 from linkwork.kernels.lanes.folding import dead_points
 from linkwork.kernels.lanes.lane_kernel import Gear, LaneKernel, LaneRows, Steps
-from linkwork.kernels.loop_table import LoopTable
 from linkwork.mechanism.parts import Input
 from linkwork.motion import sweep
 from linkwork.motion.drive import Drive
@@ -184,13 +184,13 @@ class _Path:
 
 
 #: Kernels of mechanisms that are in use.
-_KERNELS: WeakKeyDictionary[LoopTable, dict[tuple[frozenset[str], bool], LaneKernel]] = (
+_KERNELS: WeakKeyDictionary[Compiled, dict[tuple[frozenset[str], bool], LaneKernel]] = (
     WeakKeyDictionary()
 )
 
 
 def _kernel(model: Model, zeros: frozenset[str], certify: bool) -> LaneKernel:
-    known = _KERNELS.setdefault(model.compiled.table, {})
+    known = _KERNELS.setdefault(model.compiled, {})
     if (zeros, certify) not in known:
         known[zeros, certify] = LaneKernel(model.compiled.table, block_parts(model), zeros, certify)
     return known[zeros, certify]

@@ -23,7 +23,7 @@ from linkwork.numerics.decomposition import BlockForm, block_form
 __all__ = ["Compiled", "compile_equations"]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Compiled:
     """Equations ready to be solved: ``table`` whole, ``solver`` in blocks, ``points``."""
 

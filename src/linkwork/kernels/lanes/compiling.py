@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numba  # noqa: TID253 - this module is loaded when a family is solved
 from numba import types  # noqa: TID253
 
@@ -18,7 +20,6 @@ def compiled_for(signature: object):  # type: ignore[no-untyped-def]
 compiled = compiled_for(None)
 
 
-def named_tuple(fields: list[object], kind: type) -> object:
+def named_tuple(fields: list[object], kind: type) -> Any:
     """The type of a NamedTuple in a signature."""
-    found: object = types.NamedTuple(fields, kind)  # type: ignore[no-untyped-call]
-    return found
+    return types.NamedTuple(fields, kind)  # type: ignore[no-untyped-call]

@@ -1,0 +1,140 @@
+"""Programs written out as functions do what the machine does, and are kept on disk."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.batch.coefficients import block_parts
+from linkwork.kernels.lanes import lane_kernel
+from linkwork.kernels.lanes.lane_kernel import Gear, LaneKernel
+from linkwork.kernels.lanes.machine import LANES, run
+from linkwork.kernels.lanes.printing import trial_source
+from linkwork.kernels.lanes.program import SOURCES, Op
+from linkwork.kernels.lanes.trial import by_machine
+from linkwork.kernels.lanes.written import is_written, written
+
+PLACES = 5
+
+
+@pytest.fixture(autouse=True)
+def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setenv("LINKWORK_CACHE", str(tmp_path / "kernels"))
+    before = set(sys.modules)
+    yield
+    for name in set(sys.modules) - before:
+        if name.startswith("linkwork_kernel"):
+            del sys.modules[name]
+
+
+def every_operation(rng: np.random.Generator, height: int) -> np.ndarray:
+    """A program of every instruction with registers by chance, the targets in place 0."""
+    code = []
+    for op in [op for op in Op if op not in (Op.COS, Op.INPUT, Op.CONSTANT)] * 3:
+        target, beside = rng.choice(height, 2, replace=False)
+        sources = rng.integers(0, PLACES * height + 2, 3)
+        if op is Op.SIN:
+            sources[2] = beside
+        sources[SOURCES[op] :] = beside if op is Op.SIN else target
+        code.append([op, target, *sources])
+    return np.array(code, dtype=np.uint32)
+
+
+def test_every_instruction_written_out_is_that_of_the_machine() -> None:
+    rng = np.random.default_rng(7)
+    height = 6
+    for _ in range(3):
+        code = every_operation(rng, height)
+        space = rng.choice([0.0, 1.0, -2.0, 0.3, 5.5, np.nan], (PLACES * height + 3, LANES))
+        register = PLACES * height + 2
+        space[register] = 0.25  # a constant
+        other = space.copy()
+        run(code, space)
+        source = trial_source([code[:20], code[20:]], height, set(range(height)), {register: 0.25})
+        flat = other.reshape(-1)
+        parts = [flat[k * height * LANES : (k + 1) * height * LANES] for k in range(PLACES)]
+        written(source, "trial")(*parts, flat[PLACES * height * LANES :])
+        np.testing.assert_allclose(other, space, rtol=1e-12, atol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("name", "dimension", "value", "certify"),
+    [
+        ("four-bar", "O2 A", 40.0, True),
+        ("four-bar", "A B", 60.0, False),  # with dead points
+        ("coupled-six-link", "a2", 100.0, False),
+    ],
+)
+def test_families_are_the_same_with_compiled_equations(
+    name: str, dimension: str, value: float, certify: bool
+) -> None:
+    family = lw.example(name).family({dimension: np.linspace(0.98, 1.03, 70) * value})
+    usual = family.sweep(certify=certify, specialised=False)
+    special = family.sweep(certify=certify, specialised=True)
+    assert usual.found.any()
+    assert (special.status == usual.status).all()
+    assert (special.certified == usual.certified).all()
+    away = np.abs(special.rows.v - usual.rows.v)
+    assert 0.0 < np.nanmax(away) <= 1e-11 * np.nanmax(np.abs(usual.rows.v))  # rounding differs
+
+
+def kernel() -> LaneKernel:
+    model = lw.example("crank-slider").model
+    return LaneKernel(model.compiled.table, block_parts(model), frozenset(), False)
+
+
+def test_many_positions_are_worth_a_compilation(monkeypatch: pytest.MonkeyPatch) -> None:
+    few, many = kernel(), kernel()
+    few.shift(Gear(positions=99_999_999))
+    assert few.trial is by_machine
+    many.shift(Gear(positions=100_000_000))
+    assert many.trial is not by_machine
+    again = kernel()
+    again.shift(Gear(positions=999_999))
+    assert again.trial is by_machine
+    again.shift(Gear(positions=1_000_000))  # what the run before has compiled
+    assert again.trial is many.trial
+    refused = kernel()
+    refused.shift(Gear(specialised=False, positions=1 << 40))
+    assert refused.trial is by_machine
+    monkeypatch.setattr(lane_kernel, "_LONGEST", 10)
+    long = kernel()
+    long.shift(Gear(positions=1 << 40))
+    assert long.trial is by_machine
+
+
+def test_a_changed_file_is_written_anew(tmp_path: Path) -> None:
+    source = trial_source([np.array([[Op.NEG, 0, 1, 0, 0]], np.uint32)], 2, {0}, {})
+    assert not is_written(source)
+    written(source, "trial")
+    (file,) = (tmp_path / "kernels").glob("*.py")
+    assert file.read_text() == source
+    assert is_written(source)
+    del sys.modules[file.stem]
+    file.write_text("raise SystemExit('somebody else')")
+    written(source, "trial")
+    assert file.read_text() == source
+    assert not list((tmp_path / "kernels").glob("*.part"))
+
+
+def test_without_a_folder_to_write_to_the_machine_serves(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    taken = tmp_path / "taken"
+    taken.write_text("")
+    monkeypatch.setenv("LINKWORK_CACHE", str(taken))
+    with pytest.raises(lw.InputError) as told:
+        kernel().shift(Gear(specialised=True))
+    assert str(told.value) == (
+        f"compiled code cannot be kept in {taken} ({os.strerror(17)}): "
+        "name another folder in LINKWORK_CACHE, or ask for specialised=False"
+    )
+    mine = kernel()
+    mine.shift(Gear(positions=1 << 40))
+    assert mine.trial is by_machine
