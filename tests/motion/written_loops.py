@@ -77,7 +77,11 @@ def _along(linkage: Linkage, around: list[str]) -> Iterator[Term]:
         order = order[1:]
         yield from frames.places[GROUND][steps[first][1]].sliding
     for k in order:
-        yield from frames.between(bodies[k], *steps[k])
+        start, end = (frames.places[bodies[k]][point] for point in steps[k])
+        yield from (term.negated() for term in reversed(start.sliding))
+        if end.fixed != start.fixed:
+            yield frames.turned(end.fixed - start.fixed, None, bodies[k])
+        yield from end.sliding
     if GROUND in bodies:
         start, end = (frames.places[GROUND][point] for point in steps[first])
         yield from (term.negated() for term in reversed(start.sliding))

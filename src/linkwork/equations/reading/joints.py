@@ -180,7 +180,7 @@ class _Joining:
             if phase not in sliding:
                 self.link.unite(first.setdefault(phase, piece), piece)
         self._settle()
-        while self._meet_once():
+        while self._same_vector() or self._meet_once():
             self._settle()
 
     def _settle(self) -> None:
@@ -269,24 +269,40 @@ class _Joining:
             others.append((corner, here))
         return changed
 
+    def _same_vector(self) -> bool:
+        """A variable length leads from the same point to the same point in whatever loop it is."""
+        first: dict[str, Slide] = {}
+        for slide in self.slides:
+            one = first.setdefault(slide.variable, slide)
+            turned = abs(one.along + slide.along) <= 1e-9 * abs(one.along)
+            for before, after in ((slide.after, slide.before),) if turned else ((slide.before, slide.after),):
+                start = 0j if turned else slide.foot
+                end = slide.foot if turned else 0j
+                if self.rigid[one.before] != self.rigid[before]:
+                    return self._place(one.before, before, one.foot - start)
+                if self.rigid[one.after] != self.rigid[after]:
+                    return self._place(one.after, after, -end)
+        return False
+
     def _meet_once(self) -> bool:
-        """Two directions that meet once in each of two loops meet at one pin, if they may."""
-        met: dict[tuple[Phase, Phase], set[int]] = {}
-        for corner, ends in self._by_corner().items():
-            phases = sorted({self.phase[piece] for piece, _ in ends})
+        """Two directions that meet once in each of several loops meet at one pin, if they may."""
+        met: dict[tuple[Phase, Phase], list[int]] = {}
+        ends = self._by_corner()
+        for corner in ends:
+            phases = sorted({self.phase[piece] for piece, _ in ends[corner]})
             for pair in combinations(phases, 2):
-                met.setdefault(pair, set()).add(corner)
+                met.setdefault(pair, []).append(corner)
         loops: dict[int, set[int]] = {}
         for k, loop in enumerate(self.loop_of):
             loops.setdefault(self.corner.root(k), set()).add(loop)
-        ends = self._by_corner()
+        parts = {k: {self.rigid[piece] for piece, _ in ends[k]} for k in ends}
         for corners in met.values():
-            if len(corners) != 2:
+            apart = list(combinations(sorted(corners), 2))
+            if any(loops[one] & loops[other] for one, other in apart):
                 continue
-            one, other = sorted(corners)
-            parts = [{self.rigid[piece] for piece, _ in ends[k]} for k in (one, other)]
-            if not loops[one] & loops[other] and not parts[0] & parts[1]:
-                return self.corner.unite(one, other)
+            for one, other in apart:
+                if not parts[one] & parts[other]:
+                    return self.corner.unite(one, other)
         return False
 
     def joints(self) -> Joints:

@@ -154,7 +154,10 @@ class _Drawing:
             own[name] += self.names.begin - self.joints.origin
 
     def _outwards(self) -> Iterator[tuple[Slide, int, int]]:
-        """Every slide with its guide and the link that slides: from ground, or most pins, on."""
+        """Every slide with its guide and the link that slides.
+
+        From ground outwards; elsewhere from a link that is pinned to ground, or that has most pins.
+        """
         left = list(self.joints.slides)
         reached = {self.joints.ground}
         while left:
@@ -166,11 +169,16 @@ class _Drawing:
                     break
             else:
                 free = {link for slide in left for link in (slide.before, slide.after)}
-                reached.add(max(sorted(free), key=lambda link: len(self.places[link])))
+                reached.add(max(sorted(free), key=self._standing))
                 continue
             left.remove(slide)
             reached.add(sliding)
             yield slide, guide, sliding
+
+    def _standing(self, link: int) -> tuple[int, int]:
+        """How well a link serves as a guide."""
+        pins = [corner.places for corner in self.joints.corners if link in corner.places]
+        return sum(self.joints.ground in links for links in pins), len(pins)
 
     def _rail(self, slide: Slide, guide: int, sliding: int) -> Slider:
         """The line on the guide along which a point of the other link slides."""
