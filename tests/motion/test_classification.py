@@ -409,7 +409,18 @@ def test_an_input_that_holds_no_joint_leaves_no_assur_group() -> None:
     assert found.class_number is None
 
 
-def test_what_is_given_by_equations_has_no_classification() -> None:
-    mechanism = lw.example("rapier-drive")
-    assert mechanism.check().classification is None
+def test_plain_equations_have_no_classification() -> None:
+    mechanism = lw.example("newton-extremum")
+    report = mechanism.check()
+    assert report.classification is None
+    assert report.unclassified == "plain equations tell nothing of links and joints"
     assert block_groups(mechanism.model, as_linkage(mechanism.model)) == (None,)
+
+
+def test_a_block_pinned_to_ground_swings_as_a_cylinder_does() -> None:
+    """MacPherson's strut slides in its mount, which is pinned to the body: no slotted lever."""
+    strut = _classified(lw.example("macpherson")).loop
+    lever = _classified(lw.example("inverted-slider-crank")).loop
+    assert strut is not None
+    assert lever is not None
+    assert (strut.name, lever.name) == ("oscillating cylinder", "crank shaper")

@@ -131,7 +131,147 @@ def test_what_is_read_off_loops_moves_as_they_do(name: str) -> None:
     assert len(shared) >= 3
     assert (asked.found == found.found).all()
     size = mechanism.loop_equations.length_scale
-    for point in shared:
-        for one, other in zip(asked.points[point], found.points[point], strict=True):
-            gap = np.abs(np.asarray(one) - np.asarray(other))[asked.found]
-            assert gap.max() < 1e-9 * size, point
+    for column in [f"{point}.{axis}" for point in shared for axis in "xy"]:
+        gap = np.abs(np.subtract(asked[column], found[column]))[asked.found]
+        assert gap.max() < 1e-9 * size, column
+
+
+def _loops(*equations: str, unknowns: str, driven: str, **what: object) -> lw.Mechanism:
+    """Loops with links 1 to 5 long; angles and lengths are told apart by where they stand."""
+    numbers = {"a": 1, "b": 4, "c": 3, "d": 3.5, "g": 2}
+    guess = {name: 1.0 for name in [*unknowns.split(), driven]}
+    return lw.loops(
+        dimensions=numbers,
+        angle="rad",
+        loops={f"L{k}": text for k, text in enumerate(equations, 1)},
+        guess=guess,
+        inputs=lw.Input(variable=driven, start=0.5, stop=1.0, step=0.1),
+        **what,  # type: ignore[arg-type]
+    )
+
+
+def _four_bar(text: str, **what: object) -> lw.Mechanism:
+    return _loops(text, unknowns="θ3 θ4", driven="θ2", **what)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a*e^(i*θ2) + b*e^(i*θ3) - c*e^(i*θ4) - d = 0",
+        "a*e^(i*θ2) + b*e^(i*θ3) = d + c*e^(i*θ4)",
+        "a*e^(i*θ2) + b*e^(i*θ3) = c*e^(i*θ4) + d",
+        "d + c*e^(i*θ4) = a*e^(i*θ2) + b*e^(i*θ3)",
+        "-d - i + a*e^(i*θ2) + b*e^(i*θ3) + i = c*e^(i*θ4)",
+        "0 = d - a*e^(i*θ2) - b*e^(i*θ3) + c*e^(i*θ4)",
+    ],
+)
+def test_a_four_bar_is_read_whatever_side_its_vectors_stand_on(text: str) -> None:
+    found = _four_bar(text).check().classification
+    assert found is not None
+    assert found.loop is not None
+    assert found.loop.links == ("ground", "link_θ2", "link_θ3", "link_θ4")
+    assert (found.loop.barker, found.class_number) == ("GCRR", 2)
+
+
+@pytest.mark.parametrize(
+    ("points", "coupler"),
+    [
+        ({}, "link_θ3"),
+        ({"O": "0", "A": "b*e^(i*θ3)", "B": "d + c*e^(i*θ4)", "C": "d"}, "link_θ2"),
+    ],
+)
+def test_points_of_the_file_tell_which_vectors_meet(points: dict[str, str], coupler: str) -> None:
+    """The input is taken to drive a joint at ground, unless the pins are elsewhere."""
+    mechanism = _four_bar("b*e^(i*θ3) + a*e^(i*θ2) = d + c*e^(i*θ4)", points=points)
+    found = mechanism.check().classification
+    assert found is not None
+    assert found.loop is not None
+    assert found.loop.links[2] == coupler
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "chain", "kind"),
+    [
+        (
+            _loops("x = i*y + b*e^(i*θ)", unknowns="x y", driven="θ"),
+            "double-slider chain (RRPP)",
+            "elliptic trammel",
+        ),
+        (
+            _loops("b*e^(i*θ) = x + i*y", unknowns="x y", driven="θ"),
+            "double-slider chain (RRPP)",
+            "Scotch yoke",
+        ),
+        (
+            _loops("a*e^(i*θ2) = i*c + s*e^(i*θ4)", unknowns="s θ4", driven="θ2"),
+            "slider-crank chain (RRRP)",
+            "crank shaper: the driven link turns fully",
+        ),
+        (
+            _loops("c*e^(i*θ2) = i*a + s*e^(i*θ4)", unknowns="s θ4", driven="θ2"),
+            "slider-crank chain (RRRP)",
+            "Whitworth quick return: the driven link turns fully",
+        ),
+        (
+            _loops("a*e^(i*θ2) + b*e^(i*(θ2 + φ)) = d + c*e^(i*θ4)", unknowns="θ2 θ4", driven="φ"),
+            "four-bar chain",
+            "crank-rocker: Grashof",
+        ),
+    ],
+)
+def test_textbook_equations_are_called_by_their_names(
+    mechanism: lw.Mechanism, chain: str, kind: str
+) -> None:
+    found = mechanism.check().classification
+    assert found is not None
+    assert found.chain == chain
+    assert found.type.startswith(kind)
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "why"),
+    [
+        (
+            _loops(
+                "a*e^(i*θ2) + b*e^(i*θ3) = d + c*e^(i*θ4) + g*e^(2*i*θ2)",
+                unknowns="θ3 θ4", driven="θ2",
+            ),
+            "the angles of its vectors depend on each other, as those of wheels do",
+        ),
+        (
+            _loops(
+                "a*e^(i*θ2) + b*e^(i*θ3) = s", "g*e^(i*θ2) + b*e^(i*θ4) = 2*s + i*x",
+                unknowns="θ3 θ4 s x", driven="θ2",
+            ),
+            '"s" is a length in two directions or scales',
+        ),
+        (
+            _loops("a*e^(i*θ2) + b*e^(i*θ3) = c*e^(i*θ4)", unknowns="θ3 θ4", driven="θ2"),
+            "no vector keeps its direction, so that no link stands still",
+        ),
+    ],
+)
+def test_loops_that_show_no_links_say_why(mechanism: lw.Mechanism, why: str) -> None:
+    report = mechanism.check()
+    assert report.classification is None
+    assert report.unclassified == report.to_dict()["unclassified"] == why
+    assert (report.links, report.joints, report.mobility_count) == (0, 0, None)
+
+
+def test_loops_are_inverted_as_the_links_that_they_are() -> None:
+    loops, links = (lw.example(name) for name in PAIRS[0])
+    assert {(e.ground, e.type) for e in loops.inversions()} == {
+        (e.ground, e.type) for e in links.inversions()
+    }
+    one, other = (mechanism.inversion("rocker").sweep() for mechanism in (loops, links))
+    np.testing.assert_allclose(one["frame"], other["frame"], atol=1e-9)
+
+
+def test_pins_of_loops_that_share_one_link_only_are_not_made_up() -> None:
+    """Where on the boom the stick's loop begins is in no equation: the chain does not need it."""
+    excavator = as_loops(lw.example("excavator"))
+    seen = as_linkage(excavator.model)
+    assert isinstance(seen, Seen)
+    assert seen.loose
+    with pytest.raises(lw.InputError, match="do not tell where on .* they are joined"):
+        excavator.inversion(seen.loose[0])

@@ -79,7 +79,7 @@ def _understood(report: CheckReport) -> Iterator[tuple[str, str]]:
     yield from redundant_lines({link: gap for link, _, gap in report.redundant})
     if report.classification is not None:
         yield from classification_fields(report.classification)
-    elif report.form != "equations":
+    else:
         yield "chain", f"not known: {report.unclassified}"
 
 

@@ -20,6 +20,7 @@ from linkwork.equations.reading.walk import FRAME, Phase, Run, Walk
 
 __all__ = ["Corner", "Joints", "NotRead", "Slide", "joints_of"]
 
+_ALIKE = 1e-9  # part by which places and directions differ by rounding at most
 _APART = 7.3 + 4.1j  # far from any pin, and in no direction that a loop has
 
 
@@ -88,7 +89,7 @@ def joints_of(walks: Sequence[Walk], size: float) -> Joints:
     NotRead
         If no links and joints fit the loops, or more than one set of them does.
     """
-    found = _Joining(tolerance=1e-9 * size, apart=_APART * size)
+    found = _Joining(tolerance=_ALIKE * size, apart=_APART * size)
     for loop, walk in enumerate(walks):
         found.add(loop, walk)
     found.join()
@@ -217,8 +218,7 @@ class _Joining:
             first: dict[Phase, tuple[int, complex]] = {}
             for piece, place in met:
                 one, there = first.setdefault(self.phase[piece], (piece, place))
-                if one != piece:
-                    changed |= self._place(one, piece, there - place)
+                changed |= self._place(one, piece, there - place)
         return changed
 
     def _same_slides(self) -> bool:
@@ -230,9 +230,9 @@ class _Joining:
             if one is slide:
                 continue
             before, after, foot = slide.before, slide.after, slide.foot
-            if abs(one.along + slide.along) <= 1e-9 * abs(one.along):
+            if abs(one.along + slide.along) <= _ALIKE * abs(one.along):
                 before, after, foot = after, before, -foot
-            elif abs(one.along - slide.along) > 1e-9 * abs(one.along):
+            elif abs(one.along - slide.along) > _ALIKE * abs(one.along):
                 raise NotRead(f'"{slide.variable}" is a length in two directions or scales')
             if self.phase[before] != self.phase[one.before]:
                 raise NotRead(f'"{slide.variable}" is a length along two links')
@@ -274,14 +274,14 @@ class _Joining:
         first: dict[str, Slide] = {}
         for slide in self.slides:
             one = first.setdefault(slide.variable, slide)
-            turned = abs(one.along + slide.along) <= 1e-9 * abs(one.along)
-            for before, after in ((slide.after, slide.before),) if turned else ((slide.before, slide.after),):
-                start = 0j if turned else slide.foot
-                end = slide.foot if turned else 0j
-                if self.rigid[one.before] != self.rigid[before]:
-                    return self._place(one.before, before, one.foot - start)
-                if self.rigid[one.after] != self.rigid[after]:
-                    return self._place(one.after, after, -end)
+            ends = [(slide.before, slide.foot), (slide.after, 0j)]
+            if abs(one.along + slide.along) <= _ALIKE * abs(one.along):
+                ends.reverse()
+            for known, (piece, place) in zip(
+                ((one.before, one.foot), (one.after, 0j)), ends, strict=True
+            ):
+                if self.rigid[known[0]] != self.rigid[piece]:
+                    return self._place(known[0], piece, known[1] - place)
         return False
 
     def _meet_once(self) -> bool:

@@ -126,10 +126,7 @@ class _Drawing:
 
     def linkage(self) -> Linkage:
         """All of it."""
-        self.places = {link: {} for link in self.names.links}
-        for corner, name in zip(self.joints.corners, self.names.pins, strict=True):
-            for link, place in corner.places.items():
-                self.places[link][name] = place
+        self.places = {link: dict(self._pins_of(link)) for link in self.names.links}
         rails = [self._rail(*slide) for slide in self._outwards()]
         if not self.places[self.joints.ground]:  # nothing but a line of a slide stands still
             raise NotRead("no vector begins at a link that stands still")
@@ -146,6 +143,13 @@ class _Drawing:
             sliders=tuple(self._slider(rail) for rail in rails),
             inputs=tuple(map(self._input, self.equations.inputs, self.loops.inputs)),
         )
+
+    def _pins_of(self, link: int) -> list[tuple[str, complex]]:
+        """The pins of a link with their places, as the file lists them if it draws the link."""
+        pins = zip(self.names.pins, self.joints.corners, strict=True)
+        found = [(name, corner.places[link]) for name, corner in pins if link in corner.places]
+        drawn = self.loops.links.get(self.names.links[link], ())
+        return sorted(found, key=lambda pin: drawn.index(pin[0]) if pin[0] in drawn else len(drawn))
 
     def _move_ground(self) -> None:
         """To where the file has its points."""
