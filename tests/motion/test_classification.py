@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.motion.classifying.as_linkage import as_linkage
+from linkwork.motion.classifying.as_linkage import Seen, as_linkage
 from linkwork.motion.classifying.classify import block_groups, classify
 
 FOUR_BAR = {
@@ -21,9 +21,9 @@ FOUR_BAR = {
 
 
 def _classified(mechanism: lw.Mechanism) -> lw.Classification:
-    found = classify(as_linkage(mechanism.model))
-    assert found is not None
-    return found
+    seen = as_linkage(mechanism.model)
+    assert isinstance(seen, Seen)
+    return classify(seen)
 
 
 def _four_bar(

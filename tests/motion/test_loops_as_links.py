@@ -139,7 +139,7 @@ def test_what_is_read_off_loops_moves_as_they_do(name: str) -> None:
 def _loops(*equations: str, unknowns: str, driven: str, **what: object) -> lw.Mechanism:
     """Loops with links 1 to 5 long; angles and lengths are told apart by where they stand."""
     numbers = {"a": 1, "b": 4, "c": 3, "d": 3.5, "g": 2}
-    guess = {name: 1.0 for name in [*unknowns.split(), driven]}
+    guess = dict.fromkeys([*unknowns.split(), driven], 1.0)
     return lw.loops(
         dimensions=numbers,
         angle="rad",
@@ -234,14 +234,17 @@ def test_textbook_equations_are_called_by_their_names(
         (
             _loops(
                 "a*e^(i*θ2) + b*e^(i*θ3) = d + c*e^(i*θ4) + g*e^(2*i*θ2)",
-                unknowns="θ3 θ4", driven="θ2",
+                unknowns="θ3 θ4",
+                driven="θ2",
             ),
             "the angles of its vectors depend on each other, as those of wheels do",
         ),
         (
             _loops(
-                "a*e^(i*θ2) + b*e^(i*θ3) = s", "g*e^(i*θ2) + b*e^(i*θ4) = 2*s + i*x",
-                unknowns="θ3 θ4 s x", driven="θ2",
+                "a*e^(i*θ2) + b*e^(i*θ3) = s",
+                "g*e^(i*θ2) + b*e^(i*θ4) = 2*s + i*x",
+                unknowns="θ3 θ4 s x",
+                driven="θ2",
             ),
             '"s" is a length in two directions or scales',
         ),
@@ -273,5 +276,5 @@ def test_pins_of_loops_that_share_one_link_only_are_not_made_up() -> None:
     seen = as_linkage(excavator.model)
     assert isinstance(seen, Seen)
     assert seen.loose
-    with pytest.raises(lw.InputError, match="do not tell where on .* they are joined"):
+    with pytest.raises(lw.InputError, match=r"do not tell where on .* they are joined"):
         excavator.inversion(seen.loose[0])

@@ -16,7 +16,9 @@ from linkwork.mechanism.linkage import GROUND, Linkage
 __all__ = ["as_loops"]
 
 
-def as_loops(mechanism: lw.Mechanism, *, seed: int | None = None, drawn: bool = False) -> lw.Mechanism:
+def as_loops(
+    mechanism: lw.Mechanism, *, seed: int | None = None, drawn: bool = False
+) -> lw.Mechanism:
     """The mechanism given by its loop equations.
 
     Every loop begins at ground, where it touches it. With a ``seed``, some of it is written on the
@@ -46,8 +48,14 @@ def as_loops(mechanism: lw.Mechanism, *, seed: int | None = None, drawn: bool = 
         for variable, start in zip(equations.variables, equations.start, strict=True)
     }
     inputs = [
-        replace(which, link=None, slider=None, cylinder=None, variable=which.drives[1],
-                step=which.step if which.start != which.stop else 1)
+        replace(
+            which,
+            link=None,
+            slider=None,
+            cylinder=None,
+            variable=which.drives[1],
+            step=which.step if which.start != which.stop else 1,
+        )
         for which in linkage.inputs
     ]
     drawing = {}

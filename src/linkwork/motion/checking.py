@@ -57,7 +57,9 @@ def check(model: Model) -> CheckReport:
                 unknowns=tuple(equations.unknowns[k].name for k in block.unknowns),
                 group=group,
             )
-            for block, group in zip(model.compiled.solver.blocks, block_groups(model, seen), strict=True)
+            for block, group in zip(
+                model.compiled.solver.blocks, block_groups(model, seen), strict=True
+            )
         ),
         mobility_count=mobility.count,
         mobility_rank=mobility.rank,

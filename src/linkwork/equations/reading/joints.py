@@ -70,10 +70,14 @@ class Joints:
         return sum(phase == FRAME for phase in self.phases.values())
 
     @property
+    def pins(self) -> int:
+        """How many pins there are, one of k links counted as k - 1."""
+        return sum(len(corner.places) - 1 for corner in self.corners)
+
+    @property
     def mobility(self) -> int:
         """Grübler's count."""
-        pins = sum(len(corner.places) - 1 for corner in self.corners)
-        return 3 * (len(self.phases) - 1) - 2 * (pins + len(self.slides))
+        return 3 * (len(self.phases) - 1) - 2 * (self.pins + len(self.slides))
 
 
 def joints_of(walks: Sequence[Walk], size: float) -> Joints:
@@ -121,9 +125,9 @@ class _Union:
 class _Joining:
     """Pieces of links, corners between them, and what has turned out to be the same.
 
-    ``link`` tells which pieces are of one link; ``rigid`` and ``shift`` where they are in it, as far as
-    known: the place z of a piece is z + shift in the first piece of its part. ``apart`` is how parts of
-    one link are laid out whose distance is not known.
+    ``link`` tells which pieces are of one link; ``rigid`` and ``shift`` where they are in it, as
+    far as known: the place z of a piece is z + shift in the first piece of its part. ``apart`` is
+    how parts of one link are laid out whose distance is not known.
     """
 
     tolerance: float
@@ -188,7 +192,7 @@ class _Joining:
         changed = True
         while changed:
             steps = (self._at_corners, self._same_slides, self._one_pin, self._same_place)
-            changed = any([step() for step in steps])
+            changed = any(step() for step in steps)
 
     def _place(self, piece: int, other: int, offset: complex) -> bool:
         """``other`` is the link of ``piece``, its zero at ``offset`` there."""
@@ -327,7 +331,7 @@ class _Joining:
         )
 
     def _lay_out(self) -> frozenset[int]:
-        """Lay the parts of a link whose distance is not known apart from each other: those links."""
+        """Lay out the parts of a link whose distance is not known: the links that have such."""
         parts: dict[int, list[int]] = {}
         for k, part in enumerate(self.rigid):
             known = parts.setdefault(self.link.root(k), [])
@@ -365,9 +369,14 @@ class _Joining:
         )
         if not still:
             raise NotRead("no vector keeps its direction, so that no link stands still")
-        begun = {self.link.root(piece): place + self.shift[piece] for piece, place in self.origins[::-1]}
+        begun = {
+            self.link.root(piece): place + self.shift[piece] for piece, place in self.origins[::-1]
+        }
         if len(begun) == 1:
             return next(iter(begun.items()))
         if len(still) > 1:
-            raise NotRead("several links keep their direction, and the equations begin at none or at more than one of them")
+            raise NotRead(
+                "several links keep their direction, and the equations begin at none or at more "
+                "than one of them"
+            )
         return next(iter(still)), 0j

@@ -18,13 +18,13 @@ from linkwork.equations.reading.walk import phase_of, walks
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import MechanismError
 from linkwork.mechanism.directed import free_name
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
 from linkwork.mechanism.parts import Input, Number, Slider
 
 __all__ = ["ReadLinkage", "read_linkage"]
 
-_MOST_WAYS = 256  # of walking along all loops that are tried
+_MOST_WAYS = 64  # of walking along all loops that are tried
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,10 +104,14 @@ def _best(equations: LoopEquations, poses: Poses) -> Joints:
             why.append(error)
             continue
         fit = poses.fit(joints)
-        if best is None or fit > best[0] or (
-            (fit, joints.still) == (best[0], 1) and driven > best[1]
+        if (
+            best is None
+            or fit > best[0]
+            or ((fit, joints.still) == (best[0], 1) and driven > best[1])
         ):
             best = fit, driven, joints
+        if (fit, driven) == (joints.pins if poses.points else 0, len(equations.inputs)):
+            break
     if best is None:
         raise why[0]
     return best[2]

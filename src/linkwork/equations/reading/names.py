@@ -30,9 +30,7 @@ class PartNames:
     taken: set[str]
 
     @classmethod
-    def of(
-        cls, loops: Loops, equations: LoopEquations, joints: Joints, poses: Poses
-    ) -> PartNames:
+    def of(cls, loops: Loops, equations: LoopEquations, joints: Joints, poses: Poses) -> PartNames:
         """Pins by the file's points, links by its links, else by the angle that they turn by."""
         drawn = [*loops.points, *(name for name in loops.links if name != GROUND)]
         named = [*drawn, *loops.dimensions, *loops.outputs, GROUND]

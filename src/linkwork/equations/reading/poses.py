@@ -73,8 +73,7 @@ class Poses:
     def named(self, joints: Joints) -> tuple[complex, tuple[str | None, ...]]:
         """Where the equations begin, and the file's point at every pin.
 
-        They begin at the origin unless more pins are points if they begin elsewhere. Two pins at one
-        point are none: they would be one pin.
+        They begin at the origin unless more pins are points if they begin elsewhere.
         """
         origins = self.links(joints)
         pins = []

@@ -1,8 +1,8 @@
 """A loop as a walk along its vectors: where one direction ends and the next begins is a pin.
 
-A sum has no order, a loop has one. Both sides of an equation lead from one point to another, so that
-the walk goes along the left side and comes back along the right one; or everything was moved to one
-side, and the order is that in which it stands there.
+A sum has no order, a loop has one. Both sides of an equation lead from one point to another, so
+that the walk goes along the left side and comes back along the right one; or everything was moved
+to one side, and the order is that in which it stands there.
 """
 
 from __future__ import annotations
@@ -49,8 +49,8 @@ class Walk:
 def walks(loop: LoopEquation) -> list[Walk]:
     """The walks that a loop may be meant as, the one that it is written as first.
 
-    With both sides as two ways from one point, or with all on one side; a direction that is met more
-    than once may have its vectors brought together.
+    With both sides as two ways from one point, or with all on one side; a direction that is met
+    more than once may have its vectors brought together.
     """
     right = [term.negated() for term in loop.right]
     found: dict[Walk, None] = {}

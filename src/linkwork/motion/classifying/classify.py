@@ -39,9 +39,7 @@ def _class(groups: tuple[AssurGroup, ...]) -> int | None:
     return max([1, *known]) if len(known) == len(numbers) else None
 
 
-def block_groups(
-    model: Model, seen: Seen | NotSeen
-) -> tuple[AssurGroup | None, ...]:
+def block_groups(model: Model, seen: Seen | NotSeen) -> tuple[AssurGroup | None, ...]:
     """For every block of equations the Assur group whose unknowns it determines, if there is one.
 
     Coordinates of a curve or of a contact belong to the group whose links they are solved with. A

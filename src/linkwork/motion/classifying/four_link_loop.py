@@ -75,7 +75,7 @@ class FourLinkLoop:
     def _slide(self, linkage: Linkage) -> tuple[Joint, Slider | Slot | None]:
         """The only sliding joint, and the slider or slot that it is."""
         slide = next(j for j in self.joints if j.kind is JointKind.PRISMATIC)
-        guides = (*linkage.sliders, *linkage.slots)
+        guides: tuple[Slider | Slot, ...] = (*linkage.sliders, *linkage.slots)
         return slide, next((guide for guide in guides if guide.name == slide.name), None)
 
 

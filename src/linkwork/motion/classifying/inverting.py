@@ -35,8 +35,8 @@ def inversion(model: Model, link: str, which: Input | None = None) -> Linkage:
     seen = _seen(model)
     if seen.loose:
         raise InputError(
-            f"the loops of {model.description.name} do not tell where on {' and '.join(seen.loose)} "
-            "they are joined: write it as points and links to invert it"
+            f"the loops of {model.description.name} do not tell where on "
+            f"{' and '.join(seen.loose)} they are joined: write it as points and links to invert it"
         )
     linkage = seen.linkage
     if link != GROUND:
