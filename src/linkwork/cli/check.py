@@ -59,7 +59,7 @@ def check_lines(report: CheckReport, length: str) -> list[str]:
 def _understood(report: CheckReport) -> Iterator[tuple[str, str]]:
     yield "written as", report.form
     if report.links:
-        read = " as read off the loops" if report.form == "loops" else ""
+        read = ", read off the loops" if report.form == "loops" else ""
         yield "parts", f"{_count(report.links, 'link')}, {_count(report.joints, 'joint')}{read}"
     what = "equation" if report.form == "equations" else "loop"
     yield what if len(report.loops) == 1 else f"{what}s", ", ".join(map(_quoted, report.loops))
