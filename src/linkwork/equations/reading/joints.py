@@ -7,14 +7,15 @@ joint, and the same length in another loop is the same joint. Then
 2. two links that turn against each other share one pin at most;
 3. two pins at the same place of one link are one pin;
 
-and, where these leave it open, two directions that meet once in each of two loops meet at one pin.
+and, where these leave it open, loops begin at ground, and what meets once in each of two loops
+meets at one pin.
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
+from itertools import combinations, permutations
 
 from linkwork.equations.reading.walk import FRAME, Phase, Run, Walk
 
@@ -185,7 +186,7 @@ class _Joining:
             if phase not in sliding:
                 self.link.unite(first.setdefault(phase, piece), piece)
         self._settle()
-        while self._same_vector() or self._meet_once():
+        while self._same_vector() or self._begin_at_ground() or self._meet_once():
             self._settle()
 
     def _settle(self) -> None:
@@ -288,26 +289,44 @@ class _Joining:
                     return self._place(known[0], piece, known[1] - place)
         return False
 
+    def _begin_at_ground(self) -> bool:
+        """All loops that begin at a link that does not turn begin at the same one."""
+        first = self.origins[0][0] if self.origins else 0
+        return any(self.link.unite(first, piece) for piece, _ in self.origins[1:])
+
     def _meet_once(self) -> bool:
-        """Two directions that meet once in each of several loops meet at one pin, if they may."""
-        met: dict[tuple[Phase, Phase], list[int]] = {}
+        """What meets once in each of several loops meets at one pin, if it may.
+
+        A link and a direction, else two directions.
+        """
         ends = self._by_corner()
-        for corner in ends:
-            phases = sorted({self.phase[piece] for piece, _ in ends[corner]})
-            for pair in combinations(phases, 2):
-                met.setdefault(pair, []).append(corner)
         loops: dict[int, set[int]] = {}
         for k, loop in enumerate(self.loop_of):
             loops.setdefault(self.corner.root(k), set()).add(loop)
         parts = {k: {self.rigid[piece] for piece, _ in ends[k]} for k in ends}
-        for corners in met.values():
-            apart = list(combinations(sorted(corners), 2))
+        for corners in (*self._meetings(ends, self.link.root), *self._meetings(ends, None)):
+            apart = list(combinations(corners, 2))
             if any(loops[one] & loops[other] for one, other in apart):
                 continue
             for one, other in apart:
                 if not parts[one] & parts[other]:
                     return self.corner.unite(one, other)
         return False
+
+    def _meetings(
+        self, ends: Mapping[int, list[tuple[int, complex]]], link: Callable[[int], int] | None
+    ) -> Iterator[list[int]]:
+        """The corners at which the same link, or direction, meets the same direction."""
+        met: dict[Hashable, list[int]] = {}
+        for corner, at in ends.items():
+            pairs: dict[Hashable, None] = {}
+            for one, other in permutations([piece for piece, _ in at], 2):
+                if self.phase[one] != self.phase[other]:
+                    own = self.phase[one] if link is None else link(one)
+                    pairs.setdefault((own, self.phase[other]))
+            for pair in pairs:
+                met.setdefault(pair, []).append(corner)
+        yield from met.values()
 
     def joints(self) -> Joints:
         """What has come out."""
