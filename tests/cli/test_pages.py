@@ -147,6 +147,26 @@ SHAPER = """\
 
 """
 
+RAPIER = """\
+  written as  loops
+  parts       6 links, 7 joints, read off the loops
+  loops       "A0 A B C C0", "C0 C D E"
+  unknowns    θ13 [deg], θ14 [deg], θ15 [deg], s16 [mm]
+  input       θ12 [deg]
+  sweep       361 positions
+  blocks      1, all unknowns are solved together: triad RR-RR-PR, class III
+  mobility    1 by Grübler's count, 1 by rank
+  chain       Stephenson chain, 1 prismatic joint
+  type        Stephenson III
+  class       III
+
+"""
+
+EXTREMUM = """\
+  chain       not known: plain equations tell nothing of links and joints
+
+"""
+
 MEASURED = """
 Lengths measured between [points], because [lengths] leaves them open
   link     points  length [mm]
@@ -400,7 +420,13 @@ def test_check_tells_what_was_understood(run: Run) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "lines"), [("jansen-leg", JANSEN), ("inverted-slider-crank", SHAPER)]
+    ("name", "lines"),
+    [
+        ("jansen-leg", JANSEN),
+        ("inverted-slider-crank", SHAPER),
+        ("rapier-drive", RAPIER),
+        ("newton-extremum", EXTREMUM),
+    ],
 )
 def test_check_says_what_a_textbook_says(run: Run, folder: Path, name: str, lines: str) -> None:
     assert run("examples", name, "-o", "mechanism.toml").exit_code == 0

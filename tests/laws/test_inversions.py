@@ -248,10 +248,10 @@ def test_what_cannot_be_inverted_is_refused_with_the_reason() -> None:
             "(links: rocker, ground, crank, coupler)",
         ),
         (
-            lw.example("rapier-drive"),
+            lw.example("newton-extremum"),
             "crank",
-            "Rapier drive of a loom is given by equations: only points and links tell which link "
-            "is ground, and can be inverted",
+            "Newton-Raphson starting at a local extremum is given by equations, and cannot be "
+            "inverted without links and joints: plain equations tell nothing of links and joints",
         ),
     ]
     for mechanism, link, message in refused:

@@ -58,7 +58,124 @@ TEXTBOOK = {
         -3, 1, "16-link chain with -3 degrees of freedom by Grübler's count, 8 multiple pins",
         "", None,
     ),
+    "ackermann-steering": (1, 1, "four-bar chain", "triple-rocker (RRR1): not Grashof", 2),
+    "andrews-squeezer": (
+        1, 1, "eight-link chain, 2 multiple pins",
+        "its loop ground, K1, K2, K3: crank-rocker (GCRR): Grashof", 2,
+    ),
+    "beam-engine": (
+        1, 1, "eight-link chain, 1 multiple pin",
+        "its loop ground, crank, connecting_rod, beam: crank-rocker (GCRR): Grashof", 2,
+    ),
+    "belt-drive": (1, 1, "five-link chain with 1 belt", "", None),
+    "cam-swinging-follower": (1, 1, "three-link chain with 1 cam", "", None),
+    "cardan-circles": (1, 1, "three-link chain with 1 gear pair", "", None),
+    "cognate-1": (1, 1, "four-bar chain", "crank-rocker (GCRR): Grashof", 2),
+    "cognate-2": (1, 1, "four-bar chain", "double-rocker: Grashof", None),
+    "cognate-3": (1, 1, "four-bar chain", "crank-rocker (GCRR): Grashof", 2),
+    "coupled-six-link": (1, 1, "Stephenson chain, 2 prismatic joints", "Stephenson III", 3),
+    "crank-slider": (
+        1, 1, "slider-crank chain (RRRP)",
+        "slider-crank: the driven link turns fully", 2,
+    ),
+    "crossed-belt": (1, 1, "five-link chain with 1 belt", "", None),
+    "curved-slot": (1, 1, "three-link chain with 1 pin on a curve", "", None),
+    "double-four-bar": (
+        1, 1, "Watt chain",
+        "Watt II; its loop ground, link1, link2, link3: crank-rocker (GCRR): Grashof", 2,
+    ),
+    "double-wishbone": (1, 1, "four-bar chain", "triple-rocker (RRR2): not Grashof", 2),
+    "eccentric-cam": (1, 1, "three-link chain with 1 cam", "", None),
+    "evans": (1, 1, "four-bar chain", "triple-rocker (RRR1): not Grashof", 2),
+    "excavator": (
+        3, 3, "12-link chain with 3 degrees of freedom, 3 prismatic joints, 1 multiple pin",
+        "", 2,
+    ),
+    "four-bar-crossed": (1, 1, "four-bar chain", "crank-rocker (GCRR): Grashof", 2),
+    "garage-door": (1, 1, "three-link chain with 1 pin on a curve", "", None),
+    "geared-five-bar": (1, 1, "five-link chain with 1 gear pair", "", None),
+    "geneva-drive": (
+        1, 1, "slider-crank chain (RRRP)",
+        "crank shaper: the driven link turns fully", 2,
+    ),
+    "kempe-translator": (
+        2, 2, "seven-link chain with 2 degrees of freedom, 2 multiple pins",
+        "", None,
+    ),
+    "landing-gear": (1, 1, "Watt chain, 1 prismatic joint", "Watt II", 2),
+    "macpherson": (
+        1, 1, "slider-crank chain (RRRP)",
+        "oscillating cylinder: the driven link turns fully", 2,
+    ),
+    "pantograph": (
+        1, 1, "eight-link chain, 1 multiple pin",
+        "its loop ground, crank, coupler, rocker: crank-rocker (GCRR): Grashof", 2,
+    ),
+    "rack-and-pinion": (
+        1, 1, "five-link chain with 1 rack and pinion",
+        "its loop ground, crank, rod, rack: slider-crank: the driven link turns fully", None,
+    ),
+    "rack-steering": (1, 1, "seven-link chain with 1 rack and pinion", "", None),
+    "rapier-drive-limited-links": (
+        1, 1, "Stephenson chain, 1 prismatic joint",
+        "Stephenson III", 3,
+    ),
+    "rapier-drive-limited": (1, 1, "Stephenson chain, 1 prismatic joint", "Stephenson III", 3),
+    "rapier-drive-links": (1, 1, "Stephenson chain, 1 prismatic joint", "Stephenson III", 3),
+    "rapier-drive": (1, 1, "Stephenson chain, 1 prismatic joint", "Stephenson III", 3),
+    "rolling-inside": (1, 1, "two-link chain with 1 rolling contact", "", None),
+    "rolling-wheel": (1, 1, "two-link chain with 1 rolling contact", "", None),
+    "ross-yoke": (
+        1, 1, "slider-crank chain (RRRP)",
+        "slider-crank: the driven link turns fully", 2,
+    ),
+    "scissor-lift": (
+        1, 1, "eight-link chain no. 7 of 16 (4 ternary links), 2 prismatic joints",
+        "its loop ground, x, arm2, arm1: isosceles slider-crank: change point", 2,
+    ),
+    "scissor-three-bars": (
+        0, 1, "five-link chain with 0 degrees of freedom by Grübler's count",
+        "", None,
+    ),
+    "slider-crank-engine": (
+        1, 1, "slider-crank chain (RRRP)",
+        "slider-crank: the driven link turns fully", 2,
+    ),
+    "slider-input": (1, 1, "slider-crank chain (RRRP)", "slider-crank: a link turns fully", 2),
+    "stephenson-valve-gear": (
+        1, 1,
+        "eight-link chain no. 11 of 16 (1 quaternary and 2 ternary links), 2 prismatic joints",
+        "", 3,
+    ),
+    "toggle-press": (
+        1, 1, "six-link chain, 1 prismatic joint, 1 multiple pin",
+        "its loop ground, crank, rod, upper_toggle: crank-rocker (GCRR): Grashof", 2,
+    ),
+    "trotbot-leg": (
+        1, 1, "eight-link chain, 1 multiple pin",
+        "its loop ground, crank, triangle, rocker: crank-rocker (GCRR): Grashof", 2,
+    ),
+    "windscreen-wiper": (
+        1, 1, "six-link chain, 1 multiple pin",
+        "its loop ground, crank, rod, blade1: crank-rocker (GCRR): Grashof", 2,
+    ),
 }  # fmt: skip
+
+#: Files of plain equations, which are no mechanisms.
+EQUATIONS = {
+    "newton-another-root", "newton-convergence", "newton-extremum", "newton-inflection"
+}  # fmt: skip
+
+
+def test_every_library_file_has_its_statement() -> None:
+    assert TEXTBOOK.keys() | EQUATIONS == set(lw.examples())
+
+
+@pytest.mark.parametrize("name", sorted(EQUATIONS))
+def test_plain_equations_are_called_nothing(name: str) -> None:
+    report = lw.example(name).check()
+    assert (report.classification, report.mobility_count) == (None, None)
+    assert report.unclassified == "plain equations tell nothing of links and joints"
 
 
 @pytest.mark.parametrize("name", TEXTBOOK)

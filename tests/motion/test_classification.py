@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.motion.classifying.as_linkage import Seen, as_linkage
 from linkwork.motion.classifying.classify import block_groups, classify
 
 FOUR_BAR = {
@@ -20,9 +21,9 @@ FOUR_BAR = {
 
 
 def _classified(mechanism: lw.Mechanism) -> lw.Classification:
-    found = classify(mechanism.model)
-    assert found is not None
-    return found
+    seen = as_linkage(mechanism.model)
+    assert isinstance(seen, Seen)
+    return classify(seen)
 
 
 def _four_bar(
@@ -264,7 +265,7 @@ def test_a_pivoted_cylinder_makes_it_an_oscillating_or_rotary_cylinder() -> None
         assert (found.loop.name, found.loop.turns_fully) == (name, None)
         assert [group.text for group in found.groups] == ["dyad RRR, class II"]
         assert found.groups[0].links == ("crank", "ram barrel + ram rod")
-        assert block_groups(mechanism.model) == found.groups
+        assert block_groups(mechanism.model, as_linkage(mechanism.model)) == found.groups
 
 
 def test_a_loop_of_a_larger_chain_is_told_if_the_input_drives_it() -> None:
@@ -371,7 +372,7 @@ def test_the_five_dyads_are_named_by_their_joints(
     mechanism = made()
     (group,) = _classified(mechanism).groups
     assert (group.text, group.order) == (f"dyad {dyad}, class II", 2)
-    assert block_groups(mechanism.model) == (group,)
+    assert block_groups(mechanism.model, as_linkage(mechanism.model)) == (group,)
 
 
 def test_the_scotch_yoke_is_known() -> None:
@@ -395,7 +396,7 @@ def test_every_block_of_the_library_is_the_group_of_its_links() -> None:
     ):
         mechanism = lw.example(name)
         groups = _classified(mechanism).groups
-        assert block_groups(mechanism.model) == groups
+        assert block_groups(mechanism.model, as_linkage(mechanism.model)) == groups
         assert len(groups) == len(mechanism.check().blocks)
 
 
@@ -408,7 +409,18 @@ def test_an_input_that_holds_no_joint_leaves_no_assur_group() -> None:
     assert found.class_number is None
 
 
-def test_what_is_given_by_equations_has_no_classification() -> None:
-    mechanism = lw.example("rapier-drive")
-    assert mechanism.check().classification is None
-    assert block_groups(mechanism.model) == (None,)
+def test_plain_equations_have_no_classification() -> None:
+    mechanism = lw.example("newton-extremum")
+    report = mechanism.check()
+    assert report.classification is None
+    assert report.unclassified == "plain equations tell nothing of links and joints"
+    assert block_groups(mechanism.model, as_linkage(mechanism.model)) == (None,)
+
+
+def test_a_block_pinned_to_ground_swings_as_a_cylinder_does() -> None:
+    """MacPherson's strut slides in its mount, which is pinned to the body: no slotted lever."""
+    strut = _classified(lw.example("macpherson")).loop
+    lever = _classified(lw.example("inverted-slider-crank")).loop
+    assert strut is not None
+    assert lever is not None
+    assert (strut.name, lever.name) == ("oscillating cylinder", "crank shaper")

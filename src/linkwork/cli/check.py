@@ -58,8 +58,9 @@ def check_lines(report: CheckReport, length: str) -> list[str]:
 
 def _understood(report: CheckReport) -> Iterator[tuple[str, str]]:
     yield "written as", report.form
-    if report.form == "points and links":
-        yield "parts", f"{_count(report.links, 'link')}, {_count(report.joints, 'joint')}"
+    if report.links:
+        read = ", read off the loops" if report.form == "loops" else ""
+        yield "parts", f"{_count(report.links, 'link')}, {_count(report.joints, 'joint')}{read}"
     what = "equation" if report.form == "equations" else "loop"
     yield what if len(report.loops) == 1 else f"{what}s", ", ".join(map(_quoted, report.loops))
     yield "unknowns", _with_units(report.unknowns) or "none"
@@ -78,6 +79,8 @@ def _understood(report: CheckReport) -> Iterator[tuple[str, str]]:
     yield from redundant_lines({link: gap for link, _, gap in report.redundant})
     if report.classification is not None:
         yield from classification_fields(report.classification)
+    else:
+        yield "chain", f"not known: {report.unclassified}"
 
 
 def _blocks_sentence(report: CheckReport) -> str:

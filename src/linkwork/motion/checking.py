@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from linkwork.foundation.arrays import Array
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
+from linkwork.motion.classifying.as_linkage import NotSeen, as_linkage
 from linkwork.motion.classifying.classify import block_groups, classify
 from linkwork.motion.mobility import mobility_of, pins
 from linkwork.motion.model import Model
@@ -25,7 +26,9 @@ def check(model: Model) -> CheckReport:
     """Report what was understood of a mechanism and try its start position."""
     description, equations = model.description, model.equations
     start = first_position(model, model.start_inputs, NewtonOptions())
-    mobility = mobility_of(model, start.v if start.status.ok else None)
+    seen = as_linkage(model)
+    linkage = None if isinstance(seen, NotSeen) else seen.linkage
+    mobility = mobility_of(model, linkage, start.v if start.status.ok else None)
     measured: tuple[tuple[str, str, float], ...] = ()
     links = joints = 0
     if isinstance(description, Linkage):
@@ -33,10 +36,11 @@ def check(model: Model) -> CheckReport:
         measured = tuple(
             (m.link, " ".join(m.points), m.length) for m in description.shapes.measured
         )
-        links = len(description.links) + len(description.cylinders)
-        joints = pins(description) + sum(len(getattr(description, k)) for k in _JOINTS)
     else:
         form = "loops" if isinstance(description, Loops) else "equations"
+    if linkage is not None:
+        links = len(linkage.links) + len(linkage.cylinders)
+        joints = pins(linkage) + sum(len(getattr(linkage, k)) for k in _JOINTS)
     units = model.units
     return CheckReport(
         mechanism=description.name,
@@ -53,7 +57,9 @@ def check(model: Model) -> CheckReport:
                 unknowns=tuple(equations.unknowns[k].name for k in block.unknowns),
                 group=group,
             )
-            for block, group in zip(model.compiled.solver.blocks, block_groups(model), strict=True)
+            for block, group in zip(
+                model.compiled.solver.blocks, block_groups(model, seen), strict=True
+            )
         ),
         mobility_count=mobility.count,
         mobility_rank=mobility.rank,
@@ -68,7 +74,8 @@ def check(model: Model) -> CheckReport:
         },
         residual=start.residual,
         failure=start.failure,
-        classification=classify(model),
+        classification=None if isinstance(seen, NotSeen) else classify(seen),
+        unclassified=seen.why if isinstance(seen, NotSeen) else "",
     )
 
 

@@ -23,17 +23,16 @@ _TRIES = 6
 
 @dataclass(frozen=True, kw_only=True)
 class Mobility:
-    """Grübler's count (for linkages), the mobility by rank (at a position), and why they differ."""
+    """Grübler's count (of links), the mobility by rank (at a position), and why they differ."""
 
     count: int | None
     rank: int | None
     why: str = ""
 
 
-def mobility_of(model: Model, v: Array | None) -> Mobility:
-    """The mobility of a mechanism at a position (N,), if there is one."""
-    description = model.description
-    count = grubler_count(description) if isinstance(description, Linkage) else None
+def mobility_of(model: Model, linkage: Linkage | None, v: Array | None) -> Mobility:
+    """The mobility of a mechanism at a position (N,), if there is one; ``linkage``: its links."""
+    count = None if linkage is None else grubler_count(linkage)
     rank = None if v is None else _by_rank(model, v)
     if count is None or rank is None or v is None or rank == count:
         return Mobility(count=count, rank=rank)

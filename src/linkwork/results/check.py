@@ -16,7 +16,7 @@ __all__ = ["BlockSummary", "CheckReport"]
 class BlockSummary:
     """Equations that are solved together, by label, for the named unknowns.
 
-    ``group``: the Assur group that they are, for points and links.
+    ``group``: the Assur group that they are.
     """
 
     equations: tuple[str, ...]
@@ -40,8 +40,10 @@ class CheckReport:
     ----------
     form : str
         ``points and links``, ``loops`` or ``equations``.
+    links, joints : int
+        How many there are; those of loops are read off the equations, 0 if that fails.
     mobility_count : int or None
-        Grübler's count, for points-and-links mechanisms.
+        Grübler's count, where there are links and joints.
     mobility_rank : int or None
         Variables minus the rank of the full Jacobian at the start position, if one was found.
     mobility_why : str
@@ -57,7 +59,9 @@ class CheckReport:
     failure : Failure, optional
         Why there is no position at the start.
     classification : Classification, optional
-        What a textbook calls the mechanism, for points and links.
+        What a textbook calls the mechanism.
+    unclassified : str
+        Why there is no classification, "" if there is one.
     """
 
     mechanism: str
@@ -80,6 +84,7 @@ class CheckReport:
     mobility_why: str = ""
     redundant: tuple[tuple[str, float, float], ...] = ()
     classification: Classification | None = None
+    unclassified: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """The report as JSON-ready data."""
@@ -96,6 +101,7 @@ class CheckReport:
             "classification": None
             if self.classification is None
             else self.classification.to_dict(),
+            **({"unclassified": self.unclassified} if self.unclassified else {}),
             "mobility": {
                 "count": self.mobility_count,
                 "rank": self.mobility_rank,

@@ -10,6 +10,7 @@ from itertools import pairwise
 from linkwork.equations.model import LinkAngle
 from linkwork.mechanism.chain import Chain, Joint, JointKind
 from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.parts import Slider, Slot
 
 __all__ = ["FourLinkLoop", "driven_joints", "input_loop"]
 
@@ -50,10 +51,7 @@ class FourLinkLoop:
 
     def offset(self, linkage: Linkage, angles: Mapping[str, LinkAngle]) -> float:
         """The distance of the two pins beside the only sliding joint, across its direction."""
-        slide = next(j for j in self.joints if j.kind is JointKind.PRISMATIC)
-        slider = next((s for s in linkage.sliders if s.name == slide.name), None)
-        slot = next((s for s in linkage.slots if s.name == slide.name), None)
-        guide = slider or slot
+        slide, guide = self._slide(linkage)
         if guide is None:  # a cylinder pulls along the line of its pins
             return 0.0
         on = linkage.shapes.local[guide.on]
@@ -61,13 +59,24 @@ class FourLinkLoop:
         along = (end - foot) / abs(end - foot)
         pin = next(j.name for j in self.ends(guide.on) if j is not slide)
         across = ((on[pin] - foot) * along.conjugate()).imag
-        if slider is None:  # a pin on the line itself
+        if isinstance(guide, Slot):  # a pin on the line itself
             return abs(across)
-        own = linkage.shapes.local[slider.link]
-        own_pin = next(j.name for j in self.ends(slider.link) if j is not slide)
-        turn = cmath.exp(1j * (_constant(angles, slider.link) - _constant(angles, slider.on)))
-        aside = ((own[own_pin] - own[slider.points[0]]) * turn * along.conjugate()).imag
-        return abs(linkage.numbers(slider.offset) + aside - across)
+        own = linkage.shapes.local[guide.link]
+        own_pin = next(j.name for j in self.ends(guide.link) if j is not slide)
+        turn = cmath.exp(1j * (_constant(angles, guide.link) - _constant(angles, guide.on)))
+        aside = ((own[own_pin] - own[guide.points[0]]) * turn * along.conjugate()).imag
+        return abs(linkage.numbers(guide.offset) + aside - across)
+
+    def guide(self, linkage: Linkage) -> str | None:
+        """The link with the line of the only sliding joint; a cylinder has none."""
+        _, guide = self._slide(linkage)
+        return None if guide is None else guide.on
+
+    def _slide(self, linkage: Linkage) -> tuple[Joint, Slider | Slot | None]:
+        """The only sliding joint, and the slider or slot that it is."""
+        slide = next(j for j in self.joints if j.kind is JointKind.PRISMATIC)
+        guides: tuple[Slider | Slot, ...] = (*linkage.sliders, *linkage.slots)
+        return slide, next((guide for guide in guides if guide.name == slide.name), None)
 
 
 def _constant(angles: Mapping[str, LinkAngle], link: str) -> float:

@@ -13,6 +13,7 @@ from linkwork.mechanism.inversion import inverted, settled
 from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.parts import Input
+from linkwork.motion.classifying.as_linkage import NotSeen, Seen, as_linkage
 from linkwork.motion.classifying.classify import classify
 from linkwork.motion.model import Model, model_of
 from linkwork.motion.solving import solve
@@ -27,23 +28,31 @@ def inversion(model: Model, link: str, which: Input | None = None) -> Linkage:
     Raises
     ------
     InputError
-        If the mechanism is given by equations, or cannot be written with this ground.
+        If equations cannot be read as links, or the mechanism cannot be written with this ground.
     UnknownNameError
         If there is no such link.
     """
-    linkage = _linkage(model)
+    seen = _seen(model)
+    if seen.loose:
+        raise InputError(
+            f"the loops of {model.description.name} do not tell where on "
+            f"{' and '.join(seen.loose)} they are joined: write it as points and links to invert it"
+        )
+    linkage = seen.linkage
     if link != GROUND:
         linkage = directed(linkage)
-    return inverted(linkage, link, _places(model, linkage), which)
+    return inverted(linkage, link, _places(seen.model, linkage), which)
 
 
-def _linkage(model: Model) -> Linkage:
-    if not isinstance(model.description, Linkage):
+def _seen(model: Model) -> Seen:
+    """The mechanism as points and links."""
+    seen = as_linkage(model)
+    if isinstance(seen, NotSeen):
         raise InputError(
-            f"{model.description.name} is given by equations: only points and links tell which "
-            "link is ground, and can be inverted"
+            f"{model.description.name} is given by equations, and cannot be inverted without links "
+            f"and joints: {seen.why}"
         )
-    return model.description
+    return seen
 
 
 def _places(model: Model, linkage: Linkage) -> dict[str, complex]:
@@ -60,7 +69,8 @@ def _places(model: Model, linkage: Linkage) -> dict[str, complex]:
 
 def inversions(model: Model) -> tuple[Inversion, ...]:
     """Every link as ground, the present one first, with what that makes of the chain."""
-    linkage = directed(_linkage(model))
+    seen = _seen(model)
+    model, linkage = seen.model, directed(seen.linkage)
     chain = Chain.of(linkage)
     alike = {link: group[0] for group in orbits(chain.with_blocks()) for link in group}
     places = _places(model, linkage)
@@ -72,8 +82,8 @@ def inversions(model: Model) -> tuple[Inversion, ...]:
                 raise InputError(
                     f"{link} is part of a cylinder: write it as two links with a slider"
                 )
-            classified = classify(model_of(inverted(linkage, link, places)))
-            kind = "" if classified is None else classified.type
+            other = as_linkage(model_of(inverted(linkage, link, places)))
+            kind = classify(other).type if isinstance(other, Seen) else ""
         except InputError as error:
             problem = str(error)
         found.append(Inversion(ground=link, type=kind, like=alike[link], problem=problem))

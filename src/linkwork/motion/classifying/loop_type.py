@@ -156,10 +156,10 @@ def _slider_crank(
     full: bool | None = None
     if turning is not None and loop.driven and loop.driven.kind is JointKind.REVOLUTE:
         full = turning and shorter in loop.driven.links
-    cylinder = any(c.name == joint.name for c in linkage.cylinders for joint in loop.joints)
+    swinging = loop.guide(linkage) not in (loop.links[1], loop.links[3])
     return LoopType(
         links=loop.links,
-        name=_slider_crank_name(loop, arms, shorter, turning, long - short <= small, cylinder),
+        name=_slider_crank_name(loop, arms, shorter, turning, long - short <= small, swinging),
         grashof=turning,
         margin=margin,
         relative_margin=margin / max(long, offset),
@@ -203,8 +203,9 @@ def _slider_crank_name(
     shorter: str,
     turning: bool | None,
     isosceles: bool,
-    cylinder: bool,
+    swinging: bool,
 ) -> str:
+    """``swinging``: the block or the cylinder, not the slotted link, is pinned to ground."""
     ground = loop.links[0]
     equal = "isosceles " if isosceles else ""
     if ground not in arms:
@@ -215,8 +216,8 @@ def _slider_crank_name(
     if isosceles or turning is False:
         return f"{equal}inverted slider-crank"
     if ground == shorter:
-        return "rotary cylinder" if cylinder else "Whitworth quick return"
-    return "oscillating cylinder" if cylinder else "crank shaper"
+        return "rotary cylinder" if swinging else "Whitworth quick return"
+    return "oscillating cylinder" if swinging else "crank shaper"
 
 
 def _condition(

@@ -1,0 +1,401 @@
+"""Which vectors of which loops are one link, and which corners of them are one pin.
+
+Vectors of one direction are one link, unless a variable length lies between them: that is a sliding
+joint, and the same length in another loop is the same joint. Then
+
+1. what turns alike and meets at a pin is one link;
+2. two links that turn against each other share one pin at most;
+3. two pins at the same place of one link are one pin;
+
+and, where these leave it open, loops begin at ground, and what meets once in each of two loops
+meets at one pin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations, permutations
+
+from linkwork.equations.reading.walk import FRAME, Phase, Run, Walk
+
+__all__ = ["Corner", "Joints", "NotRead", "Slide", "joints_of"]
+
+_ALIKE = 1e-9  # part by which places and directions differ by rounding at most
+_APART = 7.3 + 4.1j  # far from any pin, and in no direction that a loop has
+
+
+class NotRead(Exception):
+    """Why loops cannot be read as links and joints."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slide:
+    """A sliding joint: ``after`` stands at ``foot + along·s`` in ``before``.
+
+    Places in a link are complex, along and across the direction that its phase gives.
+    """
+
+    variable: str
+    before: int
+    after: int
+    foot: complex
+    along: complex
+
+
+@dataclass(frozen=True)
+class Corner:
+    """A pin: the links that meet there, and where it is in each of them."""
+
+    places: dict[int, complex]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Joints:
+    """Links by number with their phases, pins, sliding joints; ``ground`` stands still.
+
+    ``origin`` is where in the ground the first equation begins. ``loose``: links on which the
+    equations do not tell how far the pins of one loop are from those of another.
+    """
+
+    phases: dict[int, Phase]
+    corners: tuple[Corner, ...]
+    slides: tuple[Slide, ...]
+    ground: int
+    origin: complex
+    loose: frozenset[int]
+
+    @property
+    def still(self) -> int:
+        """How many links do not turn."""
+        return sum(phase == FRAME for phase in self.phases.values())
+
+    @property
+    def pins(self) -> int:
+        """How many pins there are, one of k links counted as k - 1."""
+        return sum(len(corner.places) - 1 for corner in self.corners)
+
+    @property
+    def mobility(self) -> int:
+        """Grübler's count."""
+        return 3 * (len(self.phases) - 1) - 2 * (self.pins + len(self.slides))
+
+
+def joints_of(walks: Sequence[Walk], size: float) -> Joints:
+    """The links and joints of loops that are walked in these orders.
+
+    Parameters
+    ----------
+    size : float
+        A length of the mechanism: places this far apart, but for rounding, are told apart.
+
+    Raises
+    ------
+    NotRead
+        If no links and joints fit the loops, or more than one set of them does.
+    """
+    found = _Joining(tolerance=_ALIKE * size, apart=_APART * size)
+    for loop, walk in enumerate(walks):
+        found.add(loop, walk)
+    found.join()
+    return found.joints()
+
+
+class _Union:
+    """Sets of numbered things, each by the first of them."""
+
+    def __init__(self) -> None:
+        self.above: list[int] = []
+
+    def more(self) -> int:
+        self.above.append(len(self.above))
+        return self.above[-1]
+
+    def root(self, k: int) -> int:
+        while self.above[k] != k:
+            k = self.above[k]
+        return k
+
+    def unite(self, a: int, b: int) -> bool:
+        first, second = sorted((self.root(a), self.root(b)))
+        self.above[second] = first
+        return first != second
+
+
+@dataclass
+class _Joining:
+    """Pieces of links, corners between them, and what has turned out to be the same.
+
+    ``link`` tells which pieces are of one link; ``rigid`` and ``shift`` where they are in it, as
+    far as known: the place z of a piece is z + shift in the first piece of its part. ``apart`` is
+    how parts of one link are laid out whose distance is not known.
+    """
+
+    tolerance: float
+    apart: complex
+    phase: list[Phase] = field(default_factory=list)
+    link: _Union = field(default_factory=_Union)
+    rigid: list[int] = field(default_factory=list)
+    shift: list[complex] = field(default_factory=list)
+    corner: _Union = field(default_factory=_Union)
+    ends: list[tuple[int, int, complex]] = field(default_factory=list)  # corner, piece, place
+    loop_of: list[int] = field(default_factory=list)  # of corners
+    slides: list[Slide] = field(default_factory=list)
+    origins: list[tuple[int, complex]] = field(default_factory=list)
+
+    def add(self, loop: int, walk: Walk) -> None:
+        """The pieces of a loop, their corners and slides."""
+        if len(walk.runs) < 2:
+            raise NotRead("all vectors of a loop have one direction, so that it has no pin")
+        corners = [self.corner.more() for _ in walk.runs]
+        self.loop_of += [loop] * len(corners)
+        for k, run in enumerate(walk.runs):
+            self._run(run, corners[k], corners[(k + 1) % len(corners)], walk.begun if not k else -1)
+        last = walk.runs[-1]
+        if not walk.begun and last.phase == FRAME:
+            piece, place = self.ends[-1][1:]
+            self.origins.append((piece, place))
+
+    def _run(self, run: Run, start: int, end: int, begun: int) -> None:
+        piece, place = self._piece(run.phase), 0j
+        self.ends.append((start, piece, place))
+        for k, term in enumerate(run.terms):
+            if k == begun and run.phase == FRAME:
+                self.origins.append((piece, place))
+            if term.length is None:
+                place += term.value
+                continue
+            after = self._piece(run.phase)
+            self.slides.append(
+                Slide(variable=term.length, before=piece, after=after, foot=place, along=term.value)
+            )
+            piece, place = after, 0j
+        self.ends.append((end, piece, place))
+
+    def _piece(self, phase: Phase) -> int:
+        self.phase.append(phase)
+        self.rigid.append(len(self.rigid))
+        self.shift.append(0j)
+        return self.link.more()
+
+    def join(self) -> None:
+        """Unite what is the same, as far as the rules go."""
+        sliding = {self.phase[slide.before] for slide in self.slides}
+        first: dict[Phase, int] = {}
+        for piece, phase in enumerate(self.phase):
+            if phase not in sliding:
+                self.link.unite(first.setdefault(phase, piece), piece)
+        self._settle()
+        while self._same_vector() or self._begin_at_ground() or self._meet_once():
+            self._settle()
+
+    def _settle(self) -> None:
+        changed = True
+        while changed:
+            steps = (self._at_corners, self._same_slides, self._one_pin, self._same_place)
+            changed = any(step() for step in steps)
+
+    def _place(self, piece: int, other: int, offset: complex) -> bool:
+        """``other`` is the link of ``piece``, its zero at ``offset`` there."""
+        known = self.rigid[piece] == self.rigid[other]
+        gap = self.shift[piece] + offset - self.shift[other]
+        if known:
+            if abs(gap) > self.tolerance:
+                raise NotRead("two pins would join the same two links, which could not move")
+            return False
+        self.link.unite(piece, other)
+        old, new = self.rigid[other], self.rigid[piece]
+        for k, part in enumerate(self.rigid):
+            if part == old:
+                self.rigid[k], self.shift[k] = new, self.shift[k] + gap
+        return True
+
+    def _by_corner(self) -> dict[int, list[tuple[int, complex]]]:
+        found: dict[int, list[tuple[int, complex]]] = {}
+        for corner, piece, place in self.ends:
+            found.setdefault(self.corner.root(corner), []).append((piece, place))
+        return found
+
+    def _at_corners(self) -> bool:
+        """What turns alike and meets at a pin is one link."""
+        changed = False
+        for met in self._by_corner().values():
+            first: dict[Phase, tuple[int, complex]] = {}
+            for piece, place in met:
+                one, there = first.setdefault(self.phase[piece], (piece, place))
+                changed |= self._place(one, piece, there - place)
+        return changed
+
+    def _same_slides(self) -> bool:
+        """A variable length is one sliding joint, in whatever loop it stands."""
+        changed = False
+        first: dict[str, Slide] = {}
+        for slide in self.slides:
+            one = first.setdefault(slide.variable, slide)
+            if one is slide:
+                continue
+            before, after, foot = slide.before, slide.after, slide.foot
+            if abs(one.along + slide.along) <= _ALIKE * abs(one.along):
+                before, after, foot = after, before, -foot
+            elif abs(one.along - slide.along) > _ALIKE * abs(one.along):
+                raise NotRead(f'"{slide.variable}" is a length in two directions or scales')
+            if self.phase[before] != self.phase[one.before]:
+                raise NotRead(f'"{slide.variable}" is a length along two links')
+            changed |= self.link.unite(one.before, before)
+            changed |= self.link.unite(one.after, after)
+            if self.rigid[one.before] == self.rigid[before]:
+                gap = self.shift[before] - self.shift[one.before]
+                changed |= self._place(one.after, after, gap + foot - one.foot)
+            elif self.rigid[one.after] == self.rigid[after]:
+                gap = self.shift[after] - self.shift[one.after]
+                changed |= self._place(one.before, before, gap - foot + one.foot)
+        return changed
+
+    def _one_pin(self) -> bool:
+        """Two links share one pin at most."""
+        changed = False
+        first: dict[Hashable, int] = {}
+        for corner, met in self._by_corner().items():
+            links = {self.link.root(piece) for piece, _ in met}
+            for pair in combinations(sorted(links), 2):
+                changed |= self.corner.unite(first.setdefault(pair, corner), corner)
+        return changed
+
+    def _same_place(self) -> bool:
+        """Two pins at the same place of one link are one."""
+        changed = False
+        on: dict[int, list[tuple[int, complex]]] = {}
+        for corner, piece, place in self.ends:
+            here = place + self.shift[piece]
+            others = on.setdefault(self.rigid[piece], [])
+            for other, there in others:
+                if abs(here - there) <= self.tolerance:
+                    changed |= self.corner.unite(other, corner)
+            others.append((corner, here))
+        return changed
+
+    def _same_vector(self) -> bool:
+        """A variable length leads from the same point to the same point in whatever loop it is."""
+        first: dict[str, Slide] = {}
+        for slide in self.slides:
+            one = first.setdefault(slide.variable, slide)
+            ends = [(slide.before, slide.foot), (slide.after, 0j)]
+            if abs(one.along + slide.along) <= _ALIKE * abs(one.along):
+                ends.reverse()
+            for known, (piece, place) in zip(
+                ((one.before, one.foot), (one.after, 0j)), ends, strict=True
+            ):
+                if self.rigid[known[0]] != self.rigid[piece]:
+                    return self._place(known[0], piece, known[1] - place)
+        return False
+
+    def _begin_at_ground(self) -> bool:
+        """All loops that begin at a link that does not turn begin at the same one."""
+        first = self.origins[0][0] if self.origins else 0
+        return any(self.link.unite(first, piece) for piece, _ in self.origins[1:])
+
+    def _meet_once(self) -> bool:
+        """What meets once in each of several loops meets at one pin, if it may.
+
+        A link and a direction, else two directions.
+        """
+        ends = self._by_corner()
+        loops: dict[int, set[int]] = {}
+        for k, loop in enumerate(self.loop_of):
+            loops.setdefault(self.corner.root(k), set()).add(loop)
+        parts = {k: {self.rigid[piece] for piece, _ in ends[k]} for k in ends}
+        for corners in (*self._meetings(ends, self.link.root), *self._meetings(ends, None)):
+            apart = list(combinations(corners, 2))
+            if any(loops[one] & loops[other] for one, other in apart):
+                continue
+            for one, other in apart:
+                if not parts[one] & parts[other]:
+                    return self.corner.unite(one, other)
+        return False
+
+    def _meetings(
+        self, ends: Mapping[int, list[tuple[int, complex]]], link: Callable[[int], int] | None
+    ) -> Iterator[list[int]]:
+        """The corners at which the same link, or direction, meets the same direction."""
+        met: dict[Hashable, list[int]] = {}
+        for corner, at in ends.items():
+            pairs: dict[Hashable, None] = {}
+            for one, other in permutations([piece for piece, _ in at], 2):
+                if self.phase[one] != self.phase[other]:
+                    own = self.phase[one] if link is None else link(one)
+                    pairs.setdefault((own, self.phase[other]))
+            for pair in pairs:
+                met.setdefault(pair, []).append(corner)
+        yield from met.values()
+
+    def joints(self) -> Joints:
+        """What has come out."""
+        links = dict.fromkeys(self.link.root(piece) for piece in range(len(self.phase)))
+        loose = self._lay_out()
+        corners: dict[int, dict[int, complex]] = {}
+        for corner, piece, place in self.ends:
+            at = corners.setdefault(self.corner.root(corner), {})
+            at[self.link.root(piece)] = place + self.shift[piece]
+        slides = {slide.variable: self._slide(slide) for slide in reversed(self.slides)}
+        slides = dict(sorted(slides.items(), key=lambda item: item[1].before))
+        self._check_slides(list(links), list(slides.values()))
+        ground, origin = self._ground()
+        return Joints(
+            phases={link: self.phase[link] for link in links},
+            corners=tuple(Corner(places) for places in corners.values()),
+            slides=tuple(slides.values()),
+            ground=ground,
+            origin=origin,
+            loose=loose,
+        )
+
+    def _lay_out(self) -> frozenset[int]:
+        """Lay out the parts of a link whose distance is not known: the links that have such."""
+        parts: dict[int, list[int]] = {}
+        for k, part in enumerate(self.rigid):
+            known = parts.setdefault(self.link.root(k), [])
+            if part not in known:
+                known.append(part)
+            self.shift[k] += known.index(part) * self.apart
+        return frozenset(link for link, known in parts.items() if len(known) > 1)
+
+    def _slide(self, slide: Slide) -> Slide:
+        """Between links instead of pieces."""
+        return Slide(
+            variable=slide.variable,
+            before=self.link.root(slide.before),
+            after=self.link.root(slide.after),
+            foot=slide.foot + self.shift[slide.before] - self.shift[slide.after],
+            along=slide.along,
+        )
+
+    def _check_slides(self, links: list[int], slides: list[Slide]) -> None:
+        """Links that turn alike hang together by their sliding joints, without a loop of them."""
+        held = _Union()
+        for _ in self.phase:
+            held.more()
+        for slide in slides:
+            if not held.unite(slide.before, slide.after):
+                raise NotRead(f'"{slide.variable}" slides in a loop of sliding joints')
+        groups = {held.root(link) for link in links}
+        if len(groups) > len({self.phase[link] for link in groups}):
+            raise NotRead("two links would keep parallel though no sliding joint holds them so")
+
+    def _ground(self) -> tuple[int, complex]:
+        """The link at which the equations begin, among those that do not turn."""
+        still = dict.fromkeys(
+            self.link.root(k) for k, phase in enumerate(self.phase) if phase == FRAME
+        )
+        if not still:
+            raise NotRead("no vector keeps its direction, so that no link stands still")
+        begun = {
+            self.link.root(piece): place + self.shift[piece] for piece, place in self.origins[::-1]
+        }
+        if len(begun) == 1:
+            return next(iter(begun.items()))
+        if len(still) > 1:
+            raise NotRead(
+                "several links keep their direction, and the equations begin at none or at more "
+                "than one of them"
+            )
+        return next(iter(still)), 0j

@@ -1,0 +1,293 @@
+"""The linkage that loop equations describe, with the names that the file gives."""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from itertools import islice, product
+
+import numpy as np
+
+from linkwork.equations.model import LoopEquations, Variable
+from linkwork.equations.reading.driven import driven_pair, inputs_at_joints
+from linkwork.equations.reading.joints import Joints, NotRead, Slide, joints_of
+from linkwork.equations.reading.names import PartNames
+from linkwork.equations.reading.poses import Poses
+from linkwork.equations.reading.walk import phase_of, walks
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import MechanismError
+from linkwork.mechanism.directed import free_name
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loops import Loops
+from linkwork.mechanism.parts import Input, Number, Slider
+
+__all__ = ["ReadLinkage", "read_linkage"]
+
+_MOST_WAYS = 64  # of walking along all loops that are tried
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReadLinkage:
+    """A linkage read off loops.
+
+    Parameters
+    ----------
+    turning : Mapping[str, tuple of str]
+        The variables that give the direction of every link, by the file's names.
+    loose : tuple of str
+        Links on which the equations do not tell how far the pins of one loop are from those of
+        another. They do not matter for the chain, and are laid out anyhow.
+    """
+
+    linkage: Linkage
+    loose: tuple[str, ...] = ()
+    turning: Mapping[str, tuple[str, ...]]
+
+
+def read_linkage(loops: Loops, equations: LoopEquations, v: Array) -> ReadLinkage:
+    """The points and links of a mechanism that is given by its loops.
+
+    Parameters
+    ----------
+    v : (N,)
+        Unknowns and inputs of a position: there the sketch is drawn.
+
+    Raises
+    ------
+    NotRead
+        If the equations cannot be read as links with pins and sliding joints.
+    """
+    _check_directions(equations)
+    poses = Poses.at(equations, v)
+    joints = _best(equations, poses)
+    names = PartNames.of(loops, equations, joints, poses)
+    drawing = _Drawing(loops, equations, joints, poses, names)
+    try:
+        linkage = drawing.linkage()
+    except MechanismError as error:  # what was read contradicts itself
+        raise NotRead(str(error.problems[0].message)) from None
+    shown = {variable.symbol: variable.name for variable in equations.variables}
+    turning = {
+        names.links[link]: tuple(shown[name] for name, _ in phase)
+        for link, phase in joints.phases.items()
+    }
+    loose = tuple(name for link, name in names.links.items() if link in joints.loose)
+    return ReadLinkage(linkage=linkage, turning=turning, loose=loose)
+
+
+def _check_directions(equations: LoopEquations) -> None:
+    """Every direction turns by itself, as links do that nothing but pins and slides joins."""
+    phases = {phase_of(term) for loop in equations.loops for term in loop.terms} - {()}
+    angles = [variable.symbol for variable in equations.variables if variable.kind == "angle"]
+    weights = [[dict(phase).get(angle, 0.0) for angle in angles] for phase in sorted(phases)]
+    if phases and np.linalg.matrix_rank(np.array(weights)) < len(phases):
+        raise NotRead("the angles of its vectors depend on each other, as those of wheels do")
+
+
+def _best(equations: LoopEquations, poses: Poses) -> Joints:
+    """The links and joints as the loops are written, or otherwise if that fits better.
+
+    Something else fits better if more pins are points of the file; or if more inputs drive a joint,
+    unless it then depends on the order of vectors which link stands still.
+    """
+    freedom = len(equations.variables) - 2 * len(equations.loops)
+    best: tuple[int, int, Joints] | None = None
+    why: list[NotRead] = []
+    for ways in islice(product(*map(walks, equations.loops)), _MOST_WAYS):
+        try:
+            joints = joints_of(ways, equations.length_scale)
+            if joints.mobility != freedom:
+                raise NotRead("the equations do not tell which pins of its loops are the same")
+            driven = inputs_at_joints(equations, joints)
+        except NotRead as error:
+            why.append(error)
+            continue
+        fit = poses.fit(joints)
+        if (
+            best is None
+            or fit > best[0]
+            or ((fit, joints.still) == (best[0], 1) and driven > best[1])
+        ):
+            best = fit, driven, joints
+        if (fit, driven) == (joints.pins if poses.points else 0, len(equations.inputs)):
+            break
+    if best is None:
+        raise why[0]
+    return best[2]
+
+
+@dataclass
+class _Drawing:
+    """The parts of the linkage as they are found; ``places``: of the points of every link."""
+
+    loops: Loops
+    equations: LoopEquations
+    joints: Joints
+    poses: Poses
+    names: PartNames
+    places: dict[int, dict[str, complex]] = field(default_factory=dict)
+
+    def linkage(self) -> Linkage:
+        """All of it."""
+        self.places = {link: dict(self._pins_of(link)) for link in self.names.links}
+        rails = [self._rail(*slide) for slide in self._outwards()]
+        if not self.places[self.joints.ground]:  # nothing but a line of a slide stands still
+            raise NotRead("no vector begins at a link that stands still")
+        self._move_ground()
+        names, shapes = self.names.links, self.places
+        return Linkage(
+            name=self.loops.name,
+            length=self.loops.length,
+            angle=self.loops.angle,
+            points=self._sketch(),
+            links={name: tuple(shapes[link]) for link, name in names.items()},
+            lengths=dict(self._lengths()),
+            angles=dict(self._angles()),
+            sliders=tuple(self._slider(rail) for rail in rails),
+            inputs=tuple(map(self._input, self.equations.inputs, self.loops.inputs)),
+        )
+
+    def _pins_of(self, link: int) -> list[tuple[str, complex]]:
+        """The pins of a link with their places, as the file lists them if it draws the link."""
+        pins = zip(self.names.pins, self.joints.corners, strict=True)
+        found = [(name, corner.places[link]) for name, corner in pins if link in corner.places]
+        drawn = self.loops.links.get(self.names.links[link], ())
+        return sorted(found, key=lambda pin: drawn.index(pin[0]) if pin[0] in drawn else len(drawn))
+
+    def _move_ground(self) -> None:
+        """To where the file has its points."""
+        own = self.places[self.joints.ground]
+        for name in own:
+            own[name] += self.names.begin - self.joints.origin
+
+    def _outwards(self) -> Iterator[tuple[Slide, int, int]]:
+        """Every slide with its guide and the link that slides.
+
+        From ground outwards; elsewhere from a link that is pinned to ground, or that has most pins.
+        """
+        left = list(self.joints.slides)
+        reached = {self.joints.ground}
+        while left:
+            for slide in left:
+                ends = {slide.before, slide.after}
+                if ends & reached:
+                    (guide,) = ends & reached
+                    (sliding,) = ends - reached
+                    break
+            else:
+                free = {link for slide in left for link in (slide.before, slide.after)}
+                reached.add(max(sorted(free), key=self._standing))
+                continue
+            left.remove(slide)
+            reached.add(sliding)
+            yield slide, guide, sliding
+
+    def _standing(self, link: int) -> tuple[int, int]:
+        """How well a link serves as a guide."""
+        pins = [corner.places for corner in self.joints.corners if link in corner.places]
+        return sum(self.joints.ground in links for links in pins), len(pins)
+
+    def _rail(self, slide: Slide, guide: int, sliding: int) -> Slider:
+        """The line on the guide along which a point of the other link slides."""
+        foot, along = slide.foot, slide.along / abs(slide.along)
+        if sliding == slide.before:
+            foot, along = -foot, -along
+        own, rail = self.places[sliding], self.places[guide]
+        name = self._shown(slide.variable)
+        if not own:
+            own[free_name(f"{name}_point", self.names.taken)] = 0j
+        point, place = next(iter(own.items()))
+        size = self.equations.length_scale
+        start = self._point_at(rail, foot + place, f"{name}_foot")
+        end = self._point_at(rail, foot + place + along * size, f"{name}_line")
+        return Slider(
+            name=name,
+            link=self.names.links[sliding],
+            points=(point,),
+            on=self.names.links[guide],
+            line=(start, end),
+        )
+
+    def _point_at(self, own: dict[str, complex], place: complex, wanted: str) -> str:
+        """The point of a link at a place, a new one if there is none."""
+        near = self.poses.tolerance
+        for name, there in own.items():
+            if abs(there - place) <= near:
+                return name
+        name = free_name(wanted, self.names.taken)
+        own[name] = place
+        return name
+
+    def _slider(self, rail: Slider) -> Slider:
+        """With the angle from the line to the link, now that it has all its points."""
+        number = {name: link for link, name in self.names.links.items()}
+        own, guide = (self.places[number[name]] for name in (rail.link, rail.on))
+        if len(own) < 2:
+            return rail
+        start, end = (guide[name] for name in rail.line)
+        return replace(rail, angle=self._everyday(_direction(own) - cmath.phase(end - start)))
+
+    def _sketch(self) -> dict[str, tuple[Number, Number]]:
+        found: dict[str, tuple[Number, Number]] = {}
+        begin = self.names.begin
+        origins = {link: begin + zero for link, zero in self.poses.links(self.joints).items()}
+        origins[self.joints.ground] = 0j  # its places are coordinates already
+        for link in (self.joints.ground, *self.places):
+            turn = self.poses.turn(self.joints.phases[link])
+            for name, place in self.places[link].items():
+                at = origins[link] + place * turn
+                found.setdefault(name, (at.real, at.imag))
+        return found
+
+    def _lengths(self) -> Iterator[tuple[str, Number]]:
+        for _, first, others in self._moving():
+            for name, vector in others.items():
+                yield f"{first} {name}", abs(vector)
+
+    def _angles(self) -> Iterator[tuple[str, Number]]:
+        for second, first, others in self._moving():
+            for name, vector in others.items():
+                if name != second:
+                    angle = cmath.phase(vector / others[second])
+                    yield f"{second} {first} {name}", self._everyday(angle)
+
+    def _moving(self) -> Iterator[tuple[str, str, dict[str, complex]]]:
+        """Second and first point of moving links, and the vectors from it to the others."""
+        for link, own in self.places.items():
+            if link != self.joints.ground and len(own) > 1:
+                (first, start), *others = own.items()
+                yield others[0][0], first, {name: place - start for name, place in others}
+
+    def _input(self, variable: Variable, which: Input) -> Input:
+        """The same quantity, as the linkage counts it."""
+        part: dict[str, str]
+        if variable.kind == "angle":
+            link, other, scale = driven_pair(self.joints, variable)
+            begin = _direction(self.places[link])
+            part = {"link": self.names.links[link]}
+            if other != self.joints.ground:
+                begin -= _direction(self.places[other])
+                part["relative_to"] = self.names.links[other]
+            begin = self._everyday(begin)
+        else:
+            slide = next(s for s in self.joints.slides if s.variable == variable.symbol)
+            scale, begin, part = abs(slide.along), 0.0, {"slider": self._shown(slide.variable)}
+        rows = scale * self.loops.rows(which) + begin
+        step = float(rows[1] - rows[0]) if len(rows) > 1 else None
+        stop = float(rows[-1])
+        return Input(**part, start=float(rows[0]), stop=stop, step=step)
+
+    def _shown(self, symbol: str) -> str:
+        return next(v.name for v in self.equations.variables if v.symbol == symbol)
+
+    def _everyday(self, angle: float) -> float:
+        return self.loops.angle.from_radians(angle)
+
+
+def _direction(own: Mapping[str, complex]) -> float:
+    """From the first to the second point of a link [rad]."""
+    if len(own) < 2:
+        raise NotRead("the input turns a block, which has one point and no direction")
+    first, second, *_ = own.values()
+    return cmath.phase(second - first)
