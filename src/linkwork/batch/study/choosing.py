@@ -170,8 +170,7 @@ def _read(
         return None
     if found is None:
         got = "a list" if isinstance(entry, list) else ", ".join(entry) or "an empty table"
-        which = "a table" if sampling == "table" else f'sampling = "{sampling}"'
-        problems.add(key, f"in {which} must be {_WANTED[sampling]}; got {got}")
+        problems.add(key, f'sampling = "{sampling}" wants {_WANTED[sampling]}; got {got}')
     return found
 
 

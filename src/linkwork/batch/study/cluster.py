@@ -6,7 +6,7 @@ computed comes back, and only the process that was started writes to the store.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 from uuid import uuid4
 
@@ -16,7 +16,7 @@ from linkwork.foundation.errors import InputError, MissingPackageError
 
 __all__ = ["cluster_crew"]
 
-_PATIENCE = 30  # seconds that a scheduler has to answer, and to have a worker
+_PATIENCE = 10  # seconds that a scheduler has to answer, and to have a worker
 _AHEAD = 2  # parts for each thread of the cluster
 
 
@@ -51,12 +51,8 @@ def cluster_crew(job: Job, tasks: Iterable[Task], scheduler: str) -> Iterator[tu
         def submit(values: Values) -> Any:
             return client.submit(computed, job, values, key=f"linkwork-{run}-{uuid4().hex}")
 
-        def first(futures: Collection[Any]) -> Collection[Any]:
-            done: Collection[Any] = distributed.wait(futures, return_when="FIRST_COMPLETED").done
-            return done
-
         try:
-            yield from pumped(tasks, submit, first, _AHEAD * threads)
+            yield from pumped(tasks, submit, _AHEAD * threads)
         except ModuleNotFoundError as error:
             raise InputError(
                 f"the workers of {scheduler} lack {error.name}: install Linkwork {job.version} "

@@ -6,10 +6,10 @@ import os
 import pickle
 import subprocess
 import sys
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from queue import SimpleQueue
-from typing import Any, Protocol, TypeVar
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from queue import Empty, SimpleQueue
+from typing import Any, Protocol
 
 from linkwork.batch.study.job import Job, Part, computed
 from linkwork.foundation.arrays import Array
@@ -25,11 +25,10 @@ _MOST_DEATHS = 3  # of processes over one and the same part
 _PATIENCE = 1.0  # seconds between looks whether somebody wants to interrupt
 
 
-class _Result(Protocol):
+class _Future(Protocol):
     def result(self) -> Any: ...
 
-
-F = TypeVar("F", bound=_Result)
+    def add_done_callback(self, fn: Callable[[Any], object], /) -> object: ...
 
 
 def one_after_the_other(job: Job, tasks: Iterable[Task]) -> Iterator[tuple[int, Part]]:
@@ -43,33 +42,38 @@ def local_crew(job: Job, tasks: Iterable[Task], workers: int) -> Iterator[tuple[
     crew = _Processes(job, workers)
     pool = ThreadPoolExecutor(workers)
 
-    def first(futures: Collection[Future[Part]]) -> Collection[Future[Part]]:
-        return wait(futures, timeout=_PATIENCE, return_when=FIRST_COMPLETED).done
-
     try:
-        yield from pumped(tasks, lambda values: pool.submit(crew.part, values), first, workers + 1)
+        yield from pumped(tasks, lambda values: pool.submit(crew.part, values), workers + 1)
     finally:
         crew.end()
         pool.shutdown(cancel_futures=True)
 
 
 def pumped(
-    tasks: Iterable[Task],
-    submit: Callable[[Values], F],
-    first_done: Callable[[Collection[F]], Collection[F]],
-    most: int,
+    tasks: Iterable[Task], submit: Callable[[Values], _Future], most: int
 ) -> Iterator[tuple[int, Part]]:
     """Parts in the order in which they are ready; no more than ``most`` are under way."""
-    pending: dict[F, int] = {}
+    ready: SimpleQueue[_Future] = SimpleQueue()
+    pending: dict[_Future, int] = {}
     waiting = iter(tasks)
     while True:
         while len(pending) < most and (task := next(waiting, None)) is not None:
-            pending[submit(task[1])] = task[0]
+            future = submit(task[1])
+            pending[future] = task[0]
+            future.add_done_callback(ready.put)
         if not pending:
             return
-        for future in first_done(list(pending)):
-            k = pending.pop(future)
-            yield k, future.result()
+        future = _next(ready)
+        yield pending.pop(future), future.result()
+
+
+def _next(ready: SimpleQueue[_Future]) -> _Future:
+    """The next future that is done; Ctrl-C is heard meanwhile on every system."""
+    while True:
+        try:
+            return ready.get(timeout=_PATIENCE)
+        except Empty:
+            continue
 
 
 class _Processes:

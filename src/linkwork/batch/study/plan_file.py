@@ -34,7 +34,7 @@ from linkwork.textfile.reader import ReadFile, check_format, located_error, read
 from linkwork.textfile.structure import Structure
 from linkwork.textfile.toml_text import bytes_of, data_of, text_of
 
-__all__ = ["read_plan", "read_plan_text"]
+__all__ = ["read_plan", "read_plan_bytes", "read_plan_text"]
 
 _LONGEST_NAME = 80
 _TAKEN = ("built", "found", "certified", "passed", "status", "ledger", DESIGN)
@@ -54,6 +54,11 @@ def read_plan(path: Path | str) -> Study:
     name = str(path)
     text = text_of(bytes_of(Path(path), name), name)
     return read_plan_text(text, name, Path(path).parent)
+
+
+def read_plan_bytes(data: bytes, name: str = "standard input") -> Study:
+    """Read the plan in the bytes of a file; raises like :func:`read_plan`."""
+    return read_plan_text(text_of(data, name), name)
 
 
 def read_plan_text(text: str, name: str = "the plan", folder: Path | str = ".") -> Study:
@@ -223,26 +228,29 @@ class _Reader:
             for name, condition in conditions.items()
             if isinstance(condition, Comparison)
         ]
-        for key, name in asked:
-            self._check_quantity(key, name, inputs, motion)
+        known = [self._check_quantity(key, name, inputs, motion) for key, name in asked]
         taken = dict.fromkeys(_TAKEN, "an array of every study")
         taken |= dict.fromkeys(inputs, "an input, which every row has")
         taken |= dict.fromkeys(plan, "what varies")
         for k, name in enumerate(keep):
-            self._check_free(("keep", k), name, name, taken)
+            if known[k]:
+                self._check_free(("keep", k), name, name, taken)
         for name in reductions:
             self._check_free(("reductions", name), name, name, taken)
         for name in conditions:
             self._check_free(("filters", name), name, passes_name(name), taken)
 
-    def _check_quantity(self, key: Key, name: str, inputs: list[str], motion: FamilyMotion) -> None:
+    def _check_quantity(self, key: Key, name: str, inputs: list[str], motion: FamilyMotion) -> bool:
+        """Whether there is such a quantity, and designs can differ in it."""
         if spelled(name, inputs) in inputs:
             self.problems.add(key, f'"{name}" is an input, the same for every design: leave it out')
-            return
+            return False
         try:
             motion[name]
         except UnknownNameError as error:
             self.problems.add(key, str(error))
+            return False
+        return True
 
     def _check_free(self, key: Key, name: str, array: str, taken: dict[str, str]) -> None:
         """A name that can be a folder's, and is no other array's."""

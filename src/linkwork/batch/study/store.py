@@ -8,7 +8,7 @@ import shutil
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from difflib import unified_diff
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ from linkwork.batch.study.job import Part
 from linkwork.batch.study.ledger import PARTIAL, Entry, read_entries, write_entry, write_whole
 from linkwork.batch.study.study import DESIGN, Study
 from linkwork.batch.study.zarr_files import LEDGER, ZarrFiles
-from linkwork.foundation.errors import InputError
+from linkwork.foundation.errors import InputError, key_text
 
 if sys.platform == "win32":
     import msvcrt
@@ -145,9 +145,7 @@ def _check_same(study: Study, path: Path) -> None:
     """Refuse a store of another study."""
     there = attributes_of(path)[_IDENTITY]
     here = json.loads(json.dumps(study.identity))
-    differ = [key for key in {**here, **there} if here.get(key) != there.get(key)]
-    if differ:
-        told = "\n".join(_difference(key, there.get(key), here.get(key)) for key in differ)
+    if told := "\n".join(_differences(there, here)):
         raise InputError(
             f'"{path}" holds another study:\n{told}\n'
             "Give another name to store this one, or begin again with --fresh, "
@@ -155,18 +153,37 @@ def _check_same(study: Study, path: Path) -> None:
         )
 
 
-def _difference(key: str, there: Any, here: Any) -> str:
-    """What differs, in one line."""
-    if key == "mechanism":
-        lines = unified_diff(there.split("\n"), here.split("\n"), lineterm="", n=0)
-        changed = [line for line in lines if line[:1] in "+-" and line[:3] not in ("+++", "---")]
-        old = next((line[1:] for line in changed if line[0] == "-"), "")
-        new = next((line[1:] for line in changed if line[0] == "+"), "")
-        return f"  mechanism: {_shown(old.strip())} there, {_shown(new.strip())} here"
-    if isinstance(there, dict) and isinstance(here, dict):
-        names = [name for name in {**there, **here} if there.get(name) != here.get(name)]
-        key, there, here = f"{key}.{names[0]}", there.get(names[0]), here.get(names[0])
-    return f"  {key}: {_shown(there)} there, {_shown(here)} here"
+def _differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> Iterator[str]:
+    """What differs between two studies, a line for each."""
+    for key in {**there, **here}:
+        old: Any = there.get(key)
+        new: Any = here.get(key)
+        if old == new:
+            continue
+        if key == "mechanism":
+            old, new = _first_change(old, new)
+        elif key == "dimensions" and [n for n, _ in old] != [n for n, _ in new]:
+            old, new = ([name for name, _ in each] for each in (old, new))
+        elif key in ("dimensions", "input", "reductions", "filters"):
+            for name, was, now in _changed_entries(dict(old), dict(new)):
+                yield f"  {key_text((key, name))}: {_shown(was)} there, {_shown(now)} here"
+            continue
+        yield f"  {key}: {_shown(old)} there, {_shown(new)} here"
+
+
+def _changed_entries(
+    old: Mapping[str, Any], new: Mapping[str, Any]
+) -> Iterator[tuple[str, Any, Any]]:
+    for name in {**old, **new}:
+        if old.get(name) != new.get(name):
+            yield name, old.get(name), new.get(name)
+
+
+def _first_change(old: str, new: str) -> tuple[str, str]:
+    """The first lines of two texts that are not the same."""
+    pairs = zip_longest(old.split("\n"), new.split("\n"), fillvalue="")
+    was, now = next(pair for pair in pairs if pair[0] != pair[1])
+    return was.strip(), now.strip()
 
 
 def _shown(value: Any) -> str:
