@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -135,11 +136,17 @@ def values_between(plan: Plan, start: int, stop: int) -> dict[str, Array]:
     pieces = [
         {
             name: values[max(start - k * CHUNK, 0) : stop - k * CHUNK]
-            for name, values in plan.chunk(k).items()
+            for name, values in _chunk_of(plan, k).items()
         }
         for k in range(start // CHUNK, -(-stop // CHUNK))
     ]
     return {name: np.concatenate([piece[name] for piece in pieces]) for name in plan}
+
+
+@lru_cache(maxsize=2)
+def _chunk_of(plan: Plan, k: int) -> Mapping[str, Array]:
+    """A chunk of a plan; chunks of a study, which are smaller, need it several times."""
+    return plan.chunk(k)
 
 
 def _plan(content: Mapping[str, Any], folder: Path, found: Mapping[str, Any]) -> Plan:

@@ -8,7 +8,9 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from queue import Empty, SimpleQueue
+from threading import Lock
 from typing import Any, Protocol
 
 from linkwork.batch.study.job import Job, Part, computed
@@ -45,8 +47,9 @@ def local_crew(job: Job, tasks: Iterable[Task], workers: int) -> Iterator[tuple[
     try:
         yield from pumped(tasks, lambda values: pool.submit(crew.part, values), workers + 1)
     finally:
+        pool.shutdown(wait=False, cancel_futures=True)
         crew.end()
-        pool.shutdown(cancel_futures=True)
+        pool.shutdown()
 
 
 def pumped(
@@ -80,10 +83,11 @@ class _Processes:
     """Worker processes, each asked by one thread at a time."""
 
     def __init__(self, job: Job, count: int) -> None:
-        self._job = pickle.dumps(job)
+        self._job = job
         self._idle: SimpleQueue[subprocess.Popen[bytes]] = SimpleQueue()
         self._all: set[subprocess.Popen[bytes]] = set()
         self._ended = False
+        self._changing = Lock()
         for _ in range(count):
             self._idle.put(self._started())
 
@@ -101,9 +105,7 @@ class _Processes:
                 answer = self._asked(process, values)
             except (EOFError, OSError, pickle.UnpicklingError):
                 process.kill()
-                if self._ended:
-                    break
-                self._idle.put(self._started())
+                self._idle.put(self._in_place_of(process))
                 continue
             self._idle.put(process)
             if isinstance(answer, str):
@@ -116,22 +118,28 @@ class _Processes:
 
     def end(self) -> None:
         """End all processes."""
-        self._ended = True
+        with self._changing:
+            self._ended = True
         for process in self._all:
             process.kill()
         for process in self._all:
             process.wait()
             for stream in (process.stdin, process.stdout):
                 if stream is not None:
-                    stream.close()
+                    with suppress(OSError):  # what it did not read is lost with it
+                        stream.close()
 
     def _asked(self, process: subprocess.Popen[bytes], values: Values) -> Part | str:
         assert process.stdin is not None
         assert process.stdout is not None
-        pickle.dump(values, process.stdin, pickle.HIGHEST_PROTOCOL)
+        pickle.dump((self._job, values), process.stdin, pickle.HIGHEST_PROTOCOL)
         process.stdin.flush()
         answer: Part | str = pickle.load(process.stdout)
         return answer
+
+    def _in_place_of(self, dead: subprocess.Popen[bytes]) -> subprocess.Popen[bytes]:
+        with self._changing:
+            return dead if self._ended else self._started()
 
     def _started(self) -> subprocess.Popen[bytes]:
         # in a session of its own: Ctrl-C reaches the run, which ends its workers itself
@@ -143,9 +151,6 @@ class _Processes:
             start_new_session=True,
         )
         self._all.add(process)
-        assert process.stdin is not None
-        process.stdin.write(self._job)
-        process.stdin.flush()
         return process
 
 

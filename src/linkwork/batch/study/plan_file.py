@@ -93,7 +93,10 @@ class _Reader:
         source = self._mechanism_text()
         if source is None:
             return None
-        description = self._with_range(self._described(*source))
+        described = self._described(*source)
+        if self.problems:
+            return None
+        description = self._with_range(described)
         found = chosen(self.content, self.folder, self.problems)
         conditions = self._filters()
         reductions = self._texts("reductions", Reduced.read)

@@ -19,14 +19,13 @@ Answer = Part | str
 
 
 def serve() -> None:
-    """Read a job, then values, and answer each with its part, until the input ends."""
+    """Read jobs with values and answer each with its part, until the input ends."""
     requests = sys.stdin.buffer
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # whatever prints must not answer
     try:
-        job: Job = pickle.load(requests)
         while True:
-            pickle.dump(_answer(job, pickle.load(requests)), answers, pickle.HIGHEST_PROTOCOL)
+            pickle.dump(_answer(*pickle.load(requests)), answers, pickle.HIGHEST_PROTOCOL)
             answers.flush()
     except (EOFError, BrokenPipeError):
         os._exit(0)  # nobody is there to be told anything else
