@@ -20,6 +20,8 @@ _ROOT = Path(__file__).resolve().parents[2]
 _KILLS = 10
 _MOST_MEMORY = 1 << 30  # bytes of the process and its workers together
 _SEED = 31
+_CHUNKS = 100  # or more: ten kills leave something to do
+_LARGEST_CHUNK = 8192
 
 _PLAN = """\
 format = 1
@@ -27,6 +29,7 @@ name = "Four-bars by the million"
 mechanism = "four-bar"
 sampling = "latin-hypercube"
 count = {count}
+chunk = {chunk}
 seed = 1
 [dimensions]
 "O2 A" = {{ from = 36, to = 44 }}
@@ -53,7 +56,8 @@ def study_campaign(count: int) -> tuple[Counter[str], list[str]]:
     false: list[str] = []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / "plan.toml").write_text(_PLAN.format(count=count), encoding="utf-8")
+        plan = _PLAN.format(count=count, chunk=max(min(count // _CHUNKS, _LARGEST_CHUNK), 1))
+        (folder / "plan.toml").write_text(plan, encoding="utf-8")
         begun, seconds = _uninterrupted(folder, counts, false)
         _killed(folder, begun, seconds, counts, false)
         if contents(folder / "whole.zarr") != contents(folder / "killed.zarr"):
@@ -98,10 +102,15 @@ def _killed(
     """Run it again and kill it at random moments of its work, then let it end."""
     rng = np.random.default_rng(_SEED)
     store = folder / "killed.zarr"
-    for _ in range(_KILLS):
+    for k in range(_KILLS):
         before = _chunks(store)
         process = _started(folder, store.name)
-        time.sleep(begun * rng.uniform(0.5, 1.0) + rng.uniform(0.0, 1.5 * seconds / _KILLS))
+        if k % 5 == 4:  # before it has stored anything of its own
+            time.sleep(begun * rng.uniform(0.0, 0.9))
+        else:
+            while process.poll() is None and _chunks(store) == before:
+                time.sleep(0.002)
+            time.sleep(rng.uniform(0.0, 0.7 * seconds / _KILLS))
         if process.poll() is None:
             counts["killed"] += 1
         process.kill()

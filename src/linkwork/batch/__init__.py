@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from linkwork.batch.family import Family, family_of
     from linkwork.batch.family_motion import FamilyMotion
     from linkwork.batch.sampling import Plan, from_table, grid, latin_hypercube, random
+    from linkwork.batch.study import Study, Summary, read_plan, run_study, summary_of
 else:
     __getattr__ = loader(
         __name__,
@@ -19,6 +20,7 @@ else:
             "family": ("Family", "family_of"),
             "family_motion": ("FamilyMotion",),
             "sampling": ("Plan", "from_table", "grid", "latin_hypercube", "random"),
+            "study": ("Study", "Summary", "read_plan", "run_study", "summary_of"),
         },
     )
 
@@ -27,10 +29,15 @@ __all__ = [
     "Family",
     "FamilyMotion",
     "Plan",
+    "Study",
+    "Summary",
     "designs_of",
     "family_of",
     "from_table",
     "grid",
     "latin_hypercube",
     "random",
+    "read_plan",
+    "run_study",
+    "summary_of",
 ]

@@ -306,8 +306,8 @@ def test_what_is_no_condition_is_refused(text: str) -> None:
 def test_a_chunk_fits_into_memory_and_leaves_work_for_several_workers() -> None:
     assert usual_chunk(10**6, 100, 6) == 8192  # 64 MiB of six numbers at 100 rows
     assert usual_chunk(10**6, 1, 6) == 16384
-    assert usual_chunk(50_000, 1, 6) == 1024  # a 32nd of the designs
-    assert usual_chunk(10, 1, 6) == 1024
+    assert usual_chunk(50_000, 1, 6) == 2048  # a 16th of the designs
+    assert usual_chunk(10, 1, 6) == 2048
     assert usual_chunk(10**6, 10**7, 60) == 1
 
 

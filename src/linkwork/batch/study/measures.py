@@ -102,7 +102,7 @@ class Comparison:
         return self.reduced.of
 
     def __str__(self) -> str:
-        return f"{self.reduced} {self.sign} {self.bound:.17g}"
+        return f"{self.reduced} {self.sign} {str(self.bound).removesuffix('.0')}"
 
     def holds(self, measured: Measured) -> BoolArray:
         """(D,)."""

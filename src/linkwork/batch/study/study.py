@@ -23,9 +23,9 @@ __all__ = ["DESIGN", "Study", "Variable", "usual_chunk"]
 DESIGN = "design"
 
 _LARGEST_CHUNK = 16_384
-_SMALLEST_CHUNK = 1024
+_SMALLEST_CHUNK = 2048
 _CHUNK_BYTES = 64 << 20  # of the arrays of one chunk while it is computed
-_CHUNKS_WANTED = 32  # of a small study, so that several workers share it
+_CHUNKS_WANTED = 16  # of a small study, so that several workers share it
 
 
 @dataclass(frozen=True, kw_only=True)
