@@ -83,7 +83,7 @@ def test_pipes_get_utf8_whatever_the_locale(start: Start, encoding: str) -> None
         assert "θ12" in done.stdout.decode("utf-8")
 
 
-def in_terminal(words: list[str], environment: dict[str, str]) -> bytes:
+def _in_terminal(words: list[str], environment: dict[str, str]) -> bytes:
     """What a terminal shows of a command."""
     inside, outside = pty.openpty()
     with subprocess.Popen(
@@ -109,7 +109,7 @@ def test_a_terminal_without_greek_shows_question_marks(
 ) -> None:
     start("examples", "rapier-drive", "-o", "r.toml")
     poor = {**environment, "PYTHONIOENCODING": "latin-1", "NO_COLOR": "1"}
-    shown = in_terminal(["solve", "r.toml"], poor)
+    shown = _in_terminal(["solve", "r.toml"], poor)
     assert shown.startswith(b"Rapier drive of a loom\nPosition found at ?12 = 60 deg\n")
 
 
@@ -117,9 +117,9 @@ def test_colour_appears_on_a_terminal_only_and_not_if_unwelcome(
     start: Start, environment: dict[str, str]
 ) -> None:
     welcome = {k: v for k, v in environment.items() if k != "NO_COLOR"} | {"TERM": "xterm"}
-    assert b"\x1b[32mPosition found\x1b[0m" in in_terminal(["solve", "four-bar.toml"], welcome)
+    assert b"\x1b[32mPosition found\x1b[0m" in _in_terminal(["solve", "four-bar.toml"], welcome)
     for changes in ({"NO_COLOR": "1"}, {"TERM": "dumb"}):
-        shown = in_terminal(["solve", "four-bar.toml"], welcome | changes)
+        shown = _in_terminal(["solve", "four-bar.toml"], welcome | changes)
         assert b"Position found" in shown
         assert b"\x1b" not in shown
     assert b"\x1b" not in start("solve", "four-bar.toml").stdout
@@ -130,8 +130,8 @@ def test_progress_is_shown_on_a_terminal_after_a_second_only(
 ) -> None:
     terminal = environment | {"TERM": "xterm"}
     slow = ["sweep", "four-bar.toml", "--step", "0.0015"]
-    assert b"sweeping  [" in in_terminal(slow, terminal)
-    assert b"sweeping" not in in_terminal(["sweep", "four-bar.toml"], terminal)
+    assert b"sweeping  [" in _in_terminal(slow, terminal)
+    assert b"sweeping" not in _in_terminal(["sweep", "four-bar.toml"], terminal)
     assert start(*slow).stderr == b""
 
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import json
+import sys
 from pathlib import Path
 
 import pytest
 
 from linkwork.batch.study import Progress
+from linkwork.cli.study import study_progress
 from linkwork.cli.study_page import progress_line
 from tests.batch.study.plans import PLAN, edited
 from tests.cli.conftest import Run
-from tests.cli.test_process import in_terminal
 
 NEEDS = "a study needs a plan and a store:\n    linkwork study plan.toml -o out.zarr"
 PAGE = """\
@@ -152,23 +154,34 @@ def test_the_line_of_progress_has_rate_and_time_left(progress: Progress, line: s
     assert progress_line(progress) == line
 
 
-def test_progress_is_one_line_of_a_terminal_and_can_be_silenced(
-    folder: Path, environment: dict[str, str]
+class _Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_progress_is_one_line_written_over_and_taken_away(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = _Terminal()
+    monkeypatch.setattr("linkwork.cli.study._PATIENCE", 0.0)
+    monkeypatch.setattr(sys, "stderr", terminal)
+    with study_progress(quiet=False) as tell:
+        assert tell is not None
+        for done in (500, 1000):
+            tell(Progress(total=1000, done=done, before=0, seconds=1.0))
+    longest = len(" 50 %  500 of 1,000 designs  500/s  0:01 left")
+    assert terminal.getvalue() == (
+        "\r 50 %  500 of 1,000 designs  500/s  0:01 left"
+        "\r100 %  1,000 of 1,000 designs  1,000/s  0:00 left\r" + " " * (longest + 4) + "\r"
+    )
+
+
+def test_there_is_no_progress_in_a_file_nor_where_it_is_not_wanted(
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    text = edited(("count = 300", "count = 600"), ("chunk = 64", "chunk = 30"))
-    (folder / "plan.toml").write_text(text, encoding="utf-8")
-    words = ["study", "plan.toml", "--workers", "1", "-o"]
-    shown = in_terminal([*words, "out.zarr"], environment | {"TERM": "dumb"})
-    head, _, page = shown.partition(b"A small study\n")
-    lines = head.split(b"\r")
-    assert len(lines) > 3
-    assert b"\n" not in head
-    assert lines[-1] == b""
-    assert lines[-2].strip() == b""  # taken away at the end
-    assert b"100 %  600 of 600 designs" in lines[-3]
-    quiet = in_terminal([*words, "other.zarr", "--quiet"], environment | {"TERM": "dumb"})
-    assert quiet.startswith(b"A small study\n")
-    assert quiet.replace(b"other", b"out").partition(b"\n")[2] == page
+    with study_progress(quiet=False) as tell:
+        assert tell is None
+    monkeypatch.setattr(sys, "stderr", _Terminal())
+    with study_progress(quiet=True) as tell:
+        assert tell is None
 
 
 def test_the_schema_of_plans_is_printed(run: Run) -> None:

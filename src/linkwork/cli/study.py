@@ -17,7 +17,7 @@ from linkwork.cli.study_page import progress_line, summary_lines
 from linkwork.cli.terminal import print_json, print_lines, wrapped
 from linkwork.foundation.errors import InputError
 
-__all__ = ["study"]
+__all__ = ["study", "study_progress"]
 
 _PATIENCE = 1.0  # seconds before the line of progress appears
 
@@ -64,7 +64,7 @@ def study(
             "a study needs a plan and a store:\n    linkwork study plan.toml -o out.zarr"
         )
     asked = _read(plan)
-    with _progress(quiet) as tell:
+    with study_progress(quiet) as tell:
         try:
             found = run_study(
                 asked,
@@ -107,7 +107,7 @@ def _how_to_go_on(store: str) -> list[str]:
 
 
 @contextmanager
-def _progress(quiet: bool) -> Iterator[Callable[[Progress], None] | None]:
+def study_progress(quiet: bool) -> Iterator[Callable[[Progress], None] | None]:
     """One line that is written over and over, on the error stream of a terminal only."""
     if quiet or not sys.stderr.isatty():
         yield None

@@ -85,8 +85,6 @@ def opened(study: Study, path: Path, *, fresh: bool = False) -> Iterator[Store]:
         _make(path, files.first)
     _check_same(study, path)
     with _locked(path):
-        for left in path.rglob(f"*{PARTIAL}"):
-            left.unlink()
         yield Store(path, study, files)
 
 

@@ -78,7 +78,6 @@ class ZarrFiles:
                 dimension_names=variable.axes,
                 attributes=dict(variable.attributes),
                 compressors=ZstdCodec(level=3),
-                config={"write_empty_chunks": True},  # a chunk that is done has a file
             )
             if variable.values is not None:
                 array[:] = variable.values
