@@ -399,6 +399,17 @@ def test_a_summary_counts_and_measures_what_passed(whole: Path) -> None:
         np.testing.assert_array_equal(output.histogram, np.histogram(values, 12)[0])
 
 
+def test_values_that_differ_by_rounding_have_one_part(tmp_path: Path) -> None:
+    asked = study(
+        ('mu_mean = "mean(mu)"', 'same = "max(A.x)"'),
+        ('"O2 A" = { from = 36, to = 44 }', '"O2 A" = { from = 40, to = 40.00000000000002 }'),
+    )
+    swing, same, *_ = run_study(asked, tmp_path / "out.zarr", workers=1).outputs
+    assert same.least < same.most
+    assert same.histogram == (same.count,)
+    assert len(swing.histogram) == 12
+
+
 def test_a_store_that_is_not_there_has_no_summary(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r'^there is no ".*none"$'):
         summary_of(tmp_path / "none")

@@ -19,6 +19,7 @@ from linkwork.foundation.arrays import AnyArray, Array
 __all__ = ["OutputSummary", "Summary", "summary_of"]
 
 _BINS = 12
+_SAME = 1e-12  # of their size: values that differ by less are one and the same
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,7 +34,8 @@ class OutputSummary:
     least, mean, most : float
         NaN where there are none.
     histogram : tuple of int
-        How many lie in each of equal parts from ``least`` to ``most``.
+        How many lie in each of equal parts from ``least`` to ``most``; one part where all values
+        are the same to rounding.
     """
 
     name: str
@@ -154,7 +156,8 @@ def _output(name: str, arrays: Any, entries: list[Entry]) -> OutputSummary:
         least = min(least, float(values.min(initial=np.inf)))
         most = max(most, float(values.max(initial=-np.inf)))
     bins = np.zeros(_BINS, dtype=int)
-    if least < most:
+    spread = count > 0 and most - least > _SAME * max(abs(least), abs(most))
+    if spread:
         for values in _values(name, arrays, entries):
             bins += np.histogram(values, _BINS, (least, most))[0]
     return OutputSummary(
@@ -164,5 +167,5 @@ def _output(name: str, arrays: Any, entries: list[Entry]) -> OutputSummary:
         least=least if count else np.nan,
         mean=total / count if count else np.nan,
         most=most if count else np.nan,
-        histogram=tuple(bins.tolist()) if least < most else ((count,) if count else ()),
+        histogram=tuple(bins.tolist()) if spread else ((count,) if count else ()),
     )

@@ -27,7 +27,7 @@ def serve() -> None:
         while True:
             pickle.dump(_answer(*pickle.load(requests)), answers, pickle.HIGHEST_PROTOCOL)
             answers.flush()
-    except (EOFError, BrokenPipeError):
+    except (EOFError, BrokenPipeError, pickle.UnpicklingError):
         os._exit(0)  # nobody is there to be told anything else
 
 
