@@ -102,7 +102,8 @@ def test_values_do_not_depend_on_the_size_of_chunks(
     run_study(study(("chunk = 64", f"chunk = {chunk}")), tmp_path / "out.zarr", workers=1)
     other = xarray.open_zarr(tmp_path / "out.zarr")
     for name, array in xarray.open_zarr(whole).variables.items():
-        np.testing.assert_array_equal(other[name], array)
+        # designs go in step with others, so rounding depends on who the others are
+        np.testing.assert_allclose(other[name], array, rtol=1e-13, atol=1e-11, err_msg=str(name))
 
 
 def test_chunks_may_come_in_any_order(
