@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numba  # noqa: TID253 - this module is loaded when a family is solved
+from llvmlite import ir
 from numba import types  # noqa: TID253
+from numba.extending import intrinsic  # noqa: TID253
 
-__all__ = ["compiled", "compiled_for", "named_tuple", "types"]
+__all__ = ["call_at", "compiled", "compiled_for", "named_tuple", "trial_at", "types"]
 
 
 def compiled_for(signature: object):  # type: ignore[no-untyped-def]
@@ -23,3 +25,30 @@ compiled = compiled_for(None)
 def named_tuple(fields: list[object], kind: type) -> Any:
     """The type of a NamedTuple in a signature."""
     return types.NamedTuple(fields, kind)  # type: ignore[no-untyped-call]
+
+
+#: A function of six blocks of numbers, by its address: what a trial that is written out is called
+#: with. Addresses cost nothing to hand over, unlike functions.
+_BLOCKS = 6
+
+
+def trial_at(function: Any) -> Any:
+    """A function of six blocks of numbers compiled for :func:`call_at`; its ``address``."""
+    numbers = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
+    signature = types.void(*[numbers] * _BLOCKS)
+    return numba.cfunc(signature, cache=True, error_model="numpy", fastmath={"contract"})(function)
+
+
+def _call(typing, address, one, two, three, four, five, six):  # type: ignore[no-untyped-def]
+    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        number = ir.PointerType(ir.DoubleType())
+        kind = ir.FunctionType(ir.VoidType(), [number] * _BLOCKS)
+        function = builder.inttoptr(arguments[0], ir.PointerType(kind))
+        builder.call(function, [builder.inttoptr(a, number) for a in arguments[1:]])
+        return context.get_dummy_value()
+
+    return types.void(*[types.int64] * (1 + _BLOCKS)), code
+
+
+#: Calls what :func:`trial_at` has compiled, by its address, with the addresses of six blocks.
+call_at: Any = intrinsic(_call)

@@ -107,12 +107,11 @@ def trial_source(
     return f"""\
 import math
 
-from linkwork.kernels.lanes.compiling import compiled_for
+from linkwork.kernels.lanes.compiling import trial_at
 from linkwork.kernels.lanes.sine import sin_cos
-from linkwork.kernels.lanes.trial import TRIAL
 
 
-@compiled_for(TRIAL)
+@trial_at
 def trial(place0, place1, place2, place3, place4, others):
     for i in range({LANES}):
 {statements}
