@@ -27,28 +27,30 @@ def named_tuple(fields: list[object], kind: type) -> Any:
     return types.NamedTuple(fields, kind)  # type: ignore[no-untyped-call]
 
 
-#: A function of six blocks of numbers, by its address: what a trial that is written out is called
-#: with. Addresses cost nothing to hand over, unlike functions.
-_BLOCKS = 6
+_BLOCKS = 6  # of numbers, which a trial that is written out is called with
 
 
 def trial_at(function: Any) -> Any:
-    """A function of six blocks of numbers compiled for :func:`call_at`; its ``address``."""
+    """A function of six blocks of numbers, and of how many lanes there are, compiled for
+    :func:`call_at`; its ``address``, which unlike a function costs nothing to hand over.
+    """
     numbers = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
-    signature = types.void(*[numbers] * _BLOCKS)
+    signature = types.void(*[numbers] * _BLOCKS, types.int64)
     return numba.cfunc(signature, cache=True, error_model="numpy", fastmath={"contract"})(function)
 
 
-def _call(typing, address, one, two, three, four, five, six):  # type: ignore[no-untyped-def]
+def _call(typing, address, one, two, three, four, five, six, lanes):  # type: ignore[no-untyped-def]
     def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         number = ir.PointerType(ir.DoubleType())
-        kind = ir.FunctionType(ir.VoidType(), [number] * _BLOCKS)
+        kind = ir.FunctionType(ir.VoidType(), [*[number] * _BLOCKS, ir.IntType(64)])
         function = builder.inttoptr(arguments[0], ir.PointerType(kind))
-        builder.call(function, [builder.inttoptr(a, number) for a in arguments[1:]])
+        blocks = [builder.inttoptr(a, number) for a in arguments[1:-1]]
+        builder.call(function, [*blocks, arguments[-1]])
         return context.get_dummy_value()
 
-    return types.void(*[types.int64] * (1 + _BLOCKS)), code
+    return types.void(*[types.int64] * (2 + _BLOCKS)), code
 
 
-#: Calls what :func:`trial_at` has compiled, by its address, with the addresses of six blocks.
+#: Calls what :func:`trial_at` has compiled, by its address, with the addresses of six blocks and
+#: the number of lanes.
 call_at: Any = intrinsic(_call)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence, Set
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -164,8 +165,12 @@ class LaneKernel:
         self._sections = programs
         #: The same without proofs, which goes ahead where rows are side by side.
         self.scout = LaneKernel(table, parts, zeros, certified=False) if certified else None
-        #: Address of the trial written out, 0 where the machine does it.
-        self.trial = 0
+        self._trial: Any = None  # written out; kept, for its address is used
+
+    @property
+    def trial(self) -> int:
+        """Address of the trial written out, 0 where the machine does it."""
+        return 0 if self._trial is None else int(self._trial.address)
 
     def shift(self, gear: Gear) -> None:
         """Write the trial out, if that is asked for or saves time.
@@ -181,10 +186,10 @@ class LaneKernel:
             return
         source = self.source()
         if gear.specialised:
-            self.trial = written(source, "trial").address
+            self._trial = written(source, "trial")
         elif len(self.code) <= ROLES * _LONGEST and (gear.positions >= _PAYS or is_written(source)):
             with suppress(InputError):  # nobody asked: the machine serves
-                self.trial = written(source, "trial").address
+                self._trial = written(source, "trial")
 
     def source(self) -> str:
         """A trial of this topology written out: prediction, one correction, proof, judgement."""
@@ -331,6 +336,8 @@ class LaneKernel:
         node, begun = self._begun(topology, space, design, given)
         found.found[:] = begun
         scout = self.scout or self
+        if self.trial:
+            scout.shift(Gear(specialised=True))
         own, seen = (space, places) if scout is self else (scout._space(steps), None)
         if seen is None:
             seen, values = scout._registered(coefficients, len(begun))

@@ -86,7 +86,7 @@ class _Body:
 def trial_source(
     programs: Sequence[Code], height: int, kept: Set[int], constants: Mapping[int, float]
 ) -> str:
-    """A function ``trial`` over 64 lanes that runs programs one after the other.
+    """A function ``trial`` over lanes that runs programs one after the other.
 
     Parameters
     ----------
@@ -112,8 +112,8 @@ from linkwork.kernels.lanes.sine import sin_cos
 
 
 @trial_at
-def trial(place0, place1, place2, place3, place4, others):
-    for i in range({LANES}):
+def trial(place0, place1, place2, place3, place4, others, lanes):
+    for i in range(lanes):
 {statements}
 """
 

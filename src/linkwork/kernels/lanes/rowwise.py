@@ -26,6 +26,7 @@ from linkwork.kernels.lanes.trial import (
     RADIUS,
     STEPS,
     TOPOLOGY,
+    by_written,
     extrapolated,
     judged,
     proved,
@@ -54,20 +55,36 @@ def _one(topology, turn, w, number):  # type: ignore[no-untyped-def]
 
 
 @compiled
+def _iterated(topology, turn, w, b):  # type: ignore[no-untyped-def]
+    blocks, live = topology.noted.shape[1] - LIVE, topology.noted[-turn % ROLES, LIVE + b]
+    for _ in range(STEPS - 1):
+        if w[live, 0] == 0.0:
+            break
+        _one(topology, turn, w, BLOCKS + 2 * blocks + b)
+
+
+@compiled
 def _tried(topology, turn, w):  # type: ignore[no-untyped-def]
-    """A trial of the first lane; whether it is good."""
-    blocks = topology.noted.shape[1] - LIVE
-    _one(topology, turn, w, PREDICT)
-    for b in range(blocks):
-        live = topology.noted[-turn % ROLES, LIVE + b]
-        _one(topology, turn, w, BLOCKS + b)
-        for _ in range(STEPS - 1):
-            if w[live, 0] == 0.0:
-                break
-            _one(topology, turn, w, BLOCKS + 2 * blocks + b)
-    for program in range(BLOCKS + 3 * blocks, len(topology.spans)):
-        _one(topology, turn, w, program)
-    _one(topology, turn, w, JUDGE)
+    """A trial of the first lane without proof; whether it is good."""
+    blocks, again = topology.noted.shape[1] - LIVE, True
+    if topology.trial != 0:
+        by_written(topology, turn, w, 1)
+        again = False
+        for b in range(blocks):
+            again |= w[topology.noted[-turn % ROLES, LIVE + b], 0] != 0.0
+    else:
+        _one(topology, turn, w, PREDICT)
+        for b in range(blocks):
+            _one(topology, turn, w, BLOCKS + b)
+            _iterated(topology, turn, w, b)
+    if again and topology.trial != 0:
+        for b in range(blocks):  # what follows was computed with a worse position
+            if w[topology.noted[-turn % ROLES, LIVE + b], 0] != 0.0:
+                for later in range(b + 1, blocks):
+                    w[topology.noted[-turn % ROLES, LIVE + later], 0] = 1.0
+            _iterated(topology, turn, w, b)
+    if again:
+        _one(topology, turn, w, JUDGE)
     return w[topology.noted[-turn % ROLES, GOOD], 0] > 0.5
 
 

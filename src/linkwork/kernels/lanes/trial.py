@@ -26,6 +26,7 @@ __all__ = [
     "STEPS",
     "TOPOLOGY",
     "Topology",
+    "by_written",
     "copied",
     "extrapolated",
     "judged",
@@ -133,6 +134,22 @@ def judged(topology, turn, w):  # type: ignore[no-untyped-def]
 
 
 @compiled
+def by_written(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
+    """The trial that is written out, in the first lanes."""
+    place, first = 8 * LANES * topology.height, w.ctypes.data
+    call_at(
+        topology.trial,
+        first + -turn % ROLES * place,
+        first + (1 - turn) % ROLES * place,
+        first + (2 - turn) % ROLES * place,
+        first + (3 - turn) % ROLES * place,
+        first + (4 - turn) % ROLES * place,
+        first + ROLES * place,
+        lanes,
+    )
+
+
+@compiled
 def settled(topology, turn, w, standing):  # type: ignore[no-untyped-def]
     """From the prediction to the judgement.
 
@@ -144,17 +161,7 @@ def settled(topology, turn, w, standing):  # type: ignore[no-untyped-def]
     blocks, live = _blocks(topology), topology.noted[-turn % ROLES, LIVE:]
     is_written = topology.trial != 0
     if is_written:
-        place = 8 * LANES * topology.height
-        first = w.ctypes.data
-        call_at(
-            topology.trial,
-            first + -turn % ROLES * place,
-            first + (1 - turn) % ROLES * place,
-            first + (2 - turn) % ROLES * place,
-            first + (3 - turn) % ROLES * place,
-            first + (4 - turn) % ROLES * place,
-            first + ROLES * place,
-        )
+        by_written(topology, turn, w, LANES)
         again = False
         for k in range(blocks):
             again |= _any(w, live[k], standing)
