@@ -11,6 +11,7 @@ from time import perf_counter
 from tests.campaigns.certificates import judge
 from tests.campaigns.circuits import circuit_campaign
 from tests.campaigns.configurations import configuration_campaign
+from tests.campaigns.families import family_campaign
 from tests.campaigns.lanes import judge_lane_steps, judge_lanes
 from tests.campaigns.motion import sweep_campaign
 from tests.campaigns.positions import library_positions, random_position
@@ -74,6 +75,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
 }
 #: Those that share the cores themselves: what does the whole campaign, and its usual size.
 WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {
+    "families": (family_campaign, 1_000_000),
     "study": (study_campaign, 1_000_000),
 }
 
