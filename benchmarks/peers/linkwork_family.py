@@ -14,20 +14,23 @@ __all__ = ["LinkworkFamily"]
 
 
 class LinkworkFamily(Peer):
-    """``family.sweep`` with or without proof, on one core; designs are built beforehand."""
+    """``family.sweep`` with or without proof, on one core; designs are built beforehand.
+
+    ``specialised``: with the mechanism's own equations compiled, also beforehand.
+    """
 
     distribution = "linkwork"
     module = "linkwork"
 
-    def __init__(self, *, certify: bool) -> None:
-        self.certify = certify
-        self.name = "family, certified" if certify else "family"
+    def __init__(self, *, certify: bool, specialised: bool = False) -> None:
+        self.certify, self.specialised = certify, specialised
+        self.name = f"family{' compiled' * specialised}{', certified' * certify}"
 
     def prepare(self, work: Work) -> Prepared:
         family = family_of(work)
 
         def run() -> FamilyMotion:
-            return family.sweep(certify=self.certify, threads=1)
+            return family.sweep(certify=self.certify, threads=1, specialised=self.specialised)
 
         return Prepared(run=run, read=self._read)
 

@@ -21,6 +21,8 @@ PEERS: tuple[Peer, ...] = (
     LinkworkSweep(certify=False),
     LinkworkFamily(certify=True),
     LinkworkFamily(certify=False),
+    LinkworkFamily(certify=True, specialised=True),
+    LinkworkFamily(certify=False, specialised=True),
     PylinkageStepFast(),
     PylinkageEnsemble(),
     NumpyDyads(),
