@@ -18,6 +18,7 @@ from linkwork.foundation.arrays import Array, BoolArray, IndexArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.status import Status
+from linkwork.kernels.lanes.device_kernel import DeviceKernel
 from linkwork.kernels.lanes.folding import dead_points
 from linkwork.kernels.lanes.lane_kernel import Gear, LaneKernel, LaneRows, Steps
 from linkwork.mechanism.parts import Input
@@ -160,8 +161,7 @@ class _Path:
         served: BoolArray = np.all(away <= _ON_PATH * np.maximum(1.0, np.abs(inputs)), axis=1)
         t = self.model.rows[:, self.lead]
         way = slice(None, None, -1 if self.falling else 1)
-        march = _March(self, designs, served, certify, threads)
-        march.kernel.shift(gear)
+        march = _March(self, designs, served, certify, threads, gear)
         march.turns = found.turns[way]
         whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
         self._note(found, reached[way], whole, certify)
@@ -184,23 +184,30 @@ class _Path:
 
 
 #: Kernels of mechanisms that are in use.
-_KERNELS: WeakKeyDictionary[Compiled, dict[tuple[frozenset[str], bool], LaneKernel]] = (
+_KERNELS: WeakKeyDictionary[Compiled, dict[tuple[frozenset[str], bool, str], LaneKernel]] = (
     WeakKeyDictionary()
 )
 
 
-def _kernel(model: Model, zeros: frozenset[str], certify: bool) -> LaneKernel:
-    known = _KERNELS.setdefault(model.compiled, {})
-    if (zeros, certify) not in known:
-        known[zeros, certify] = LaneKernel(model.compiled.table, block_parts(model), zeros, certify)
-    return known[zeros, certify]
+def _kernel(model: Model, zeros: frozenset[str], certify: bool, device: str) -> LaneKernel:
+    known, key = _KERNELS.setdefault(model.compiled, {}), (zeros, certify, device)
+    if key not in known:
+        kind = DeviceKernel if device == "gpu" else LaneKernel
+        known[key] = kind(model.compiled.table, block_parts(model), zeros, certify)
+    return known[key]
 
 
 class _March:
     """The compiled march of a family, and what becomes of designs that stop at dead points."""
 
     def __init__(
-        self, path: _Path, designs: Designs, served: BoolArray, certify: bool, threads: int
+        self,
+        path: _Path,
+        designs: Designs,
+        served: BoolArray,
+        certify: bool,
+        threads: int,
+        gear: Gear,
     ) -> None:
         self.path, self.certify, self.threads = path, certify, threads
         compiled, model = path.model.compiled, path.model
@@ -208,7 +215,8 @@ class _March:
         fine = designs.problem == 0
         self.coefficients = _coefficients(path, designs)
         self.zeros = zero_coefficients(designs, self.coefficients)
-        self.kernel = _kernel(model, frozenset(self.zeros), certify)
+        self.kernel = _kernel(model, frozenset(self.zeros), certify, gear.device)
+        self.kernel.shift(gear)
         self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # else not found
         self.start = designs.start[:, n + path.lead].copy()
         self._enter(designs, np.flatnonzero(fine & ~served))

@@ -25,7 +25,10 @@ from linkwork.kernels.lanes.trial import Topology, by_machine
 from linkwork.kernels.lanes.written import is_written, written
 from linkwork.kernels.loop_table import LoopTable
 
-__all__ = ["Gear", "LaneKernel", "LaneRows", "Steps"]
+__all__ = ["DEVICES", "Gear", "LaneKernel", "LaneRows", "Steps"]
+
+#: What a march can run on.
+DEVICES = ("cpu", "gpu")
 
 _WEIGHTS = [f"{name}{role}" for role in range(1, ROLES) for name in "ab"]
 _PART = 4096  # designs that one thread works on at a time
@@ -109,10 +112,29 @@ class Gear:
     specialised : bool, optional
         Asked for; by default it is whatever takes less time for so many ``positions``.
     positions : int
+    device : str
+        Where it runs, one of :data:`DEVICES`; a graphics card runs nothing but what is compiled.
+
+    Raises
+    ------
+    InputError
+        For another device, or for a graphics card that should compile nothing.
     """
 
     specialised: bool | None = None
     positions: int = 0
+    device: str = "cpu"
+
+    def __post_init__(self) -> None:
+        if self.device not in DEVICES:
+            raise InputError(
+                f'there is no device "{self.device}" (there are: {", ".join(DEVICES)})'
+            )
+        if self.device == "gpu" and self.specialised is False:
+            raise InputError(
+                "a graphics card runs nothing but compiled equations: leave out "
+                'specialised=False or device="gpu"'
+            )
 
 
 # Compiling takes some 5 ms for each instruction, of which a position then costs 0.1 ns less.

@@ -14,7 +14,7 @@ from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import ROLES
 from linkwork.kernels.lanes.program import Op
 
-__all__ = ["trial_source"]
+__all__ = ["Body", "Code", "trial_source"]
 
 Code = np.ndarray[tuple[int, int], np.dtype[np.uint32]]
 
@@ -41,7 +41,7 @@ _STATEMENT = {
 
 
 @dataclass
-class _Body:
+class Body:
     """Statements over local names; registers are read where first needed and written at the end."""
 
     place: Callable[[int], str]
@@ -51,6 +51,7 @@ class _Body:
     changed: set[int] = field(default_factory=set)
 
     def value(self, register: int) -> str:
+        """What a register holds by now."""
         if register in self.constants:
             return repr(self.constants[register])
         if register not in self.known:
@@ -63,6 +64,7 @@ class _Body:
         self.changed.update(registers)
 
     def add(self, code: Code) -> None:
+        """What a program does."""
         for number, d, a, b, c in code.tolist():
             op = Op(number)
             if op is Op.SIN:
@@ -79,6 +81,7 @@ class _Body:
             self._set(d)
 
     def end(self, kept: Set[int]) -> None:
+        """Write the registers that are kept and have changed."""
         for register in sorted(self.changed & kept):
             self.lines.append(f"{self.place(register)} = r{register}")
 
@@ -99,7 +102,7 @@ def trial_source(
     constants : Mapping[int, float]
         Registers of constants.
     """
-    body = _Body(lambda register: _lane_place(register, height), constants)
+    body = Body(lambda register: _lane_place(register, height), constants)
     for code in programs:
         body.add(code)
     body.end(kept)
