@@ -76,8 +76,8 @@ class Family:
             Compile this mechanism's equations, which takes seconds once and is kept on disk. By
             default where so many positions are asked for that it saves time.
         device : str
-            ``"gpu"``: positions and proofs are computed by a graphics card (the extra ``gpu``), with
-            the same results to rounding; compiling takes seconds once for each mechanism.
+            ``"gpu"``: a graphics card computes positions and proofs (the extra ``gpu``), the same
+            to rounding; compiling takes seconds once for each mechanism.
 
         Raises
         ------

@@ -32,7 +32,7 @@ from linkwork.motion.sweeping import swept_rows
 from linkwork.motion.tracking import turns_freely
 from linkwork.results.motion import LimitKind
 
-__all__ = ["DesignRows", "design_rows", "message_alone"]
+__all__ = ["DesignRows", "March", "Path", "design_rows", "message_alone"]
 
 _ON_PATH = 1e-12
 _FINEST = 1e-8  # step, of a radian or a length, where a row lies right in front of a dead point
@@ -95,7 +95,7 @@ def design_rows(
     """
     model = designs.base
     left = designs.problem == 0
-    march = _Path.of(model)
+    march = Path.of(model)
     found = DesignRows.blank(
         model.compiled.solver.unknowns,
         len(model.rows),
@@ -114,7 +114,7 @@ def design_rows(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Path:
+class Path:
     """The straight line through the table's inputs: u = origin + rate t; ``size``: of a step."""
 
     model: Model
@@ -124,7 +124,7 @@ class _Path:
     size: float
 
     @classmethod
-    def of(cls, model: Model) -> _Path | None:
+    def of(cls, model: Model) -> Path | None:
         """``None`` where the compiled march does not serve."""
         table = model.compiled.table
         if table.functions or model.equations.redundant or not len(model.equations.inputs):
@@ -154,19 +154,22 @@ class _Path:
         self, designs: Designs, found: DesignRows, certify: bool, threads: int, gear: Gear
     ) -> BoolArray:
         """Designs that went through all rows are filled in; which they are, (D,)."""
-        n = self.model.compiled.solver.unknowns
-        inputs = designs.start[:, n:]
-        start = inputs[:, self.lead]
-        away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
-        served: BoolArray = np.all(away <= _ON_PATH * np.maximum(1.0, np.abs(inputs)), axis=1)
+        march = self.march(designs, certify, threads, gear)
         t = self.model.rows[:, self.lead]
         way = slice(None, None, -1 if self.falling else 1)
-        march = _March(self, designs, served, certify, threads, gear)
         march.turns = found.turns[way]
         whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
         self._note(found, reached[way], whole, certify)
         march.note_limits(found, whole)
         return whole
+
+    def march(self, designs: Designs, certify: bool, threads: int, gear: Gear) -> March:
+        """The march of designs whose start lies on the path, or can be led to it."""
+        inputs = designs.start[:, self.model.compiled.solver.unknowns :]
+        start = inputs[:, self.lead]
+        away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
+        served: BoolArray = np.all(away <= _ON_PATH * np.maximum(1.0, np.abs(inputs)), axis=1)
+        return March(self, designs, served, certify, threads, gear)
 
     def _note(self, found: DesignRows, reached: BoolArray, whole: BoolArray, certify: bool) -> None:
         """Statuses of rows that were reached, and of the others of designs that are done."""
@@ -197,12 +200,12 @@ def _kernel(model: Model, zeros: frozenset[str], certify: bool, device: str) -> 
     return known[key]
 
 
-class _March:
+class March:
     """The compiled march of a family, and what becomes of designs that stop at dead points."""
 
     def __init__(
         self,
-        path: _Path,
+        path: Path,
         designs: Designs,
         served: BoolArray,
         certify: bool,
@@ -358,7 +361,7 @@ class _March:
         return settled
 
 
-def _coefficients(path: _Path, designs: Designs) -> dict[str, Array]:
+def _coefficients(path: Path, designs: Designs) -> dict[str, Array]:
     """What the programs of a family read, by register, (D,) each."""
     found = loop_coefficients(designs)
     spread = path.spread(designs.start[:, path.model.compiled.solver.unknowns + path.lead])

@@ -8,7 +8,7 @@ from typing import Any
 
 from linkwork.foundation.errors import InputError, MissingPackageError
 
-__all__ = ["graphics_card", "kernel", "numba_cuda", "on_device"]
+__all__ = ["graphics_card", "kernel", "name_of", "numba_cuda", "on_device"]
 
 
 def numba_cuda() -> Any:
@@ -35,10 +35,17 @@ def graphics_card() -> Any:
     cuda = numba_cuda()
     if not cuda.is_available():
         raise InputError(
-            "no graphics card can be used here: it takes one by NVIDIA with its driver and CUDA "
-            'toolkit; without device="gpu" the processor serves'
+            "no graphics card can be used here: it takes one by NVIDIA, its driver, and CUDA's "
+            'compiler (pip install "numba-cuda[cu12]" or "[cu13]"); without device="gpu" the '
+            "processor serves"
         )
     return cuda
+
+
+def name_of(card: Any) -> str:
+    """What the graphics card in use is called."""
+    name = card.get_current_device().name
+    return name.decode() if isinstance(name, bytes) else str(name)
 
 
 def on_device(function: Callable[..., Any]) -> Any:
@@ -59,4 +66,4 @@ def _simulated() -> bool:
     """Whether kernels are run as Python, for tests."""
     from numba import config
 
-    return bool(config.ENABLE_CUDASIM)
+    return bool(getattr(config, "ENABLE_CUDASIM", 0))

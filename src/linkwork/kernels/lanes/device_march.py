@@ -24,8 +24,21 @@ from linkwork.kernels.lanes import sine, stepping
 from linkwork.kernels.lanes.device_compiling import kernel, numba_cuda, on_device
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
 from linkwork.kernels.lanes.stepping import GROWTH, SAME
+from linkwork.kernels.lanes.tasks import Found, Table
 
-__all__ = ["Sections", "Shape", "begin", "cuda", "follow", "kernel", "on_device", "sin_cos"]
+__all__ = [
+    "Found",
+    "Sections",
+    "Shape",
+    "Start",
+    "Table",
+    "begin",
+    "cuda",
+    "follow",
+    "kernel",
+    "on_device",
+    "sin_cos",
+]
 
 cuda = numba_cuda()
 sin_cos = on_device(sine.sin_cos.py_func)
@@ -44,6 +57,17 @@ class Sections(NamedTuple):
     correct: Any
     correct_slowly: Any
     judge: Any
+
+
+class Start(NamedTuple):
+    """A mechanism and where it starts: column ``member`` of coefficients (C, M) and nodes (S, M);
+    ``options`` (O,).
+    """
+
+    member: Any
+    design: Any
+    options: Any
+    node: Any
 
 
 class Shape(NamedTuple):
@@ -82,16 +106,16 @@ def _live(shape):  # type: ignore[no-untyped-def]
 
 
 @on_device
-def _load(shape, w, design, options, node, member):  # type: ignore[no-untyped-def]
+def _load(shape, w, start):  # type: ignore[no-untyped-def]
     """A mechanism, with all nodes where it starts."""
     first = _live(shape) + shape.blocks
     for j in range(shape.coefficients):
-        w[first + j] = design[j, member]
+        w[first + j] = start.design[j, start.member]
     for j in range(shape.options):
-        w[first + shape.coefficients + j] = options[j]
+        w[first + shape.coefficients + j] = start.options[j]
     for role in range(ROLES):
         for j in range(shape.size):
-            w[role * shape.size + j] = node[j, member]
+            w[role * shape.size + j] = start.node[j, start.member]
 
 
 @on_device
@@ -107,11 +131,29 @@ def _weigh(shape, w, t, times, known):  # type: ignore[no-untyped-def]
 
 
 @on_device
-def begin(sections, shape, w, design, options, given, member, node, begun):  # type: ignore[no-untyped-def]
+def _choose(shape, w, times, step, known, spacing):  # type: ignore[no-untyped-def]
+    """The weights of the prediction, computed anew where the spacing has changed.
+
+    ``times``: of the last nodes.
+    """
+    same = abs(step - spacing[0]) <= SAME * abs(step)
+    for k in range(1, NODES):
+        same = same and abs(times[k - 1] - times[k] - spacing[k]) <= SAME * abs(step)
+    if not same:
+        spacing[0] = step
+        for k in range(1, NODES):
+            spacing[k] = times[k - 1] - times[k]
+        _weigh(shape, w, times[0] + step, times, known)
+
+
+@on_device
+def begin(sections, shape, w, start, node, begun):  # type: ignore[no-untyped-def]
     """From a guess to a position, with small steps and its own proof; see
     :func:`linkwork.kernels.lanes.trial.solved_slowly`.
+
+    ``node`` (S, M), ``begun`` (M,) bool: what is found, and whether it is a position.
     """
-    _load(shape, w, design, options, given, member)
+    _load(shape, w, start)
     for j in range(2 * NODES):
         w[_weights(shape) + j] = 0.0
     w[_weights(shape)] = 1.0
@@ -128,8 +170,8 @@ def begin(sections, shape, w, design, options, given, member, node, begun):  # t
         fine = fine and w[_live(shape) + k] == 0.0
     for j in range(shape.size):
         fine = fine and math.isfinite(w[j])
-        node[j, member] = w[j]
-    begun[member] = fine
+        node[j, start.member] = w[j]
+    begun[start.member] = fine
 
 
 @on_device
@@ -146,18 +188,26 @@ def _first_row(rows, t, way):  # type: ignore[no-untyped-def]
 
 
 @on_device
-def _stop(shape, w, way, member, end, last):  # type: ignore[no-untyped-def]
-    """A mechanism goes no further: its last node and the one before."""
-    size = shape.size
-    end[way, member] = w[2 * size - 1]
-    for j in range(2 * size):
-        last[way, j, member] = w[size + j]
+def _note(shape, w, row, found):  # type: ignore[no-untyped-def]
+    """A row is reached."""
+    found.reached[row, found.first] = True
+    for j in range(shape.unknowns):
+        found.unknowns[j, row, found.first] = w[j]
+    if shape.certified:
+        found.radius[row, found.first] = w[_radius(shape)]
 
 
 @on_device
-def follow(  # type: ignore[no-untyped-def]
-    sections, shape, w, design, options, node, member, way, rows, steps, v, radius, reached, end, last
-):  # fmt: skip
+def _stop(shape, w, way, found):  # type: ignore[no-untyped-def]
+    """A mechanism goes no further: its last node and the one before."""
+    size = shape.size
+    found.end[way, found.first] = w[2 * size - 1]
+    for j in range(2 * size):
+        found.last[way, j, found.first] = w[size + j]
+
+
+@on_device
+def follow(sections, shape, w, start, way, table, found):  # type: ignore[no-untyped-def]
     """Follow a mechanism from row to row, upwards (way 1) or downwards (0).
 
     Parameters
@@ -165,13 +215,14 @@ def follow(  # type: ignore[no-untyped-def]
     sections : Sections
     shape : Shape
     w : thread's state
-    design, options : (C, M), (O,)
-    node : (S, M) where mechanisms start
-    rows, steps : see :class:`linkwork.kernels.lanes.tasks.Table`
-    v, radius, reached, end, last : as in :class:`linkwork.kernels.lanes.tasks.Found`
+    start : Start
+    way : int
+    table : Table
+    found : Found
+        ``first``: the mechanism.
     """
-    size = shape.size
-    _load(shape, w, design, options, node, member)
+    size, rows, steps = shape.size, table.rows, table.steps
+    _load(shape, w, start)
     times = cuda.local.array(NODES, "float64")
     spacing = cuda.local.array(NODES, "float64")
     for k in range(NODES):
@@ -180,19 +231,12 @@ def follow(  # type: ignore[no-untyped-def]
     while 0 <= row < rows.shape[0]:
         goal, before = rows[row], w[2 * size - 1]
         away = goal - before
-        last_step = abs(away) <= h
-        step = away if last_step else math.copysign(h, away)
-        t = goal if last_step else before + step
-        same = abs(step - spacing[0]) <= SAME * abs(step)
+        arrives = abs(away) <= h
+        step = away if arrives else math.copysign(h, away)
+        t = goal if arrives else before + step
         for k in range(NODES):
             times[k] = w[(k + 2) * size - 1]
-        for k in range(1, NODES):
-            same = same and abs(times[k - 1] - times[k] - spacing[k]) <= SAME * abs(step)
-        if not same:
-            spacing[0] = step
-            for k in range(1, NODES):
-                spacing[k] = times[k - 1] - times[k]
-            _weigh(shape, w, before + step, times, known)
+        _choose(shape, w, times, step, known, spacing)
         w[size - 1] = t
         sections.predict(w)
         sections.correct(w)
@@ -201,11 +245,7 @@ def follow(  # type: ignore[no-untyped-def]
         lost = moved == 0.0 and t != goal  # a step lost in rounding
         if w[_good(shape)] > 0.5 and not lost:
             if t == goal:
-                reached[row, member] = True
-                for j in range(shape.unknowns):
-                    v[j, row, member] = w[j]
-                if shape.certified:
-                    radius[row, member] = w[_radius(shape)]
+                _note(shape, w, row, found)
                 row += 2 * way - 1
             if moved >= 0.5 * h:
                 h = min(GROWTH * h, steps[1])
@@ -218,5 +258,5 @@ def follow(  # type: ignore[no-untyped-def]
         else:
             h = 0.5 * moved
             if h < steps[2]:
-                _stop(shape, w, way, member, end, last)
+                _stop(shape, w, way, found)
                 return

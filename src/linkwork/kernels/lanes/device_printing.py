@@ -33,7 +33,8 @@ def begin(design, options, given, node, begun, reached, end):
         end[0, member] = math.nan
         end[1, member] = math.nan
         w = cuda.local.array({length}, "float64")
-        device_march.begin(SECTIONS, SHAPE, w, design, options, given, member, node, begun)
+        start = device_march.Start(member, design, options, given)
+        device_march.begin(SECTIONS, SHAPE, w, start, node, begun)
 
 
 @kernel
@@ -42,10 +43,10 @@ def march(design, options, node, begun, rows, steps, v, radius, reached, end, la
     member, way = thread % node.shape[1], thread // node.shape[1]
     if way < 2 and begun[member]:
         w = cuda.local.array({length}, "float64")
-        device_march.follow(
-            SECTIONS, SHAPE, w, design, options, node, member, way,
-            rows, steps, v, radius, reached, end, last,
-        )
+        start = device_march.Start(member, design, options, node)
+        table = device_march.Table(rows, steps, SHAPE.unknowns)
+        found = device_march.Found(member, v, radius, reached, end, last)
+        device_march.follow(SECTIONS, SHAPE, w, start, way, table, found)
 """
 
 
@@ -106,16 +107,16 @@ def device_source(programs: MarchPrograms, state: ThreadState, certified: bool) 
     live = [state.place[programs.registers.named[f"live{b}.0"]] for b in range(state.blocks)]
     functions = [
         *(_section(name, program, state, constants) for name, program in named.items()),
-        _function("correct", [line for b in range(state.blocks) for line in _newton(b, live[b])]),
-        _function("correct_slowly", [line for b in range(state.blocks) for line in _slowly(b, live[b])]),
-        _function("judge", [*(f"prove{b}(w)" for b in range(len(programs.prove))), "agree(w)"]),
+        _function("correct", *map(_newton, range(state.blocks), live)),
+        _function("correct_slowly", *map(_slowly, range(state.blocks), live)),
+        _function("judge", [f"prove{b}(w)" for b in range(len(programs.prove))], ["agree(w)"]),
     ]
     kernels = _KERNELS.format(shape=shape, length=len(state.place))
     return "\n\n".join([_HEAD, *functions, kernels])
 
 
-def _function(name: str, lines: Sequence[str]) -> str:
-    body = "\n".join(f"    {line}" for line in lines or ["pass"])
+def _function(name: str, *parts: Sequence[str]) -> str:
+    body = "\n".join(f"    {line}" for lines in parts for line in lines)
     return f"@on_device\ndef {name}(w):\n{body}\n"
 
 

@@ -237,11 +237,10 @@ class LaneKernel:
         """
         named = self.registers.named
         used = [name for name in coefficients if name in named]
-        count, n = len(start), self.table.unknowns
+        count = len(start)
         design = np.array([coefficients[name] for name in used]).reshape(len(used), count)
         places = np.array([named[name] for name in used], dtype=np.intp)
-        given = np.zeros((self.nodes.shape[1], count))
-        given[:n], given[-1] = guess, start
+        given = self.given(guess, start)
 
         def one(first: int) -> None:
             part = slice(first, first + _PART)
@@ -254,6 +253,12 @@ class LaneKernel:
         else:
             for first in firsts:
                 one(first)
+
+    def given(self, guess: Array, start: Array) -> Array:
+        """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""
+        node = np.zeros((self.nodes.shape[1], len(start)))
+        node[: self.table.unknowns], node[-1] = guess, start
+        return node
 
     def last_nodes(self, found: LaneRows, way: int, where: IndexArray) -> LastNodes:
         """The nodes at which some designs stopped, downwards (0) or upwards (1)."""

@@ -33,7 +33,6 @@ from linkwork.kernels.lanes.trial import (
 __all__ = ["march"]
 
 
-
 @compiled
 def _chosen(w, lane, weights, times, step, known, spacing):  # type: ignore[no-untyped-def]
     """The weights of a lane's prediction, computed anew where its spacing has changed.

@@ -5,6 +5,7 @@ What is written knows no names but registers, so nothing of a mechanism's text g
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 
@@ -53,7 +54,7 @@ class Body:
     def value(self, register: int) -> str:
         """What a register holds by now."""
         if register in self.constants:
-            return repr(self.constants[register])
+            return _number(self.constants[register])
         if register not in self.known:
             self.known.add(register)
             self.lines.append(f"r{register} = {self.place(register)}")
@@ -84,6 +85,15 @@ class Body:
         """Write the registers that are kept and have changed."""
         for register in sorted(self.changed & kept):
             self.lines.append(f"{self.place(register)} = r{register}")
+
+
+def _number(value: float) -> str:
+    """As Python writes it; what is not finite has a name there."""
+    if math.isnan(value):
+        return "math.nan"
+    if math.isinf(value):
+        return "math.inf" if value > 0.0 else "-math.inf"
+    return repr(value)
 
 
 def trial_source(

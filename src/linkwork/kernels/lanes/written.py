@@ -20,7 +20,7 @@ __all__ = ["is_written", "written"]
 #: A folder that takes the place of the user's cache.
 FOLDER = "LINKWORK_CACHE"
 #: Modules of this package that written ones are compiled with.
-_WITH = ("compiling", "device_compiling", "device_march", "sine", "stepping", "trial")
+_WITH = ("compiling", "device_compiling", "device_march", "sine", "stepping", "tasks", "trial")
 
 
 def written(source: str, function: str) -> Callable[..., Any]:
