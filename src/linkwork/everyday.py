@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from linkwork import batch, drawing, motion, textfile
 from linkwork import equations as closure
-from linkwork.foundation.errors import (
-    InputError,
-    MechanismError,
-    Problem,
-    UnknownNameError,
-    choices,
-)
+from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
@@ -23,6 +17,7 @@ from linkwork.mechanism.parts import Input, Number
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
+from linkwork.textfile.library import example_text, examples
 
 if TYPE_CHECKING:
     from linkwork.batch.family import Family
@@ -64,7 +59,7 @@ class Mechanism:
     def __init__(self, description: Description, read: textfile.ReadFile | None = None) -> None:
         self.description = description
         try:
-            self.model = _started(motion.model_of(description))
+            self.model = motion.as_described(description)
         except MechanismError as error:
             if read is None:
                 raise
@@ -278,18 +273,6 @@ class Mechanism:
         textfile.save(self.description, Path(path))
 
 
-def _started(model: motion.Model) -> motion.Model:
-    """The model, started from the configuration that its description names, if it names one."""
-    name = model.description.configuration
-    if not name:
-        return model
-    try:
-        return motion.started_in(model, name)
-    except InputError as error:
-        problem = Problem(key=("configuration",), message=str(error))
-        raise MechanismError([problem], f'mechanism "{model.description.name}"') from None
-
-
 def load(path: str | Path) -> Mechanism:
     """Read a mechanism file.
 
@@ -306,30 +289,6 @@ def loads(text: str, name: str = "text") -> Mechanism:
     """Read a mechanism from the text of a file."""
     read = textfile.read_text(text, name)
     return Mechanism(read.description, read)
-
-
-def _library() -> Iterator[tuple[str, Path]]:
-    for path in sorted(Path(__file__).with_name("library").glob("*.toml")):
-        yield path.stem, path
-
-
-def examples() -> tuple[str, ...]:
-    """The names of the mechanisms that come with Linkwork."""
-    return tuple(name for name, _ in _library())
-
-
-def example_text(name: str) -> str:
-    """The file of a library mechanism.
-
-    Raises
-    ------
-    UnknownNameError
-        With the names that exist.
-    """
-    known = dict(_library())
-    if name not in known:
-        raise UnknownNameError(f'there is no example "{name}" {choices("examples", known, name)}')
-    return known[name].read_text(encoding="utf-8")
 
 
 def example(name: str) -> Mechanism:

@@ -16,6 +16,7 @@ from linkwork.batch.family_motion import FamilyMotion
 from linkwork.batch.quantities import quantities
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
+from linkwork.kernels.lanes import lane_kernel
 from linkwork.motion import sweep
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
@@ -117,7 +118,11 @@ def _assert_same_names(family: Family, motion: FamilyMotion, k: int, alone: Moti
 
 
 @pytest.mark.parametrize("name", DRIVEN)
-def test_library_mechanisms_move_together_as_each_by_itself(name: str) -> None:
+def test_library_mechanisms_move_together_as_each_by_itself(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if DRIVEN.index(name) % 2:  # as designs of a large family: in step, not rows side by side
+        monkeypatch.setattr("linkwork.kernels.lanes.lane_kernel._FEW", 0)
     family = family_of(name, 0.999, 1.001)
     motion = family.sweep()
     assert motion.status.shape == motion.radius.shape == (2, len(motion.inputs))
@@ -140,6 +145,25 @@ def test_without_proofs_the_motions_are_the_same(name: str) -> None:
     assert_agrees(family, motion, certify=False)
     assert (motion.certification == Certification.NOT_ASKED.code).all()
     assert np.isnan(motion.radius).all()
+
+
+@pytest.mark.parametrize("few", [0, 16])
+@pytest.mark.parametrize("name", ["rapier-drive", "jansen-leg", "slider-input", "rack-steering"])
+def test_rows_side_by_side_are_those_of_designs_in_step(
+    name: str, few: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("linkwork.kernels.lanes.lane_kernel._FEW", few)
+    ways = []
+    for way in ("in_step", "by_rows"):
+        inner = getattr(lane_kernel, way)
+        monkeypatch.setattr(
+            lane_kernel, way, lambda *a, inner=inner, way=way: (ways.append(way), inner(*a))[1]
+        )
+    family = family_of(name, 0.998, 1.002)
+    motion = family.sweep()
+    assert ways[0] == ("by_rows" if few else "in_step")
+    assert motion.certified.all()
+    assert_agrees(family, motion)
 
 
 @pytest.mark.parametrize("name", ["andrews-squeezer", "klann-leg", "slider-input", "rack-steering"])

@@ -132,8 +132,8 @@ def test_rates_and_limits_are_reduced_in_parts(
         worst["condition.max"], np.fmax.reduce(motion.condition, axis=1), rtol=1e-12
     )
     assert (worst["residual.max"][:3] < 1e-9).all()
-    np.testing.assert_array_equal(found["limit.lower"], motion.limits.lower)
-    np.testing.assert_array_equal(found["limit.upper"], motion.limits.upper)
+    np.testing.assert_allclose(found["limit.lower"], motion.limits.lower, rtol=1e-12)
+    np.testing.assert_allclose(found["limit.upper"], motion.limits.upper, rtol=1e-12)
     monkeypatch.setattr("linkwork.batch.family._PART_BYTES", 1)
     assert family._part() == 1
 

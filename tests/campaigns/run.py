@@ -11,12 +11,14 @@ from time import perf_counter
 from tests.campaigns.certificates import judge
 from tests.campaigns.circuits import circuit_campaign
 from tests.campaigns.configurations import configuration_campaign
+from tests.campaigns.families import family_campaign
 from tests.campaigns.lanes import judge_lane_steps, judge_lanes
 from tests.campaigns.motion import sweep_campaign
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.steps import judge_steps
+from tests.campaigns.study import study_campaign
 
-__all__ = ["CAMPAIGNS", "Report", "run"]
+__all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
 
 _PART = 50
 
@@ -71,15 +73,23 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "configurations": (_configurations, 450),
     "circuits": (_circuits, 500),
 }
+#: Those that share the cores themselves: what does the whole campaign, and its usual size.
+WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {
+    "families": (family_campaign, 1_000_000),
+    "study": (study_campaign, 1_000_000),
+}
 
 
 def run(name: str, count: int | None = None) -> Report:
     """Run a campaign on all cores; ``count`` replaces its usual size."""
+    begin = perf_counter()
+    if name in WHOLE:
+        whole, usual = WHOLE[name]
+        counts, false = whole(count or usual)
+        return Report(counts, tuple(false), perf_counter() - begin)
     work, usual = CAMPAIGNS[name]
     parts = range(-(-(count or usual) // _PART))
-    begin = perf_counter()
-    counts: Counter[str] = Counter()
-    false: list[str] = []
+    counts, false = Counter(), []
     with ProcessPoolExecutor() as pool:
         for part_counts, part_false in pool.map(work, parts):
             counts += part_counts

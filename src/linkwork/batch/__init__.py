@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from linkwork.batch.family_motion import FamilyMotion
     from linkwork.batch.limits import FamilyLimits
     from linkwork.batch.sampling import Plan, from_table, grid, latin_hypercube, random
+    from linkwork.batch.study import Study, Summary, read_plan, run_study, summary_of
 else:
     __getattr__ = loader(
         __name__,
@@ -21,6 +22,7 @@ else:
             "family_motion": ("FamilyMotion",),
             "limits": ("FamilyLimits",),
             "sampling": ("Plan", "from_table", "grid", "latin_hypercube", "random"),
+            "study": ("Study", "Summary", "read_plan", "run_study", "summary_of"),
         },
     )
 
@@ -30,10 +32,15 @@ __all__ = [
     "FamilyLimits",
     "FamilyMotion",
     "Plan",
+    "Study",
+    "Summary",
     "designs_of",
     "family_of",
     "from_table",
     "grid",
     "latin_hypercube",
     "random",
+    "read_plan",
+    "run_study",
+    "summary_of",
 ]

@@ -10,6 +10,7 @@ import numpy as np
 from linkwork.batch.designs import Designs, designs_of
 from linkwork.batch.family_motion import FamilyMotion
 from linkwork.batch.lane_rows import design_rows
+from linkwork.batch.reductions import REDUCTIONS
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.errors import InputError
 from linkwork.kernels.lanes.device_compiling import graphics_card
@@ -198,37 +199,14 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _least(values: Array) -> Array:
-    found: Array = np.fmin.reduce(values, axis=1)
-    return found
-
-
-def _most(values: Array) -> Array:
-    found: Array = np.fmax.reduce(values, axis=1)
-    return found
-
-
-def _mean(values: Array) -> Array:
-    there = ~np.isnan(values)
-    with np.errstate(invalid="ignore"):
-        mean: Array = np.where(there, values, 0.0).sum(axis=1) / there.sum(axis=1)
-    return mean
-
-
-_NAMED: dict[str, Callable[[Array], Array]] = {
-    "min": _least,
-    "max": _most,
-    "mean": _mean,
-    "stroke": lambda values: _most(values) - _least(values),
-}
-
-
 def _function(reduction: Reduction) -> Callable[[Array], Array]:
     if callable(reduction):
         return reduction
-    if reduction not in _NAMED:
-        raise InputError(f'there is no reduction "{reduction}" (there are: {", ".join(_NAMED)})')
-    return _NAMED[reduction]
+    if reduction not in REDUCTIONS:
+        raise InputError(
+            f'there is no reduction "{reduction}" (there are: {", ".join(REDUCTIONS)})'
+        )
+    return REDUCTIONS[reduction]
 
 
 def _word(reduction: Reduction) -> str:

@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import click
 
+from linkwork.batch.study.plan_keys import PLAN
 from linkwork.cli.options import debug_option
-from linkwork.textfile.schema import schema_text
+from linkwork.textfile.schema import schema_of, schema_text
 
 __all__ = ["schema"]
 
 
 @click.command
+@click.option("--plan", is_flag=True, help="The schema of study plans instead.")
 @debug_option
-def schema() -> None:
+def schema(plan: bool) -> None:
     """Print the JSON Schema of mechanism files.
 
     Editors that know it complete keys and mark mistakes while you type.
 
     \b
       linkwork schema > linkwork.schema.json
+      linkwork schema --plan > plan.schema.json
     """
-    click.echo(schema_text(), nl=False)
+    click.echo(schema_text(schema_of(PLAN) if plan else None), nl=False)

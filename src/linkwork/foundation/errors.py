@@ -108,7 +108,7 @@ class MechanismError(InputError):
 
 
 class MechanismFileError(MechanismError):
-    """A mechanism file that cannot be understood; problems carry line numbers."""
+    """A mechanism file, or the plan of a study, that cannot be understood, with line numbers."""
 
 
 class UnknownNameError(InputError, KeyError):

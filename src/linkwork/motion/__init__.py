@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from linkwork.motion.checking import check
     from linkwork.motion.circuit.circuits import branch_start, circuits
     from linkwork.motion.classifying.inverting import driven_otherwise, inversion, inversions
+    from linkwork.motion.described import as_described
     from linkwork.motion.extremes import check_quantities
     from linkwork.motion.model import Model, model_of
     from linkwork.motion.solving import solve
@@ -24,6 +25,7 @@ else:
         __name__,
         {
             "assembly.configurations": ("configurations", "solve_configuration", "started_in"),
+            "described": ("as_described",),
             "checking": ("check",),
             "circuit.circuits": ("branch_start", "circuits"),
             "extremes": ("check_quantities",),
@@ -36,6 +38,7 @@ else:
 
 __all__ = [
     "Model",
+    "as_described",
     "branch_start",
     "check",
     "check_quantities",

@@ -9,7 +9,7 @@ from linkwork.foundation.lazy import loader
 if TYPE_CHECKING:
     from linkwork.textfile.lines import Lines
     from linkwork.textfile.reader import ReadFile, read_bytes, read_file, read_text
-    from linkwork.textfile.schema import json_schema, schema_text
+    from linkwork.textfile.schema import json_schema, schema_of, schema_text
     from linkwork.textfile.writer import save, write_text
 else:
     __getattr__ = loader(
@@ -17,7 +17,7 @@ else:
         {
             "lines": ("Lines",),
             "reader": ("ReadFile", "read_bytes", "read_file", "read_text"),
-            "schema": ("json_schema", "schema_text"),
+            "schema": ("json_schema", "schema_of", "schema_text"),
             "writer": ("save", "write_text"),
         },
     )
@@ -30,6 +30,7 @@ __all__ = [
     "read_file",
     "read_text",
     "save",
+    "schema_of",
     "schema_text",
     "write_text",
 ]

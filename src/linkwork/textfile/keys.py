@@ -13,8 +13,8 @@ from linkwork.mechanism.motion_laws import LAWS
 
 __all__ = [
     "EQUATIONS", "FORMAT", "FORMS", "LINKAGE", "LOOPS",
-    "Constant", "Flag", "Form", "Formula", "Key", "Kind", "ListOf", "Named", "Number", "Speed",
-    "Table", "Tables", "Text", "form_of",
+    "Constant", "Flag", "Form", "Formula", "Key", "Kind", "ListOf", "Named", "Number",
+    "PlainNumber", "Several", "Speed", "Table", "Tables", "Text", "Whole", "form_of",
 ]  # fmt: skip
 
 #: The version of the file format that this package reads and writes.
@@ -38,6 +38,19 @@ class Text:
 @dataclass(frozen=True)
 class Number:
     """A number, or a formula of the named dimensions."""
+
+
+@dataclass(frozen=True)
+class PlainNumber:
+    """A number; no formula."""
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A whole number within bounds."""
+
+    least: int
+    most: int = 2**53
 
 
 @dataclass(frozen=True)
@@ -90,7 +103,30 @@ class Named:
     words: int = 1
 
 
-Kind = Constant | Text | Number | Formula | Speed | Flag | ListOf | Table | Tables | Named
+@dataclass(frozen=True)
+class Several:
+    """One number, a list of numbers, or a table; ``wanted`` says so in a message."""
+
+    many: ListOf
+    table: Table
+    wanted: str
+
+
+Kind = (
+    Constant
+    | Text
+    | Number
+    | PlainNumber
+    | Whole
+    | Formula
+    | Speed
+    | Flag
+    | ListOf
+    | Table
+    | Tables
+    | Named
+    | Several
+)
 
 
 @dataclass(frozen=True)
@@ -105,7 +141,7 @@ class Key:
 
 @dataclass(frozen=True)
 class Form:
-    """One of the three ways to write a mechanism; ``marker`` is the table that tells it."""
+    """A kind of file: its keys, and the table ``marker`` that tells it from others, if any."""
 
     title: str
     doc: str

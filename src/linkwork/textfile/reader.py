@@ -17,7 +17,7 @@ from linkwork.textfile.lines import Lines
 from linkwork.textfile.structure import Structure
 from linkwork.textfile.toml_text import bytes_of, data_of, text_of
 
-__all__ = ["ReadFile", "read_bytes", "read_file", "read_text"]
+__all__ = ["ReadFile", "check_format", "located_error", "read_bytes", "read_file", "read_text"]
 
 #: Tables and keys on which the meaning of no other table depends.
 _LEAVES = frozenset(
@@ -45,7 +45,7 @@ class ReadFile:
 
     def located(self, error: MechanismError) -> MechanismFileError:
         """The same problems with file name and line numbers, in the file's order."""
-        return _located(error.problems, self.lines, self.name)
+        return located_error(error.problems, self.lines, self.name)
 
 
 def read_file(path: Path | str) -> ReadFile:
@@ -81,7 +81,7 @@ def read_text(text: str, name: str = "the text") -> ReadFile:
     """
     data = data_of(text, name)
     lines = Lines.of(text)
-    _check_format(data, lines, name)
+    check_format(data, lines, name)
     form = form_of(data)
     structure = Structure(data, form)
     problems = list(structure.problems)
@@ -95,15 +95,16 @@ def read_text(text: str, name: str = "the text") -> ReadFile:
         else:
             if not problems:
                 return ReadFile(description=description, lines=lines, name=name)
-    raise _located(problems, lines, name) from None
+    raise located_error(problems, lines, name) from None
 
 
-def _located(problems: Iterable[Problem], lines: Lines, name: str) -> MechanismFileError:
+def located_error(problems: Iterable[Problem], lines: Lines, name: str) -> MechanismFileError:
+    """Problems with file name and line numbers, in the file's order."""
     found = [p if p.line is not None else p.at_line(lines.line(p.key)) for p in problems]
     return MechanismFileError(sorted(found, key=lambda p: p.line or 0), name)
 
 
-def _check_format(data: dict[str, Any], lines: Lines, name: str) -> None:
+def check_format(data: dict[str, Any], lines: Lines, name: str) -> None:
     """A file of another format has other rules: nothing else is said about it."""
     number = data.get("format", FORMAT)
     if type(number) is int and number > FORMAT:
@@ -111,7 +112,7 @@ def _check_format(data: dict[str, Any], lines: Lines, name: str) -> None:
             f"is {number if number < 10**9 else 'too large'}, this version of Linkwork "
             f"reads format = {FORMAT}: update Linkwork"
         )
-        raise _located([Problem(key=("format",), message=message)], lines, name)
+        raise located_error([Problem(key=("format",), message=message)], lines, name)
 
 
 def _description(content: dict[str, Any], form: Form) -> Linkage | Loops | PlainEquations:

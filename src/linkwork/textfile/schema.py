@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from linkwork.textfile.keys import (
@@ -16,13 +17,16 @@ from linkwork.textfile.keys import (
     ListOf,
     Named,
     Number,
+    PlainNumber,
+    Several,
     Speed,
     Table,
     Tables,
     Text,
+    Whole,
 )
 
-__all__ = ["json_schema", "schema_text"]
+__all__ = ["json_schema", "schema_of", "schema_text"]
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _FORMULA = {"type": "string", "minLength": 1}
@@ -57,9 +61,14 @@ def json_schema() -> dict[str, Any]:
     }
 
 
-def schema_text() -> str:
-    """The schema as it is published."""
-    return json.dumps(json_schema(), indent=2, ensure_ascii=False) + "\n"
+def schema_of(form: Form) -> dict[str, Any]:
+    """The schema of files that have one form only."""
+    return {"$schema": _DRAFT, **_form(form), "$defs": _SHARED}
+
+
+def schema_text(schema: Mapping[str, Any] | None = None) -> str:
+    """A schema as it is published; that of mechanism files unless given."""
+    return json.dumps(schema or json_schema(), indent=2, ensure_ascii=False) + "\n"
 
 
 def _form(form: Form) -> dict[str, Any]:
@@ -89,6 +98,12 @@ def _schema(kind: Kind) -> dict[str, Any]:
             return {"type": "string", "enum": list(words)} if words else {"type": "string"}
         case Number():
             return {"$ref": "#/$defs/number"}
+        case PlainNumber():
+            return {"type": "number"}
+        case Whole(least, most):
+            return {"type": "integer", "minimum": least, "maximum": most}
+        case Several(values, table):
+            return {"anyOf": [{"type": "number"}, _schema(values), _fields(table.keys)]}
         case Formula(equation):
             return {"$ref": "#/$defs/equation" if equation else "#/$defs/formula"}
         case Speed():

@@ -20,10 +20,13 @@ from linkwork.textfile.keys import (
     ListOf,
     Named,
     Number,
+    PlainNumber,
+    Several,
     Speed,
     Table,
     Tables,
     Text,
+    Whole,
 )
 from linkwork.textfile.lines import Path
 
@@ -67,7 +70,8 @@ class Structure:
 
     def _unknown_key(self, name: str, present: set[str], known: list[str], path: Path) -> None:
         table = _table_text(path)
-        others = [form for form in FORMS if name in _names_in_form(form, path)]
+        forms = FORMS if self.form in FORMS else ()
+        others = [form for form in forms if name in _names_in_form(form, path)]
         free = [key for key in known if key not in present]
         if others and not path:
             titles = " and ".join(f"{form.title} files" for form in others)
@@ -92,8 +96,14 @@ class Structure:
                 return self._named(entry, kind, path)
             case ListOf():
                 return self._list(entry, kind, path)
+            case Several():
+                return self._several(entry, kind, path)
             case Number():
                 self._check_number(entry, "a number or a formula in quotes", path)
+            case PlainNumber():
+                self._check_number(entry, "a number", path, text=False)
+            case Whole(least, most) if type(entry) is not int or not least <= entry <= most:
+                self._wrong(path, f"must be a whole number from {least} on, got {_shown(entry)}")
             case Speed():
                 self._check_number(entry, 'a number or text such as "300 rpm"', path)
             case Text(words) if words and entry not in words:
@@ -110,8 +120,17 @@ class Structure:
                 self._wrong(path, f"must be {number}, got {_shown(entry)}")
         return entry
 
-    def _check_number(self, entry: Any, wanted: str, path: Path) -> None:
-        if isinstance(entry, str):
+    def _several(self, entry: Any, kind: Several, path: Path) -> Any:
+        if isinstance(entry, dict):
+            return self._table(entry, kind.table.keys, path)
+        if isinstance(entry, list):
+            return self._list(entry, kind.many, path)
+        self._check_number(entry, kind.wanted, path, text=False)
+        return entry
+
+    def _check_number(self, entry: Any, wanted: str, path: Path, text: bool = True) -> None:
+        """A finite number, or ``text`` that is judged later."""
+        if text and isinstance(entry, str):
             return
         if isinstance(entry, bool) or not isinstance(entry, int | float):
             self._wrong(path, f"must be {wanted}, got {_shown(entry)}")

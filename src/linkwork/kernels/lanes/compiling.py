@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numba  # noqa: TID253 - this module is loaded when a family is solved
+from llvmlite import ir
 from numba import types  # noqa: TID253
+from numba.extending import intrinsic  # noqa: TID253
 
-__all__ = ["compiled", "compiled_for", "named_tuple", "types"]
+__all__ = ["call_at", "compiled", "compiled_for", "named_tuple", "trial_at", "types"]
 
 
 def compiled_for(signature: object):  # type: ignore[no-untyped-def]
@@ -23,3 +25,32 @@ compiled = compiled_for(None)
 def named_tuple(fields: list[object], kind: type) -> Any:
     """The type of a NamedTuple in a signature."""
     return types.NamedTuple(fields, kind)  # type: ignore[no-untyped-call]
+
+
+_BLOCKS = 6  # of numbers, which a trial that is written out is called with
+
+
+def trial_at(function: Any) -> Any:
+    """A function of six blocks of numbers, and of how many lanes there are, compiled for
+    :func:`call_at`; its ``address``, which unlike a function costs nothing to hand over.
+    """
+    numbers = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
+    signature = types.void(*[numbers] * _BLOCKS, types.int64)
+    return numba.cfunc(signature, cache=True, error_model="numpy", fastmath={"contract"})(function)
+
+
+def _call(typing, address, one, two, three, four, five, six, lanes):  # type: ignore[no-untyped-def]
+    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        number = ir.PointerType(ir.DoubleType())
+        kind = ir.FunctionType(ir.VoidType(), [*[number] * _BLOCKS, ir.IntType(64)])
+        function = builder.inttoptr(arguments[0], ir.PointerType(kind))
+        blocks = [builder.inttoptr(a, number) for a in arguments[1:-1]]
+        builder.call(function, [*blocks, arguments[-1]])
+        return context.get_dummy_value()
+
+    return types.void(*[types.int64] * (2 + _BLOCKS)), code
+
+
+#: Calls what :func:`trial_at` has compiled, by its address, with the addresses of six blocks and
+#: the number of lanes.
+call_at: Any = intrinsic(_call)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -20,8 +21,9 @@ from linkwork.kernels.lanes.march_programs import ROLES, march_programs
 from linkwork.kernels.lanes.marching import march
 from linkwork.kernels.lanes.printing import trial_source
 from linkwork.kernels.lanes.program import SOURCES, Op, Program
+from linkwork.kernels.lanes.rowwise import by_rows, most_nodes
 from linkwork.kernels.lanes.tasks import Found, Table, Tasks
-from linkwork.kernels.lanes.trial import Topology, by_machine
+from linkwork.kernels.lanes.trial import Topology
 from linkwork.kernels.lanes.written import is_written, written
 from linkwork.kernels.loop_table import LoopTable
 
@@ -31,6 +33,7 @@ __all__ = ["DEVICES", "Gear", "LaneKernel", "LaneRows", "Steps"]
 DEVICES = ("cpu", "gpu")
 
 _WEIGHTS = [f"{name}{role}" for role in range(1, ROLES) for name in "ab"]
+_FEW = 16  # designs in a part of which each goes with its rows side by side
 _PART = 4096  # designs that one thread works on at a time
 
 
@@ -90,6 +93,10 @@ class LaneRows:
             stopped=np.full((2, count), np.nan),
             last=np.empty((2, 2 * kernel.nodes.shape[1], count)),
         )
+
+    def at(self, first: int) -> Found:
+        """As the march sees it, designs from one on."""
+        return Found(first, self.v, self.radius, self.reached, self.stopped, self.last)
 
     def take(self, where: IndexArray) -> LaneRows:
         """Some of the designs."""
@@ -178,7 +185,14 @@ class LaneKernel:
         self.weights = reg.all_of(_WEIGHTS)
         self.height = max(programs.height, reg.count)
         self._sections = programs
-        self.trial: Callable[..., None] = by_machine
+        #: The same without proofs, which goes ahead where rows are side by side.
+        self.scout = LaneKernel(table, parts, zeros, certified=False) if certified else None
+        self._trial: Any = None  # written out; kept, for its address is used
+
+    @property
+    def trial(self) -> int:
+        """Address of the trial written out, 0 where the machine does it."""
+        return 0 if self._trial is None else int(self._trial.address)
 
     def shift(self, gear: Gear) -> None:
         """Write the trial out, if that is asked for or saves time.
@@ -188,16 +202,16 @@ class LaneKernel:
         InputError
             If it is asked for, and the folder for compiled code cannot be written to.
         """
-        if gear.specialised is False or self.trial is not by_machine:
+        if gear.specialised is False or self.trial:
             return
         if not gear.specialised and gear.positions < _PAYS_COMPILED:
             return
         source = self.source()
         if gear.specialised:
-            self.trial = written(source, "trial")
+            self._trial = written(source, "trial")
         elif len(self.code) <= ROLES * _LONGEST and (gear.positions >= _PAYS or is_written(source)):
             with suppress(InputError):  # nobody asked: the machine serves
-                self.trial = written(source, "trial")
+                self._trial = written(source, "trial")
 
     def source(self) -> str:
         """A trial of this topology written out: prediction, one correction, proof, judgement."""
@@ -235,17 +249,17 @@ class LaneKernel:
         found : LaneRows
             Filled.
         """
-        named = self.registers.named
-        used = [name for name in coefficients if name in named]
         count = len(start)
-        design = np.array([coefficients[name] for name in used]).reshape(len(used), count)
-        places = np.array([named[name] for name in used], dtype=np.intp)
+        places, design = self._registered(coefficients, count)
         given = self.given(guess, start)
 
         def one(first: int) -> None:
             part = slice(first, first + _PART)
             self._part(places, design[:, part], given[:, part], rows, steps, found, part)
 
+        if count <= _FEW and len(rows) >= LANES:
+            self._few(places, design, coefficients, given, rows, steps, found)
+            return
         firsts = range(0, count, _PART)
         if threads > 1 and len(firsts) > 1:
             with ThreadPoolExecutor(threads) as pool:
@@ -268,6 +282,31 @@ class LaneKernel:
         errors = x if self.certified else np.zeros_like(w)
         return LastNodes(t=found.stopped[way, where], w=w, s=s, q=q, p=p, x=errors)
 
+    def _registered(
+        self, coefficients: Mapping[str, Array], count: int
+    ) -> tuple[IndexArray, Array]:
+        """Registers (C,) of the coefficients that programs use, and their values (C, D)."""
+        named = self.registers.named
+        used = [name for name in coefficients if name in named]
+        values = np.array([coefficients[name] for name in used]).reshape(len(used), count)
+        return np.array([named[name] for name in used], dtype=np.intp), values
+
+    def _space(self, steps: Steps) -> Array:
+        """A workspace with constants and options in place."""
+        space = self.registers.filled(self.height, LANES)
+        for name in ("tolerance", "most_turn", "most_correction", "most_drift"):
+            if name in self.registers.named:
+                space[self.registers.named[name]] = getattr(steps, name)
+        return space
+
+    def _begun(
+        self, topology: Topology, space: Array, design: Array, given: Array
+    ) -> tuple[Array, BoolArray]:
+        """Nodes (S, D) where designs start, and whether they do, (D,)."""
+        node, begun = np.empty_like(given), np.zeros(given.shape[1], dtype=bool)
+        begin(topology, space, design, np.ascontiguousarray(given), node, begun)
+        return node, begun
+
     def _part(
         self,
         places: IndexArray,
@@ -278,30 +317,70 @@ class LaneKernel:
         found: LaneRows,
         part: slice,
     ) -> None:
-        space = self.registers.filled(self.height, LANES)
-        for name, value in (
-            ("tolerance", steps.tolerance),
-            ("most_turn", steps.most_turn),
-            ("most_correction", steps.most_correction),
-            ("most_drift", steps.most_drift),
-        ):
-            if name in self.registers.named:
-                space[self.registers.named[name]] = value
+        """Designs side by side."""
+        space, topology = self._space(steps), self._topology(places)
         design = np.ascontiguousarray(design)
-        given = np.ascontiguousarray(given)
-        size, count = self.nodes.shape[1], design.shape[1]
-        node, begun = np.empty((size, count)), np.zeros(count, dtype=bool)
-        topology = self._topology(places)
-        begin(topology, space, design, given, node, begun)
+        node, begun = self._begun(topology, space, design, given)
         found.found[part] = begun
-        table = Table(
-            rows, np.array([steps.first, steps.largest, steps.smallest]), self.table.unknowns
+        self._marched(
+            topology, space, design, node, begun, self._table(rows, steps), found.at(part.start)
         )
-        kept = Found(part.start, found.v, found.radius, found.reached, found.stopped, found.last)
-        tasks = Tasks.room(2 * count, size)
-        trial = self.trial, self.trial is not by_machine
-        many = in_step(topology, *trial, space, design, node, begun, table, tasks, kept)
-        march(topology, *trial, space, design, table, tasks, many, kept)
+
+    def _marched(
+        self,
+        topology: Topology,
+        space: Array,
+        design: Array,
+        node: Array,
+        begun: BoolArray,
+        table: Table,
+        kept: Found,
+    ) -> None:
+        tasks = Tasks.room(2 * len(begun), len(node))
+        many = in_step(topology, space, design, node, begun, table, tasks, kept)
+        march(topology, space, design, table, tasks, many, kept)
+
+    def _table(self, rows: Array, steps: Steps) -> Table:
+        sizes = np.array([steps.first, steps.largest, steps.smallest])
+        return Table(rows, sizes, self.table.unknowns)
+
+    def _few(
+        self,
+        places: IndexArray,
+        design: Array,
+        coefficients: Mapping[str, Array],
+        given: Array,
+        rows: Array,
+        steps: Steps,
+        found: LaneRows,
+    ) -> None:
+        """One design after the other, its rows side by side."""
+        space, topology, table = (
+            self._space(steps),
+            self._topology(places),
+            self._table(rows, steps),
+        )
+        node, begun = self._begun(topology, space, design, given)
+        found.found[:] = begun
+        scout = self.scout or self
+        if self.trial:
+            scout.shift(Gear(specialised=True))
+        own, seen = (space, places) if scout is self else (scout._space(steps), None)
+        if seen is None:
+            seen, values = scout._registered(coefficients, len(begun))
+        else:
+            values = design
+        ahead = scout._topology(seen)
+        for k in np.flatnonzero(begun):
+            start = np.ascontiguousarray(node[:, k])
+            far = np.abs(rows[[0, -1]] - start[-1]).max()
+            room = np.empty((3, most_nodes(far, steps.largest), len(start)))
+            space[places], own[seen] = design[:, k, None], values[:, k, None]
+            if by_rows(topology, ahead, space, own, start, table, room, found.at(int(k))):
+                begun[k] = False
+            else:
+                found.reached[:, k] = False
+        self._marched(topology, space, design, node, begun, table, found.at(0))
 
     def _topology(self, coefficients: IndexArray) -> Topology:
         return Topology(
@@ -313,6 +392,7 @@ class LaneKernel:
             noted=self.noted,
             height=self.places.shape[1],
             coefficients=coefficients,
+            trial=self.trial,
         )
 
 

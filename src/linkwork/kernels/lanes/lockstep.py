@@ -20,10 +20,8 @@ from linkwork.kernels.lanes.trial import (
     GOOD,
     RADIUS,
     TOPOLOGY,
-    TRIAL,
     extrapolated,
     loaded,
-    placed,
     settled,
 )
 
@@ -100,7 +98,7 @@ def _kept(first, width, row, topology, turn, w, standing, all_stand, table, foun
 
 @compiled
 def _one_way(  # type: ignore[no-untyped-def]
-    base, way, topology, written, is_written, w, places, begun, node, table, tasks, count, found
+    base, way, topology, w, begun, node, table, tasks, count, found
 ):
     """64 mechanisms in one direction; how many tasks there are now."""
     rows, nodes = table.rows, topology.nodes
@@ -144,7 +142,7 @@ def _one_way(  # type: ignore[no-untyped-def]
             w[trial, i] = goal
         steps += 1
         _weighted(w, topology, turn, steps, spacing)
-        settled(topology, written, is_written, turn, w, places, standing)
+        settled(topology, turn, w, standing)
         bad, good = 0, topology.noted[-turn % ROLES, GOOD]
         for i in range(LANES):
             bad += standing[i] > w[good, i]
@@ -181,18 +179,17 @@ def _one_way(  # type: ignore[no-untyped-def]
 
 @compiled_for(
     types.int64(
-        TOPOLOGY, types.FunctionType(TRIAL), types.boolean, types.Array(types.float64, 2, "C"),
+        TOPOLOGY, types.Array(types.float64, 2, "C"),
         types.Array(types.float64, 2, "C"), types.Array(types.float64, 2, "C"),
         types.Array(types.boolean, 1, "C"), TABLE, TASKS, FOUND,
     )
 )  # fmt: skip
-def in_step(topology, written, is_written, w, design, node, begun, table, tasks, found):  # type: ignore[no-untyped-def]
+def in_step(topology, w, design, node, begun, table, tasks, found):  # type: ignore[no-untyped-def]
     """Lead mechanisms through the rows of the table as far as they go together.
 
     Parameters
     ----------
     topology : Topology
-    written, is_written : see :func:`linkwork.kernels.lanes.trial.settled`
     w : (registers, LANES) workspace with constants and options in place
     design : (C, M) coefficients
     node, begun : (S, M), (M,) where they start, and whether they do
@@ -206,7 +203,7 @@ def in_step(topology, written, is_written, w, design, node, begun, table, tasks,
     int
         How many tasks.
     """
-    count, places = 0, placed(topology, w)
+    count = 0
     for base in range(0, node.shape[1], LANES):
         width = min(LANES, node.shape[1] - base)
         for lane in range(LANES):
@@ -216,10 +213,7 @@ def in_step(topology, written, is_written, w, design, node, begun, table, tasks,
                 base,
                 way,
                 topology,
-                written,
-                is_written,
                 w,
-                places,
                 begun,
                 node,
                 table,

@@ -22,11 +22,9 @@ from linkwork.kernels.lanes.trial import (
     GOOD,
     RADIUS,
     TOPOLOGY,
-    TRIAL,
     copied,
     extrapolated,
     loaded,
-    placed,
     settled,
 )
 
@@ -74,17 +72,16 @@ def _stopped(w, lane, topology, turn, way, member, found):  # type: ignore[no-un
 
 @compiled_for(
     types.void(
-        TOPOLOGY, types.FunctionType(TRIAL), types.boolean, types.Array(types.float64, 2, "C"),
+        TOPOLOGY, types.Array(types.float64, 2, "C"),
         types.Array(types.float64, 2, "C"), TABLE, TASKS, types.int64, FOUND,
     )
 )  # fmt: skip
-def march(topology, written, is_written, w, design, table, tasks, count, found):  # type: ignore[no-untyped-def]
+def march(topology, w, design, table, tasks, count, found):  # type: ignore[no-untyped-def]
     """Go all ways that are asked for.
 
     Parameters
     ----------
     topology : Topology
-    written, is_written : see :func:`linkwork.kernels.lanes.trial.settled`
     w : (registers, LANES) workspace with constants and options in place
     design : (C, M) coefficients
     table : Table
@@ -102,7 +99,6 @@ def march(topology, written, is_written, w, design, table, tasks, count, found):
     spacing, times = np.zeros((LANES, NODES)), np.zeros(NODES)
     following, busy, turn = 0, LANES, 0
     w[: ROLES * topology.height] = 0.0
-    places = placed(topology, w)
     while True:
         t0, t1 = nodes[-turn % ROLES, size - 1], nodes[(1 - turn) % ROLES, size - 1]
         good = topology.noted[-turn % ROLES, GOOD]
@@ -135,7 +131,7 @@ def march(topology, written, is_written, w, design, table, tasks, count, found):
             _chosen(w, i, weights, times, step, known[i], spacing[i])
         if busy == 0:
             break
-        settled(topology, written, is_written, turn, w, places, standing)
+        settled(topology, turn, w, standing)
         for i in range(LANES):
             if task[i] < 0:
                 continue

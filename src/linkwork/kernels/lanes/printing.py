@@ -99,7 +99,7 @@ def _number(value: float) -> str:
 def trial_source(
     programs: Sequence[Code], height: int, kept: Set[int], constants: Mapping[int, float]
 ) -> str:
-    """A function ``trial`` over 64 lanes that runs programs one after the other.
+    """A function ``trial`` over lanes that runs programs one after the other.
 
     Parameters
     ----------
@@ -120,14 +120,13 @@ def trial_source(
     return f"""\
 import math
 
-from linkwork.kernels.lanes.compiling import compiled_for
+from linkwork.kernels.lanes.compiling import trial_at
 from linkwork.kernels.lanes.sine import sin_cos
-from linkwork.kernels.lanes.trial import TRIAL
 
 
-@compiled_for(TRIAL)
-def trial(place0, place1, place2, place3, place4, others):
-    for i in range({LANES}):
+@trial_at
+def trial(place0, place1, place2, place3, place4, others, lanes):
+    for i in range(lanes):
 {statements}
 """
 

@@ -12,23 +12,26 @@ from typing import NamedTuple
 import numpy as np
 
 from linkwork.foundation.arrays import IndexArray
-from linkwork.kernels.lanes.compiling import compiled, compiled_for, named_tuple, types
+from linkwork.kernels.lanes.compiling import call_at, compiled, named_tuple, types
 from linkwork.kernels.lanes.machine import LANES, run_part
 from linkwork.kernels.lanes.march_programs import ROLES
 from linkwork.kernels.lanes.stepping import START_STEPS, STEPS, hermite, trusted
 
 __all__ = [
+    "BLOCKS",
     "GOOD",
+    "JUDGE",
     "LIVE",
+    "PREDICT",
     "RADIUS",
     "TOPOLOGY",
-    "TRIAL",
     "Topology",
-    "by_machine",
+    "by_written",
     "copied",
     "extrapolated",
+    "judged",
     "loaded",
-    "placed",
+    "proved",
     "settled",
     "solved_slowly",
     "tangent",
@@ -38,10 +41,6 @@ __all__ = [
 PREDICT, JUDGE, BLOCKS = 0, 1, 2
 # what is noted of a trial; behind LIVE: block by block
 GOOD, RADIUS, LIVE = 0, 1, 2
-
-#: What a written-out trial is called with: the five places of positions by role, and all other
-#: registers, which it only reads.
-TRIAL = types.void(*[types.Array(types.float64, 1, "C")] * 6)
 
 
 class Topology(NamedTuple):
@@ -57,6 +56,8 @@ class Topology(NamedTuple):
     noted : (5, 2 + B) registers of good, radius, and live of each block
     height : P, registers of each place; places are the first ones of the workspace
     coefficients : (C,) registers of a design's coefficients
+    trial : address of the trial written out (prediction, one correction, proof, judgement), see
+        :func:`linkwork.kernels.lanes.printing.trial_source`; 0 where the machine does it
     """
 
     code: np.ndarray[tuple[int, int], np.dtype[np.uint32]]
@@ -67,6 +68,7 @@ class Topology(NamedTuple):
     noted: IndexArray
     height: int
     coefficients: IndexArray
+    trial: int
 
 
 TOPOLOGY = named_tuple(
@@ -79,14 +81,10 @@ TOPOLOGY = named_tuple(
         types.Array(types.int64, 2, "C"),
         types.int64,
         types.Array(types.int64, 1, "C"),
+        types.int64,
     ],
     Topology,
 )
-
-
-@compiled_for(TRIAL)
-def by_machine(trial, one, two, three, four, others):  # type: ignore[no-untyped-def]
-    """Stands for a trial that is not written out: the machine does it."""
 
 
 @compiled
@@ -98,6 +96,12 @@ def _one(topology, turn, w, number):  # type: ignore[no-untyped-def]
 @compiled
 def _blocks(topology):  # type: ignore[no-untyped-def]
     return topology.noted.shape[1] - LIVE
+
+
+@compiled
+def proved(topology):  # type: ignore[no-untyped-def]
+    """Whether its trials are proved."""
+    return len(topology.spans) > BLOCKS + 3 * _blocks(topology)
 
 
 @compiled
@@ -119,39 +123,42 @@ def _iterate(topology, turn, w, program, live, most, standing):  # type: ignore[
 
 
 @compiled
-def _judged(topology, turn, w):  # type: ignore[no-untyped-def]
+def judged(topology, turn, w):  # type: ignore[no-untyped-def]
+    """Proofs, if there are any, and the judgement."""
     for program in range(BLOCKS + 3 * _blocks(topology), len(topology.spans)):
         _one(topology, turn, w, program)
     _one(topology, turn, w, JUDGE)
 
 
 @compiled
-def settled(topology, written, is_written, turn, w, places, standing):  # type: ignore[no-untyped-def]
+def by_written(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
+    """The trial that is written out, in the first lanes."""
+    place, first = 8 * LANES * topology.height, w.ctypes.data
+    call_at(
+        topology.trial,
+        first + -turn % ROLES * place,
+        first + (1 - turn) % ROLES * place,
+        first + (2 - turn) % ROLES * place,
+        first + (3 - turn) % ROLES * place,
+        first + (4 - turn) % ROLES * place,
+        first + ROLES * place,
+        lanes,
+    )
+
+
+@compiled
+def settled(topology, turn, w, standing):  # type: ignore[no-untyped-def]
     """From the prediction to the judgement.
 
     Parameters
     ----------
-    written : TRIAL
-        The programs of a trial with one correction, written out as one function.
-    is_written : bool
-        Whether there is such a function.
-    places : see :func:`placed`
     standing : (LANES,)
         1.0 in lanes that count, 0.0 in others.
     """
     blocks, live = _blocks(topology), topology.noted[-turn % ROLES, LIVE:]
+    is_written = topology.trial != 0
     if is_written:
-        a, b, c, d, e, others = places
-        if turn == 0:
-            written(a, b, c, d, e, others)
-        elif turn == 1:
-            written(e, a, b, c, d, others)
-        elif turn == 2:
-            written(d, e, a, b, c, others)
-        elif turn == 3:
-            written(c, d, e, a, b, others)
-        else:
-            written(b, c, d, e, a, others)
+        by_written(topology, turn, w, LANES)
         again = False
         for k in range(blocks):
             again |= _any(w, live[k], standing)
@@ -166,22 +173,7 @@ def settled(topology, written, is_written, turn, w, places, standing):  # type: 
             for later in range(k + 1, blocks):
                 w[live[later], :] = 1.0
         _iterate(topology, turn, w, BLOCKS + 2 * blocks + k, live[k], STEPS - 1, standing)
-    _judged(topology, turn, w)
-
-
-@compiled
-def placed(topology, w):  # type: ignore[no-untyped-def]
-    """The workspace as a written trial sees it in the first turn."""
-    size = topology.height * LANES
-    flat = w.reshape(-1)
-    return (
-        flat[:size],
-        flat[size : 2 * size],
-        flat[2 * size : 3 * size],
-        flat[3 * size : 4 * size],
-        flat[4 * size : 5 * size],
-        flat[5 * size :],
-    )
+    judged(topology, turn, w)
 
 
 @compiled
@@ -197,11 +189,11 @@ def solved_slowly(topology, w):  # type: ignore[no-untyped-def]
         live = topology.noted[0, LIVE + b]
         w[live, :] = 1.0
         _iterate(topology, 0, w, BLOCKS + blocks + b, live, START_STEPS, everywhere)
-    if len(topology.spans) > BLOCKS + 3 * blocks:
+    if proved(topology):
         for _ in range(2):
             for lane in range(LANES):
                 copied(w, lane, nodes[1], nodes[0])
-            _judged(topology, 0, w)
+            judged(topology, 0, w)
 
 
 @compiled

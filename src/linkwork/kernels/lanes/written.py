@@ -7,7 +7,6 @@ import importlib.util
 import os
 import sys
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +22,7 @@ FOLDER = "LINKWORK_CACHE"
 _WITH = ("compiling", "device_compiling", "device_march", "sine", "stepping", "tasks", "trial")
 
 
-def written(source: str, function: str) -> Callable[..., Any]:
+def written(source: str, function: str) -> Any:
     """A function of a module of which the source is given; compiled at most once.
 
     Raises
@@ -38,8 +37,7 @@ def written(source: str, function: str) -> Callable[..., Any]:
         if not path.exists() or path.read_text(encoding="utf-8") != source:
             _write(path, source)
         known = _loaded(name, path)
-    found: Callable[..., Any] = getattr(known, function)
-    return found
+    return getattr(known, function)
 
 
 def is_written(source: str) -> bool:

@@ -1,0 +1,75 @@
+"""Parts of a study computed by a Dask cluster: the owner of dask.distributed.
+
+Workers need Linkwork and nothing else: what they compute travels with the task, what they have
+computed comes back, and only the process that was started writes to the store.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+from uuid import uuid4
+
+from linkwork.batch.study.crew import Task, Values, pumped
+from linkwork.batch.study.job import Job, Part, computed
+from linkwork.foundation.errors import InputError, MissingPackageError
+
+__all__ = ["cluster_crew"]
+
+_PATIENCE = 10  # seconds that a scheduler has to answer, and to have a worker
+_AHEAD = 2  # parts for each thread of the cluster
+
+
+def cluster_crew(job: Job, tasks: Iterable[Task], scheduler: str) -> Iterator[tuple[int, Part]]:
+    """Parts in the order in which they are ready; those of workers that die are computed again.
+
+    Raises
+    ------
+    MissingPackageError
+        Without dask.distributed.
+    InputError
+        If no scheduler answers, it has no workers, or they refuse.
+    """
+    try:
+        import distributed
+    except ImportError:
+        raise MissingPackageError(
+            'studies on a cluster need dask.distributed: pip install "linkwork[cluster]"'
+        ) from None
+    try:
+        client = distributed.Client(scheduler, timeout=_PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"no Dask scheduler answers at {scheduler} ({error}): start one with\n"
+            "    dask scheduler"
+        ) from None
+    with client:
+        _wait_for_workers(client, scheduler)
+        threads = sum(client.nthreads().values())
+        run = uuid4().hex
+
+        def submit(values: Values) -> Any:
+            return client.submit(computed, job, values, key=f"linkwork-{run}-{uuid4().hex}")
+
+        try:
+            yield from pumped(tasks, submit, _AHEAD * threads)
+        except ModuleNotFoundError as error:
+            raise InputError(
+                f"the workers of {scheduler} lack {error.name}: install Linkwork {job.version} "
+                "where they run"
+            ) from None
+        except distributed.KilledWorker as error:
+            raise InputError(
+                "workers ended again and again over the same designs, perhaps for want of "
+                f"memory: make chunk smaller ({error})"
+            ) from None
+
+
+def _wait_for_workers(client: Any, scheduler: str) -> None:
+    try:
+        client.wait_for_workers(1, timeout=_PATIENCE)
+    except TimeoutError:
+        raise InputError(
+            f"the scheduler at {scheduler} has no workers: start some with\n"
+            f"    dask worker {scheduler} --nthreads 1"
+        ) from None

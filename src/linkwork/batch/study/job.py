@@ -1,0 +1,145 @@
+"""What one worker does: the motions of some designs, and what is kept of them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.metadata import PackageNotFoundError, version
+
+import numpy as np
+
+from linkwork.batch.family import Family, family_of
+from linkwork.batch.study.measures import Condition, Measured, Reduced
+from linkwork.foundation.arrays import AnyArray, Array
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.status import Status
+from linkwork.mechanism.description import Description
+from linkwork.motion import Model, as_described
+
+__all__ = ["Job", "Part", "computed", "linkwork_version", "passes_name"]
+
+_MOST_PROBLEMS = 20  # distinct reasons that are kept of one part
+_FURTHER = "further reasons"
+
+
+def linkwork_version() -> str:
+    """The version of Linkwork that runs here."""
+    try:
+        return version("linkwork")
+    except PackageNotFoundError:  # a tree on the path that was never installed
+        return "unknown"
+
+
+def passes_name(condition: str) -> str:
+    """The name of the array that says which designs pass a filter."""
+    return f"passes.{condition}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Job:
+    """What is computed of every design; goes to workers.
+
+    Parameters
+    ----------
+    description : Description
+        The mechanism, with the study's range of its input.
+    keep : tuple of str
+        Quantities at every row.
+    reductions : Mapping[str, Reduced]
+        One number per design, by the name of its array.
+    filters : Mapping[str, Condition]
+        What a design has to pass, by name.
+    certify : bool
+    version : str
+        Of Linkwork; a worker with another one refuses.
+    """
+
+    description: Description
+    keep: tuple[str, ...]
+    reductions: Mapping[str, Reduced]
+    filters: Mapping[str, Condition]
+    certify: bool
+    version: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    """What was computed of D consecutive designs.
+
+    Parameters
+    ----------
+    arrays : Mapping[str, (D,) or (D, R)]
+        By the names of the store's arrays.
+    rows : Mapping[str, int]
+        How many rows ended in which status, of designs that were built.
+    problems : Mapping[str, int]
+        Why so many designs could not be built.
+    """
+
+    arrays: Mapping[str, AnyArray]
+    rows: Mapping[str, int]
+    problems: Mapping[str, int]
+
+
+def computed(job: Job, values: Mapping[str, Array | float]) -> Part:
+    """The part of some designs.
+
+    Parameters
+    ----------
+    values : Mapping[str, (D,) or number]
+        What varies, everyday units.
+
+    Raises
+    ------
+    InputError
+        If this is another version of Linkwork than the one that asks.
+    """
+    if job.version != linkwork_version():
+        raise InputError(
+            f"the study was started with Linkwork {job.version}, a worker has "
+            f"{linkwork_version()}: install the same version everywhere"
+        )
+    family = family_of(_model(job.description), values)
+    built = family.designs.problem == 0
+    motion = family.sweep(certify=job.certify, threads=1)
+    measured = Measured(motion)
+    passes = {name: built & condition.holds(measured) for name, condition in job.filters.items()}
+    passed = np.logical_and.reduce([built, *passes.values()])
+    arrays: dict[str, AnyArray] = {
+        "built": built,
+        "found": motion.found.sum(axis=1, dtype=np.int32),
+        "certified": motion.certified.sum(axis=1, dtype=np.int32),
+        "passed": passed,
+    }
+    arrays |= {passes_name(name): values for name, values in passes.items()}
+    arrays |= {name: reduced.values(measured) for name, reduced in job.reductions.items()}
+    for name in job.keep:
+        arrays[name] = np.where(passed[:, None], measured[name], np.nan)
+    if job.keep:
+        arrays["status"] = motion.status
+    return Part(arrays=arrays, rows=_rows(motion.status[built]), problems=_problems(family))
+
+
+@lru_cache(maxsize=2)
+def _model(description: Description) -> Model:
+    return as_described(description)
+
+
+def _rows(status: AnyArray) -> dict[str, int]:
+    """Rows by status, in the order of codes."""
+    codes, numbers = np.unique(status, return_counts=True)
+    pairs = zip(codes.tolist(), numbers.tolist(), strict=True)
+    return {Status.of_code(code).name: number for code, number in pairs}
+
+
+def _problems(family: Family) -> dict[str, int]:
+    """Designs that cannot be built by reason, the most frequent first."""
+    designs = family.designs
+    numbers = designs.problem[designs.problem > 0]
+    counts = Counter(designs.problems[int(number)] for number in numbers)
+    ordered = sorted(counts.items(), key=lambda pair: (-pair[1], pair[0]))
+    kept = dict(ordered[:_MOST_PROBLEMS])
+    rest = sum(count for _, count in ordered[_MOST_PROBLEMS:])
+    return {**kept, **({_FURTHER: rest} if rest else {})}

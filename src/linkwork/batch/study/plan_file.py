@@ -1,0 +1,305 @@
+"""Reading study plans: TOML in, a study out, or every problem with its line."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TypeVar
+
+from linkwork.batch.family import family_of
+from linkwork.batch.family_motion import FamilyMotion
+from linkwork.batch.quantities import quantity_named
+from linkwork.batch.sampling import Plan
+from linkwork.batch.study.choosing import chosen, values_between
+from linkwork.batch.study.job import Job, linkwork_version, passes_name
+from linkwork.batch.study.measures import Comparison, Condition, Reduced, Word, read_condition
+from linkwork.batch.study.plan_keys import PLAN
+from linkwork.batch.study.study import DESIGN, Study, usual_chunk
+from linkwork.foundation.errors import (
+    InputError,
+    MechanismError,
+    UnknownNameError,
+    choices,
+    key_text,
+)
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.names import spelled
+from linkwork.mechanism.description import Description, Problems
+from linkwork.motion import Model, as_described
+from linkwork.textfile.library import example_text, examples
+from linkwork.textfile.lines import Lines
+from linkwork.textfile.reader import ReadFile, check_format, located_error, read_text
+from linkwork.textfile.structure import Structure
+from linkwork.textfile.toml_text import bytes_of, data_of, text_of
+
+__all__ = ["read_plan", "read_plan_bytes", "read_plan_text"]
+
+_LONGEST_NAME = 80
+_TAKEN = ("built", "found", "certified", "passed", "status", "ledger", DESIGN)
+
+Key = tuple[str | int, ...]
+T = TypeVar("T")
+
+
+def read_plan(path: Path | str) -> Study:
+    """Read the plan of a study.
+
+    Raises
+    ------
+    MechanismFileError
+        With every problem found: file, line, key and what to do; also for the mechanism's file.
+    """
+    name = str(path)
+    text = text_of(bytes_of(Path(path), name), name)
+    return read_plan_text(text, name, Path(path).parent)
+
+
+def read_plan_bytes(data: bytes, name: str = "standard input") -> Study:
+    """Read the plan in the bytes of a file; raises like :func:`read_plan`."""
+    return read_plan_text(text_of(data, name), name)
+
+
+def read_plan_text(text: str, name: str = "the plan", folder: Path | str = ".") -> Study:
+    """Read the plan in a text; files that it names are looked for in ``folder``.
+
+    Raises like :func:`read_plan`.
+    """
+    data = data_of(text, name)
+    lines = Lines.of(text)
+    check_format(data, lines, name)
+    structure = Structure(data, PLAN)
+    if structure.problems:
+        raise located_error(structure.problems, lines, name)
+    reader = _Reader(structure.content, text, Path(folder))
+    study = reader.study(Path(name).stem)
+    if study is None:
+        raise located_error(reader.problems, lines, name)
+    return study
+
+
+@dataclass
+class _Reader:
+    """Finds what the content of a plan means; ``problems`` where it means nothing."""
+
+    content: Mapping[str, Any]
+    text: str
+    folder: Path
+    problems: Problems = field(default_factory=Problems)
+
+    def study(self, stem: str) -> Study | None:
+        """The study; ``None`` with problems noted."""
+        source = self._mechanism_text()
+        if source is None:
+            return None
+        described = self._described(*source)
+        if self.problems:
+            return None
+        description = self._with_range(described)
+        found = chosen(self.content, self.folder, self.problems)
+        conditions = self._filters()
+        reductions = self._texts("reductions", Reduced.read)
+        if description is None or found is None:
+            return None
+        plan, constants = found
+        model = as_described(description)
+        motion = self._nothing(model, plan, constants)
+        if motion is None:
+            return None
+        self._check_names(model, plan, motion, reductions, conditions)
+        if self.problems:
+            return None
+        job = Job(
+            description=description,
+            keep=tuple(self.content.get("keep", ())),
+            reductions=FrozenDict(reductions),
+            filters=FrozenDict(conditions),
+            certify=self.content.get("certify", True),
+            version=linkwork_version(),
+        )
+        columns = len(model.equations.unknowns) + 4 + len(job.keep)
+        size = self.content.get("chunk") or usual_chunk(
+            plan.count, len(model.everyday_rows), columns
+        )
+        return Study(
+            name=self.content.get("name", stem),
+            text=self.text,
+            mechanism_text=source[0],
+            model=model,
+            plan=plan,
+            constants=constants,
+            job=job,
+            units=_units(motion, {*job.keep, *(r.of for r in reductions.values())}),
+            chunk_size=min(size, plan.count),
+            identity=self._identity(source[0], plan, job, model, min(size, plan.count)),
+        )
+
+    def _mechanism_text(self) -> tuple[str, str] | None:
+        """The text of the mechanism's file, and its name."""
+        name = self.content["mechanism"]
+        if name.endswith(".toml") or "/" in name or "\\" in name:
+            path = self.folder / name
+            return text_of(bytes_of(path, str(path)), str(path)), str(path)
+        try:
+            return example_text(name), f"{name}.toml"
+        except UnknownNameError:
+            known = choices("library", examples(), name)
+            message = f'there is no "{name}" {known}; a file of your own ends in .toml'
+            self.problems.add(("mechanism",), message)
+            return None
+
+    def _described(self, text: str, name: str) -> Description:
+        """What the mechanism's file describes; what is wrong with it is said with its own lines."""
+        read: ReadFile = read_text(text, name)
+        try:
+            as_described(read.description)
+        except MechanismError as error:
+            raise read.located(error) from None
+        if not read.description.inputs:
+            message = "has no input: a study goes through a table of input values"
+            self.problems.add(("mechanism",), message)
+        return read.description
+
+    def _with_range(self, description: Description) -> Description | None:
+        if "input" not in self.content:
+            return description
+        names = {"from": "start", "to": "stop", "step": "step"}
+        changes = {names[key]: entry for key, entry in self.content["input"].items()}
+        try:
+            return description.with_range(**changes)
+        except MechanismError as error:
+            self.problems.extend(error.problems)
+        except InputError as error:
+            self.problems.add(("input",), str(error))
+        return None
+
+    def _nothing(
+        self, model: Model, plan: Plan, constants: Mapping[str, float]
+    ) -> FamilyMotion | None:
+        """The motion of no designs: it knows all names, and costs nothing."""
+        known = True
+        for name in (*plan, *constants):
+            try:
+                quantity_named(model.description, name)
+            except UnknownNameError as error:
+                key = ("dimensions", name) if name in self.content.get("dimensions", {}) else None
+                self.problems.add(key or ("table",), str(error))
+                known = False
+        if not known or self.problems:
+            return None
+        try:
+            family = family_of(model, {**values_between(plan, 0, 1), **constants})
+        except InputError as error:
+            self.problems.add(("dimensions",), str(error))
+            return None
+        return family.take(slice(0)).sweep(certify=False, threads=1)
+
+    def _texts(self, table: str, read: Callable[[str], T]) -> dict[str, T]:
+        """The entries of a table of texts."""
+        found: dict[str, T] = {}
+        for name, text in self.content.get(table, {}).items():
+            try:
+                found[name] = read(text)
+            except InputError as error:
+                self.problems.add((table, name), str(error))
+        return found
+
+    def _filters(self) -> dict[str, Condition]:
+        found = self._texts("filters", read_condition)
+        for name, condition in found.items():
+            if condition == Word("certified") and not self.content.get("certify", True):
+                message = "no design passes it with certify = false: leave one of them out"
+                self.problems.add(("filters", name), message)
+        return found
+
+    def _check_names(
+        self,
+        model: Model,
+        plan: Plan,
+        motion: FamilyMotion,
+        reductions: Mapping[str, Reduced],
+        conditions: Mapping[str, Condition],
+    ) -> None:
+        """Quantities exist, and every array of the store has a name of its own."""
+        keep = self.content.get("keep", ())
+        inputs = [variable.name for variable in model.equations.inputs]
+        asked: list[tuple[Key, str]] = [(("keep", k), name) for k, name in enumerate(keep)]
+        asked += [(("reductions", name), reduced.of) for name, reduced in reductions.items()]
+        asked += [
+            (("filters", name), condition.quantity)
+            for name, condition in conditions.items()
+            if isinstance(condition, Comparison)
+        ]
+        known = [self._check_quantity(key, name, inputs, motion) for key, name in asked]
+        taken = dict.fromkeys(_TAKEN, "an array of every study")
+        taken |= dict.fromkeys(inputs, "an input, which every row has")
+        taken |= dict.fromkeys(plan, "what varies")
+        for k, name in enumerate(keep):
+            if known[k]:
+                self._check_free(("keep", k), name, name, taken)
+        for name in reductions:
+            self._check_free(("reductions", name), name, name, taken)
+        for name in conditions:
+            self._check_free(("filters", name), name, passes_name(name), taken)
+
+    def _check_quantity(self, key: Key, name: str, inputs: list[str], motion: FamilyMotion) -> bool:
+        """Whether there is such a quantity, and designs can differ in it."""
+        if spelled(name, inputs) in inputs:
+            self.problems.add(key, f'"{name}" is an input, the same for every design: leave it out')
+            return False
+        try:
+            motion[name]
+        except UnknownNameError as error:
+            self.problems.add(key, str(error))
+            return False
+        return True
+
+    def _check_free(self, key: Key, name: str, array: str, taken: dict[str, str]) -> None:
+        """A name that can be a folder's, and is no other array's."""
+        if array in taken:
+            self.problems.add(key, f'"{name}" is already {taken[array]}: leave it out or rename it')
+        elif not name.strip() or len(name) > _LONGEST_NAME or any(sign in name for sign in "/\\:*"):
+            rule = f"up to {_LONGEST_NAME} letters, without / \\ : *"
+            self.problems.add(key, f'"{name}" cannot name an array: {rule}')
+        elif name.startswith((".", "__")):
+            self.problems.add(key, f'"{name}" cannot name an array: begin with a letter')
+        taken.setdefault(array, f"the name of {key_text(key)}")
+
+    def _identity(
+        self, mechanism: str, plan: Plan, job: Job, model: Model, chunk: int
+    ) -> dict[str, Any]:
+        """Everything on which results depend, as JSON would hold it."""
+        content = self.content
+        first, last = model.everyday_rows[[0, -1]].tolist()
+        return {
+            "linkwork": job.version,
+            "mechanism": mechanism.replace("\r\n", "\n"),
+            "sampling": content["sampling"],
+            "count": plan.count,
+            "seed": content.get("seed"),
+            "dimensions": [[name, entry] for name, entry in content.get("dimensions", {}).items()],
+            "table": _digest(plan) if content["sampling"] == "table" else None,
+            "input": {"first": first, "last": last, "rows": len(model.everyday_rows)},
+            "keep": list(job.keep),
+            "reductions": {name: str(reduced) for name, reduced in job.reductions.items()},
+            "filters": {name: str(condition) for name, condition in job.filters.items()},
+            "certify": job.certify,
+            "chunk": chunk,
+        }
+
+
+def _digest(plan: Plan) -> str:
+    """A number that tells one table from another."""
+    total = hashlib.sha256("\0".join(plan).encode())
+    for values in plan.values():
+        total.update(values.tobytes())
+    return total.hexdigest()
+
+
+def _units(motion: FamilyMotion, names: set[str]) -> dict[str, str]:
+    """The everyday units of quantities."""
+    if not names:
+        return {}
+    arrays = motion.to_xarray(*names)
+    return {name: arrays[name].attrs.get("units", "") for name in names}

@@ -1,0 +1,200 @@
+"""A study: which designs of which mechanism, what is kept of them, and how they are stored."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from linkwork.batch.quantities import quantity_named
+from linkwork.batch.sampling import Plan
+from linkwork.batch.study.choosing import values_between
+from linkwork.batch.study.job import Job, passes_name
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.status import Status
+from linkwork.motion import Model
+
+__all__ = ["DESIGN", "Study", "Variable", "usual_chunk"]
+
+#: The axis of designs.
+DESIGN = "design"
+
+_LARGEST_CHUNK = 16_384
+_SMALLEST_CHUNK = 2048
+_CHUNK_BYTES = 64 << 20  # of the arrays of one chunk while it is computed
+_CHUNKS_WANTED = 16  # of a small study, so that several workers share it
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variable:
+    """An array of the store: over designs, over designs and inputs, or over inputs alone.
+
+    ``fill`` stands where nothing has been computed; ``values`` are known from the beginning.
+    """
+
+    name: str
+    axes: tuple[str, ...]
+    dtype: str
+    fill: Any
+    attributes: Mapping[str, Any]
+    values: Array | None = None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Study:
+    """What a plan asks for; made by :func:`~linkwork.batch.study.read_plan`.
+
+    Parameters
+    ----------
+    name : str
+    text : str
+        The plan itself.
+    mechanism_text : str
+        The mechanism's file itself.
+    model : Model
+        The mechanism with the study's range of its input.
+    plan : Plan
+        What varies.
+    constants : Mapping[str, float]
+        What is the same for all designs and not as in the mechanism.
+    job : Job
+        What is computed of every design.
+    units : Mapping[str, str]
+        Of the quantities that are kept or reduced.
+    chunk_size : int
+        Designs that are computed and stored together.
+    identity : Mapping[str, object]
+        Everything on which results depend, in the words of the plan, as JSON would hold it.
+    """
+
+    name: str
+    text: str
+    mechanism_text: str
+    model: Model
+    plan: Plan
+    constants: Mapping[str, float]
+    job: Job
+    units: Mapping[str, str]
+    chunk_size: int
+    identity: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        return (
+            f'<Study "{self.name}" of "{self.job.description.name}": {self.plan.count} designs × '
+            f"{len(self.model.everyday_rows)} inputs in {self.chunks} chunks>"
+        )
+
+    @property
+    def chunks(self) -> int:
+        """How many chunks there are; the last one may be smaller."""
+        return -(-self.plan.count // self.chunk_size)
+
+    def designs_of(self, k: int) -> range:
+        """The designs of a chunk."""
+        start = k * self.chunk_size
+        return range(start, min(start + self.chunk_size, self.plan.count))
+
+    def varied(self, k: int) -> dict[str, Array]:
+        """What varies in a chunk, everyday units, (designs,) each."""
+        designs = self.designs_of(k)
+        return values_between(self.plan, designs.start, designs.stop)
+
+    def values(self, k: int) -> Mapping[str, Array | float]:
+        """What is not as in the mechanism in a chunk: what varies, and the constants."""
+        return {**self.varied(k), **self.constants}
+
+    @cached_property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs; the first one is the axis of rows."""
+        return tuple(variable.name for variable in self.model.equations.inputs)
+
+    @cached_property
+    def variables(self) -> tuple[Variable, ...]:
+        """Every array of the store."""
+        of_input = [
+            self._variable(
+                name, (self.inputs[0],), "float64", np.nan, self.model.input_units[name], values
+            )
+            for name, values in zip(self.inputs, self.model.everyday_rows.T, strict=True)
+        ]
+        varied = [
+            self._variable(name, (DESIGN,), "float64", np.nan, self._unit_of_number(name))
+            for name in self.plan
+        ]
+        return (*of_input, *varied, *self._of_design(), *self._of_rows())
+
+    def _of_design(self) -> list[Variable]:
+        """One number for each design."""
+        one = (DESIGN,)
+        found = [
+            self._variable("built", one, "bool", False, about="whether the design can be built"),
+            self._variable("found", one, "int32", -1, about="rows with a position"),
+            self._variable("certified", one, "int32", -1, about="rows that are proved"),
+            self._variable("passed", one, "bool", False, about="built, and passed every filter"),
+        ]
+        found += [
+            self._variable(passes_name(name), one, "bool", False, about=str(condition))
+            for name, condition in self.job.filters.items()
+        ]
+        return found + [
+            self._variable(name, one, "float64", np.nan, self.units[reduced.of], about=str(reduced))
+            for name, reduced in self.job.reductions.items()
+        ]
+
+    def _of_rows(self) -> list[Variable]:
+        """One number for each design and input."""
+        if not self.job.keep:
+            return []
+        axes = (DESIGN, self.inputs[0])
+        note = "missing where there is no position or the design did not pass"
+        found = [
+            self._variable(name, axes, "float64", np.nan, self.units[name], about=note)
+            for name in self.job.keep
+        ]
+        flags = {
+            "flag_values": [status.code for status in Status],
+            "flag_meanings": " ".join(status.name for status in Status),
+        }
+        return [
+            *found,
+            Variable(name="status", axes=axes, dtype="int8", fill=-1, attributes=flags),
+        ]
+
+    def _variable(
+        self,
+        name: str,
+        axes: tuple[str, ...],
+        dtype: str,
+        fill: Any,
+        unit: str = "",
+        values: Array | None = None,
+        about: str = "",
+    ) -> Variable:
+        attributes = ({"units": unit} if unit else {}) | ({"description": about} if about else {})
+        return Variable(
+            name=name, axes=axes, dtype=dtype, fill=fill, attributes=attributes, values=values
+        )
+
+    def _unit_of_number(self, name: str) -> str:
+        table = quantity_named(self.job.description, name).table
+        if table in ("lengths", "points", "sliders"):
+            return self.job.description.length
+        return self.job.description.angle.value if table == "angles" else ""
+
+
+def usual_chunk(count: int, rows: int, columns: int) -> int:
+    """How many designs are computed together where a plan does not say.
+
+    Parameters
+    ----------
+    count : int
+        Of all designs.
+    rows, columns : int
+        Numbers that a design has in memory: so many quantities at so many rows.
+    """
+    fitting = max(_CHUNK_BYTES // (8 * rows * columns), 1)
+    shared = max(-(-count // _CHUNKS_WANTED), _SMALLEST_CHUNK)
+    return 1 << (min(fitting, shared, _LARGEST_CHUNK).bit_length() - 1)

@@ -1,0 +1,104 @@
+"""Arrays as the files of a Zarr store: the owner of zarr.
+
+Files are made in memory and written by :mod:`~linkwork.batch.study.store`, so that each appears
+whole or not at all.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from linkwork.batch.study.study import DESIGN, Variable
+from linkwork.foundation.arrays import AnyArray
+from linkwork.foundation.errors import MissingPackageError
+
+__all__ = ["LEDGER", "ZarrFiles", "check_packages", "open_arrays"]
+
+#: The group beside the arrays in which finished chunks are listed.
+LEDGER = "ledger"
+
+
+def check_packages() -> None:
+    """Whether what a store needs is installed.
+
+    Raises
+    ------
+    MissingPackageError
+        With the command that installs it.
+    """
+    try:
+        import xarray  # noqa: F401 - the units of quantities are asked of it
+        import zarr  # noqa: F401
+    except ImportError:
+        raise MissingPackageError(
+            'studies are stored by zarr and xarray: pip install "linkwork[study]"'
+        ) from None
+
+
+class ZarrFiles:
+    """The files of a store, made in memory.
+
+    Parameters
+    ----------
+    variables : iterable of Variable
+    sizes : Mapping[str, int]
+        Length of every axis.
+    chunk : int
+        Designs in a file.
+    attributes : Mapping
+        Of the whole store.
+    """
+
+    def __init__(
+        self,
+        variables: Iterable[Variable],
+        sizes: Mapping[str, int],
+        chunk: int,
+        attributes: Mapping[str, Any],
+    ) -> None:
+        import zarr
+        from zarr.codecs import ZstdCodec
+        from zarr.storage import MemoryStore
+
+        self._files: dict[str, Any] = {}
+        store = MemoryStore(self._files)
+        group = zarr.open_group(store, mode="w", zarr_format=3, attributes=dict(attributes))
+        group.create_group(LEDGER)
+        self._arrays: dict[str, Any] = {}
+        for variable in variables:
+            array = group.create_array(
+                variable.name,
+                shape=tuple(sizes[axis] for axis in variable.axes),
+                chunks=tuple(chunk if axis == DESIGN else sizes[axis] for axis in variable.axes),
+                dtype=variable.dtype,
+                fill_value=variable.fill,
+                dimension_names=variable.axes,
+                attributes=dict(variable.attributes),
+                compressors=ZstdCodec(level=3),
+            )
+            if variable.values is not None:
+                array[:] = variable.values
+            self._arrays[variable.name] = array
+        with warnings.catch_warnings():
+            # xarray asks for it; readers that do not know it read each array's own file
+            warnings.filterwarnings("ignore", message="Consolidated metadata")
+            zarr.consolidate_metadata(store)
+        #: Path and content of every file that is there before anything is computed.
+        self.first = {path: buffer.to_bytes() for path, buffer in self._files.items()}
+
+    def encoded(self, designs: range, arrays: Mapping[str, AnyArray]) -> dict[str, bytes]:
+        """Path and content of the files that hold a chunk's arrays."""
+        for name, values in arrays.items():
+            self._arrays[name][designs.start : designs.stop] = values
+        made = [path for path in self._files if path not in self.first]
+        return {path: self._files.pop(path).to_bytes() for path in made}
+
+
+def open_arrays(path: Path) -> Any:
+    """The arrays of a store for reading, as a zarr group."""
+    import zarr
+
+    return zarr.open_group(str(path), mode="r")

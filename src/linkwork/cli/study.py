@@ -1,0 +1,129 @@
+"""``linkwork study``"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from time import monotonic
+
+import click
+
+from linkwork.batch.study import Progress, Study, Summary, read_plan, run_study, summary_of
+from linkwork.batch.study.plan_file import read_plan_bytes
+from linkwork.cli.options import debug_option, json_option
+from linkwork.cli.study_page import progress_line, summary_lines
+from linkwork.cli.terminal import print_json, print_lines, wrapped
+from linkwork.foundation.errors import InputError
+
+__all__ = ["study", "study_progress"]
+
+_PATIENCE = 1.0  # seconds before the line of progress appears
+
+
+@click.command
+@click.argument("plan", metavar="PLAN", required=False)
+@click.option("-o", "--output", metavar="STORE", help="Folder of the results: a Zarr store.")
+@click.option(
+    "--workers", metavar="N", type=int, help="Processes on this machine; all cores if left out."
+)
+@click.option("--scheduler", metavar="ADDRESS", help="Let a Dask cluster compute: tcp://host:8786.")
+@click.option("--fresh", is_flag=True, help="Take away the study in STORE and begin again.")
+@click.option("--summary", metavar="STORE", help="Only print what a store holds.")
+@click.option("--quiet", is_flag=True, help="No line of progress.")
+@json_option
+@debug_option
+def study(
+    plan: str | None,
+    output: str | None,
+    workers: int | None,
+    scheduler: str | None,
+    fresh: bool,
+    summary: str | None,
+    quiet: bool,
+    as_json: bool,
+) -> None:
+    """Compute very many designs of a mechanism by a plan.
+
+    Designs are stored in chunks as they are computed. A study that was
+    interrupted, or killed, goes on when the same command is given again.
+
+    \b
+      linkwork study plan.toml -o out.zarr
+      linkwork study plan.toml -o out.zarr --scheduler tcp://host:8786
+      linkwork study --summary out.zarr
+    """
+    if summary is not None:
+        if plan is not None or output is not None:
+            raise InputError("--summary reads a store: leave out the plan and -o")
+        _print(summary_of(summary), summary, as_json)
+        return
+    if plan is None or output is None:
+        raise InputError(
+            "a study needs a plan and a store:\n    linkwork study plan.toml -o out.zarr"
+        )
+    asked = _read(plan)
+    with study_progress(quiet) as tell:
+        try:
+            found = run_study(
+                asked,
+                output,
+                workers=workers,
+                scheduler=scheduler,
+                fresh=fresh,
+                progress=tell,
+            )
+        except KeyboardInterrupt:
+            print_lines(["", *_how_to_go_on(output)], err=True)
+            raise
+    _print(found, output, as_json)
+
+
+def _read(plan: str) -> Study:
+    if plan != "-":
+        return read_plan(plan)
+    if sys.stdin is None:
+        raise InputError("there is no standard input to read a plan from")
+    return read_plan_bytes(sys.stdin.buffer.read())
+
+
+def _print(found: Summary, store: str, as_json: bool) -> None:
+    if as_json:
+        print_json(found.to_dict())
+    else:
+        print_lines(summary_lines(found, store))
+
+
+def _how_to_go_on(store: str) -> list[str]:
+    """What is stored of an interrupted study."""
+    if not Path(store).exists():
+        return []
+    found = summary_of(store)
+    return wrapped(
+        f"{found.computed} of {found.designs} designs are stored in {store}. "
+        "The same command goes on from there."
+    )
+
+
+@contextmanager
+def study_progress(quiet: bool) -> Iterator[Callable[[Progress], None] | None]:
+    """One line that is written over and over, on the error stream of a terminal only."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    began = monotonic()
+    width = 0
+
+    def tell(progress: Progress) -> None:
+        nonlocal width
+        if monotonic() - began > _PATIENCE:
+            line = progress_line(progress)
+            click.echo("\r" + line.ljust(width), nl=False, err=True)
+            width = len(line)
+
+    try:
+        yield tell
+    finally:
+        if width:
+            click.echo("\r" + " " * width + "\r", nl=False, err=True)

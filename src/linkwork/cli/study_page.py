@@ -1,0 +1,113 @@
+"""A study as a page of text: how many designs, which passed, ranges and histograms."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from linkwork.batch.study import OutputSummary, Progress, Summary
+from linkwork.cli.terminal import bad, fields, sentence, title_lines
+from linkwork.cli.text_table import WIDTH, Column, lengths, significant, table_lines
+
+__all__ = ["progress_line", "summary_lines"]
+
+_DIGITS = 6
+_MOST_PROBLEMS = 5
+_SIGN = "#"
+_GAP = 2  # between columns
+
+
+def progress_line(progress: Progress) -> str:
+    """How far a run is, its rate and the time that is left."""
+    share = math.floor(100 * progress.done / progress.total)
+    line = f"{share:3d} %  {progress.done:,} of {progress.total:,} designs"
+    if progress.left is None:
+        return line
+    return f"{line}  {progress.rate:,.0f}/s  {_duration(progress.left)} left"
+
+
+def _duration(seconds: float) -> str:
+    minutes, rest = divmod(math.ceil(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
+
+
+def summary_lines(found: Summary, store: str) -> list[str]:
+    """The page of a study."""
+    head = f"{found.mechanism}: {found.designs:,} designs × {found.inputs:,} inputs in {store}"
+    lines = [*title_lines(found.name), *sentence(str, head)]
+    lines += fields(_counts(found), dict.fromkeys(("not computed", "not built"), bad))
+    lines += ["", *_rows(found)]
+    outputs = [output for output in found.outputs if output.count]
+    if outputs:
+        lines += ["", *_ranges(outputs)]
+    for output in outputs:
+        lines += ["", *_histogram(output)]
+    return lines
+
+
+def _counts(found: Summary) -> Iterator[tuple[str, str]]:
+    """How many designs were computed, built, and passed which filter."""
+    missing = found.designs - found.computed
+    if missing:
+        yield "not computed", f"{missing:,}: the study is not finished"
+    yield "computed", f"{found.computed:,}"
+    unbuilt = found.computed - found.built
+    if unbuilt:
+        yield "not built", f"{unbuilt:,}"
+    for problem, count in list(found.problems.items())[:_MOST_PROBLEMS]:
+        yield "", f"{count:,}: {problem}"
+    for name, (condition, count) in found.filters.items():
+        yield name, f"{_of(count, found.computed)}  {condition}"
+    yield "passed", _of(found.passed, found.computed)
+
+
+def _of(count: int, total: int) -> str:
+    return f"{count:,} ({100 * count / total:.4g} %)" if total else f"{count:,}"
+
+
+def _rows(found: Summary) -> list[str]:
+    """Rows by status."""
+    names = [name.lower().replace("_", " ") for name in found.rows]
+    counts = [f"{count:,}" for count in found.rows.values()]
+    return table_lines(
+        [
+            Column(
+                header="rows",
+                cells=["found" if n == "converged" else n for n in names] + ["certified"],
+            ),
+            Column(header="", cells=[*counts, f"{found.certified:,}"], align="right"),
+        ]
+    )
+
+
+def _ranges(outputs: list[OutputSummary]) -> list[str]:
+    """Smallest, mean and largest value of every output of the designs that passed."""
+
+    def column(header: str, values: list[float]) -> Column:
+        return Column(header=header, cells=[significant(v, _DIGITS) for v in values], align="point")
+
+    return table_lines(
+        [
+            Column(header="of designs that passed", cells=[output.name for output in outputs]),
+            column("minimum", [output.least for output in outputs]),
+            column("mean", [output.mean for output in outputs]),
+            column("maximum", [output.most for output in outputs]),
+            Column(header="unit", cells=[output.unit for output in outputs]),
+        ]
+    )
+
+
+def _histogram(output: OutputSummary) -> list[str]:
+    """Counts of values in equal parts of the range, as bars."""
+    bins = len(output.histogram)
+    edges = [output.least + k * (output.most - output.least) / bins for k in range(bins)]
+    unit = f" [{output.unit}]" if output.unit else ""
+    columns = [
+        Column(header="from", cells=lengths(edges), align="right"),
+        Column(header="count", cells=[f"{count:,}" for count in output.histogram], align="right"),
+    ]
+    room = WIDTH - max(map(len, table_lines(columns))) - _GAP
+    largest = max(output.histogram)
+    bars = [_SIGN * math.ceil(room * count / largest) for count in output.histogram]
+    return [f"  {output.name}{unit}", *table_lines([*columns, Column(header="", cells=bars)])]

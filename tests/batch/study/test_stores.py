@@ -1,0 +1,416 @@
+"""What is stored: the values of the family, whoever computed them, however often it was stopped."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+
+import linkwork as lw
+from linkwork.batch.study import crew, ledger, run_study, summary_of
+from linkwork.batch.study.job import Job, computed
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.status import Status
+from tests.batch.study.plans import PLAN, contents, edited, study
+
+FEW = (
+    ("count = 300", "count = 100"),
+    ("chunk = 64", "chunk = 50"),
+    ('keep = ["B.x", "rocker"]', ""),
+    ('swing = "stroke(rocker)"', ""),
+    ('mu_mean = "mean(mu)"', ""),
+    ('cycle = "whole cycle"', ""),
+)
+
+
+class Killed(BaseException):
+    """In place of SIGKILL, at a place of our choice."""
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The store of the small study, computed without interruption by one process."""
+    store = tmp_path_factory.mktemp("whole") / "out.zarr"
+    run_study(study(), store, workers=1)
+    return store
+
+
+def test_a_store_holds_what_the_family_says(whole: Path) -> None:
+    asked = study()
+    bar = lw.example("four-bar").changed(inputs=lw.Input(link="crank", start=0, stop=330, step=30))
+    motion = bar.family(asked.plan).sweep()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = xarray.open_zarr(whole).load()
+    for name in asked.plan:
+        np.testing.assert_array_equal(found[name], asked.plan[name])
+    with np.errstate(all="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # designs without any position
+        rocker, mu = motion["rocker"], motion["mu"]
+        cycle, fair = motion.found.all(axis=1), np.nanmin(mu, axis=1) >= 25
+        swing = np.nanmax(rocker, axis=1) - np.nanmin(rocker, axis=1)
+        np.testing.assert_allclose(found["mu_mean"], np.nanmean(mu, axis=1), rtol=1e-14)
+    np.testing.assert_array_equal(found["swing"], swing)
+    np.testing.assert_array_equal(found["passes.cycle"], cycle)
+    np.testing.assert_array_equal(found["passes.transmission"], fair)
+    np.testing.assert_array_equal(found["passed"], cycle & fair)
+    assert 0 < int(found["passed"].sum()) < 300
+    masked = np.where((cycle & fair)[:, None], motion["B.x"], np.nan)
+    np.testing.assert_array_equal(found["B.x"], masked)
+    np.testing.assert_array_equal(found["status"], motion.status)
+    np.testing.assert_array_equal(found["found"], motion.found.sum(axis=1))
+    np.testing.assert_array_equal(found["certified"], motion.certified.sum(axis=1))
+
+
+def test_a_store_has_names_units_and_where_it_comes_from(whole: Path) -> None:
+    found = xarray.open_zarr(whole)
+    assert dict(found.sizes) == {"design": 300, "crank": 12}
+    np.testing.assert_array_equal(found["crank"], np.arange(0, 331, 30))
+    units = {name: array.attrs.get("units") for name, array in found.variables.items()}
+    assert units["crank"] == units["rocker"] == units["swing"] == units["mu_mean"] == "deg"
+    assert units["O2 A"] == units["B.x"] == "mm"
+    assert found["swing"].attrs["description"] == "stroke(rocker)"
+    assert found["passes.transmission"].attrs["description"] == "min(mu) >= 25"
+    meanings = found["status"].attrs["flag_meanings"].split()
+    assert meanings == [status.name for status in Status]
+    assert found["status"].attrs["flag_values"] == [status.code for status in Status]
+    assert found.attrs["plan"] == PLAN
+    assert found.attrs["mechanism"] == lw.example_text("four-bar")
+    assert found.attrs["seed"] == 1
+    assert found.attrs["linkwork_version"]
+
+
+def test_two_workers_store_the_same_as_one(whole: Path, tmp_path: Path) -> None:
+    run_study(study(), tmp_path / "out.zarr", workers=2)
+    assert contents(tmp_path / "out.zarr") == contents(whole)
+
+
+@pytest.mark.parametrize("chunk", [7, 300])
+def test_values_do_not_depend_on_the_size_of_chunks(
+    chunk: int, whole: Path, tmp_path: Path
+) -> None:
+    run_study(study(("chunk = 64", f"chunk = {chunk}")), tmp_path / "out.zarr", workers=1)
+    other = xarray.open_zarr(tmp_path / "out.zarr")
+    for name, array in xarray.open_zarr(whole).variables.items():
+        # designs go in step with others, so rounding depends on who the others are
+        np.testing.assert_allclose(other[name], array, rtol=1e-13, atol=1e-11, err_msg=str(name))
+
+
+def test_chunks_may_come_in_any_order(
+    whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def backwards(job: Job, tasks: Iterator[crew.Task]) -> Iterator[object]:
+        for k, values in reversed(list(tasks)):
+            yield k, computed(job, values)
+
+    monkeypatch.setattr("linkwork.batch.study.running.one_after_the_other", backwards)
+    run_study(study(), tmp_path / "out.zarr", workers=1)
+    assert contents(tmp_path / "out.zarr") == contents(whole)
+
+
+def test_a_run_killed_at_any_write_goes_on_to_the_same_store(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every file is torn once while it is written, and once not renamed when it is whole."""
+    run_study(study(*FEW), tmp_path / "whole.zarr", workers=1)
+    wanted = contents(tmp_path / "whole.zarr")
+    write, replace = Path.write_bytes, os.replace
+    left = 0
+
+    def step() -> bool:
+        nonlocal left
+        left -= 1
+        return left == 0
+
+    def torn(path: Path, data: bytes) -> int:
+        if ".part" in path.name and step():
+            write(path, data[: len(data) // 2])
+            raise Killed
+        return write(path, data)
+
+    def renamed(old: Path, new: Path) -> None:
+        if step():
+            raise Killed
+        replace(old, new)
+
+    monkeypatch.setattr(Path, "write_bytes", torn)
+    monkeypatch.setattr(ledger.os, "replace", renamed)
+    store = tmp_path / "out.zarr"
+    deaths = 0
+    for at in range(1, 10_000):
+        left = at
+        try:
+            run_study(study(*FEW), store, workers=1)
+            break
+        except Killed:
+            deaths += 1
+            done = summary_of(store).computed  # can be read at any moment
+            assert done in (0, 50)
+    files = [path for path in wanted if path.endswith(("/c/0", "00000000.json"))]
+    files.remove("crank/c/0")
+    assert deaths == 2 * len(files) + 1  # both ways in the first chunk, once in the second one
+    assert contents(store) == wanted
+
+
+def test_a_damaged_chunk_is_computed_again(whole: Path, tmp_path: Path) -> None:
+    store = tmp_path / "out.zarr"
+    run_study(study(), store, workers=1)
+    for path, damage in (
+        ("rocker/c/2/0", b"torn"),
+        ("swing/c/1", None),
+        ("ledger/00000003.json", b'{"chunk": 3, '),
+    ):
+        (store / path).unlink() if damage is None else (store / path).write_bytes(damage)
+    told: list[int] = []
+    run_study(study(), store, workers=1, progress=lambda progress: told.append(progress.done))
+    assert told == [300 - 3 * 64, 300 - 2 * 64, 300 - 64, 300]
+    assert contents(store) == contents(whole)
+
+
+def _started(folder: Path, *more: str) -> subprocess.Popen[bytes]:
+    source = Path(__file__).parents[3] / "src"
+    words = [sys.executable, "-m", "linkwork", "study", "plan.toml", "-o", "out.zarr", *more]
+    return subprocess.Popen(
+        words,
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(source)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+
+
+def _until(store: Path, chunks: int, process: subprocess.Popen[bytes]) -> None:
+    """Until so many chunks are stored."""
+    for _ in range(6000):
+        stored = len(list((store / "ledger").glob("[0-9]*.json")))
+        if stored >= chunks or process.poll() is not None:
+            return
+        time.sleep(0.01)
+
+
+#: Some seconds of work, so that signals arrive in the middle of it.
+LONG = (("count = 300", "count = 800"), ("chunk = 64", "chunk = 40"))
+
+
+def test_killed_processes_lose_nothing_and_leave_no_workers(tmp_path: Path) -> None:
+    run_study(study(*LONG), tmp_path / "whole.zarr", workers=1)
+    store = tmp_path / "out.zarr"
+    (tmp_path / "plan.toml").write_text(edited(*LONG), encoding="utf-8")
+    generator = np.random.default_rng(7)
+    before = 0
+    for workers in ("1", "2"):
+        process = _started(tmp_path, "--workers", workers)
+        _until(store, before + int(generator.integers(1, 8)), process)
+        children = _children(process.pid)
+        assert len(children) == (0 if workers == "1" else 2)
+        process.kill()
+        assert process.communicate() == (b"", b"")  # workers say nothing when they are left alone
+        stored = summary_of(store).computed
+        assert before * 40 < stored < 800
+        before = stored // 40
+        for _ in range(500):
+            if not any(_alive(child) for child in children):
+                break
+            time.sleep(0.01)
+        assert not any(_alive(child) for child in children)
+    run_study(study(*LONG), store, workers=1)
+    assert contents(store) == contents(tmp_path / "whole.zarr")
+
+
+def _children(pid: int) -> list[int]:
+    tasks = Path(f"/proc/{pid}/task")
+    if not tasks.exists():
+        pytest.skip("needs /proc")
+    return [
+        int(child)
+        for task in tasks.iterdir()
+        for child in (task / "children").read_text(encoding="ascii").split()
+    ]
+
+
+def _alive(pid: int) -> bool:
+    try:
+        return "Z" not in Path(f"/proc/{pid}/stat").read_text(encoding="ascii").split()[2]
+    except OSError:
+        return False
+
+
+def test_an_interrupt_leaves_a_store_to_go_on_with_and_says_so(tmp_path: Path) -> None:
+    store = tmp_path / "out.zarr"
+    (tmp_path / "plan.toml").write_text(edited(*LONG), encoding="utf-8")
+    process = _started(tmp_path, "--workers", "2")
+    _until(store, 5, process)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=30)
+    found = summary_of(store)
+    assert (out, process.returncode) == (b"", 130)
+    assert 200 <= found.computed < 800
+    assert " ".join(err.decode().split()) == (
+        f"{found.computed} of 800 designs are stored in out.zarr. The same command goes on from "
+        "there. Interrupted."
+    )
+    entries = [json.loads(path.read_text()) for path in (store / "ledger").glob("[0-9]*.json")]
+    assert sum(entry["stop"] - entry["start"] for entry in entries) == found.computed
+    told: list[int] = []
+    run_study(study(*LONG), store, workers=1, progress=lambda p: told.append(p.done))
+    assert told[0] == found.computed
+    assert told[-1] == 800
+
+
+def test_a_worker_that_dies_is_replaced(
+    whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = crew._Processes._asked
+    deaths = 0
+
+    def dying(self: crew._Processes, process: subprocess.Popen[bytes], values: object) -> object:
+        nonlocal deaths
+        deaths += 1
+        if deaths in (1, 4):
+            process.kill()
+            process.wait()
+        return asked(self, process, values)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(crew._Processes, "_asked", dying)
+    run_study(study(), tmp_path / "out.zarr", workers=2)
+    assert deaths == 5 + 2
+    assert contents(tmp_path / "out.zarr") == contents(whole)
+
+
+def test_workers_that_die_again_and_again_end_the_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    with pytest.raises(InputError) as caught:
+        run_study(study(*FEW), tmp_path / "out.zarr", workers=2)
+    assert str(caught.value) == (
+        "worker processes ended 3 times over the same designs, perhaps for want of memory: "
+        "make chunk smaller, or ask for fewer --workers"
+    )
+
+
+def test_a_worker_of_another_version_refuses(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("linkwork.batch.study.plan_file.linkwork_version", lambda: "7.8.9")
+    with pytest.raises(InputError, match=r"^the study was started with Linkwork 7\.8\.9, a worker"):
+        run_study(study(*FEW), tmp_path / "out.zarr", workers=2)
+
+
+def test_another_study_is_refused_with_what_differs(whole: Path, tmp_path: Path) -> None:
+    mine = lw.example_text("four-bar").replace('"O2 A"  = 40', '"O2 A"  = 41')
+    (tmp_path / "mine.toml").write_text(mine, encoding="utf-8")
+    other = study(
+        ('"four-bar"', '"mine.toml"'),
+        ("seed = 1", "seed = 2"),
+        ("from = 36", "from = 37"),
+        ("step = 30", "step = 15"),
+        ('swing = "stroke(rocker)"', ""),
+        ("mu >= 25", "mu >= 26"),
+        folder=tmp_path,
+    )
+    before = contents(whole)
+    with pytest.raises(InputError) as caught:
+        run_study(other, whole)
+    assert str(caught.value) == (
+        f'"{whole}" holds another study:\n'
+        '  mechanism: "O2 A"  = 40 there, "O2 A"  = 41 here\n'
+        "  seed: 1 there, 2 here\n"
+        '  dimensions."O2 A": {"from": 36, "to": 44} there, {"from": 37, "to": 44} here\n'
+        "  input.rows: 12 there, 23 here\n"
+        "  reductions.swing: stroke(rocker) there, nothing here\n"
+        "  filters.transmission: min(mu) >= 25 there, min(mu) >= 26 here\n"
+        "Give another name to store this one, or begin again with --fresh, which takes the old "
+        "one away."
+    )
+    assert contents(whole) == before
+
+
+def test_comments_and_names_of_a_plan_may_change(whole: Path) -> None:
+    before = contents(whole)
+    run_study(study(("seed = 1", "seed = 1  # of the first day"), ("A small", "The small")), whole)
+    assert contents(whole) == before
+
+
+def test_fresh_begins_again_and_takes_nothing_else_away(whole: Path, tmp_path: Path) -> None:
+    store = tmp_path / "out.zarr"
+    run_study(study(("seed = 1", "seed = 2")), store, workers=1)
+    run_study(study(), store, workers=1, fresh=True)
+    assert contents(store) == contents(whole)
+    (tmp_path / "notes").mkdir()
+    (tmp_path / "notes" / "zarr.json").write_text("{}", encoding="utf-8")
+    for fresh in (False, True):
+        with pytest.raises(InputError) as caught:
+            run_study(study(), tmp_path / "notes", fresh=fresh)
+        assert str(caught.value) == (
+            f'"{tmp_path / "notes"}" is there and is no store of a study: give another name'
+        )
+    assert (tmp_path / "notes" / "zarr.json").exists()
+
+
+def test_two_runs_do_not_write_to_one_store(whole: Path, tmp_path: Path) -> None:
+    def second(_: object) -> None:
+        run_study(study(), tmp_path / "out.zarr", workers=1)
+
+    with pytest.raises(InputError) as caught:
+        run_study(study(), tmp_path / "out.zarr", workers=1, progress=second)
+    assert str(caught.value) == (
+        f'another run is writing to "{tmp_path / "out.zarr"}": wait for it, or end it'
+    )
+
+
+def test_designs_that_cannot_be_built_are_counted_with_their_reason(tmp_path: Path) -> None:
+    asked = study(
+        ("latin-hypercube", "random"), ('"O4 B" = { from = 66, to = 90 }', '"O4 B" = [80, -10]')
+    )
+    found = run_study(asked, tmp_path / "out.zarr", workers=1)
+    bad = int((asked.plan["O4 B"] <= 0).sum())
+    assert found.computed - found.built == bad == sum(found.problems.values())
+    assert bad > 0
+    (message,) = found.problems
+    assert 'lengths."O4 B"' in message
+    store = xarray.open_zarr(tmp_path / "out.zarr")
+    np.testing.assert_array_equal(store["built"], asked.plan["O4 B"] > 0)
+
+
+def test_a_summary_counts_and_measures_what_passed(whole: Path) -> None:
+    found, store = summary_of(whole), xarray.open_zarr(whole).load()
+    assert (found.designs, found.computed, found.inputs, found.built) == (300, 300, 12, 300)
+    assert found.filters["cycle"] == ("whole cycle", int(store["passes.cycle"].sum()))
+    assert found.passed == int(store["passed"].sum())
+    assert sum(found.rows.values()) == 3600
+    assert found.rows["CONVERGED"] == int(store["found"].sum())
+    for output in found.outputs:
+        values = store[output.name].values[store["passed"].values]
+        assert (output.count, output.least, output.most) == (
+            values.size, values.min(), values.max(),
+        )  # fmt: skip
+        assert output.mean == pytest.approx(values.mean(), rel=1e-14)
+        assert sum(output.histogram) == output.count
+        np.testing.assert_array_equal(output.histogram, np.histogram(values, 12)[0])
+
+
+def test_values_that_differ_by_rounding_have_one_part(tmp_path: Path) -> None:
+    asked = study(
+        ('mu_mean = "mean(mu)"', 'same = "max(A.x)"'),
+        ('"O2 A" = { from = 36, to = 44 }', '"O2 A" = { from = 40, to = 40.00000000000002 }'),
+    )
+    swing, same, *_ = run_study(asked, tmp_path / "out.zarr", workers=1).outputs
+    assert same.least < same.most
+    assert same.histogram == (same.count,)
+    assert len(swing.histogram) == 12
+
+
+def test_a_store_that_is_not_there_has_no_summary(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r'^there is no ".*none"$'):
+        summary_of(tmp_path / "none")

@@ -1,0 +1,16 @@
+"""A small part of the campaign of families; scripts/campaign families has the rest."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.campaigns import families
+
+
+def test_random_four_bars_stay_on_their_branch(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(families, "_CHUNK", 300)  # starts at one input, then at many
+    counts, false = families.family_campaign(600)
+    assert not false
+    assert counts["mechanisms"] == 600
+    assert counts["near a change point"] > 40
+    assert counts["row CERTIFIED"] > 0.9 * counts["rows found"]

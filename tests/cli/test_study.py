@@ -1,0 +1,190 @@
+"""The command ``study``: its page, its line of progress, its refusals."""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from linkwork.batch.study import Progress
+from linkwork.cli.study import study_progress
+from linkwork.cli.study_page import progress_line
+from tests.batch.study.plans import PLAN, edited
+from tests.cli.conftest import Run
+
+NEEDS = "a study needs a plan and a store:\n    linkwork study plan.toml -o out.zarr"
+PAGE = """\
+A small study
+Four-bar linkage, open: 300 designs × 12 inputs in out.zarr
+  computed      300
+  cycle         292 (97.33 %)  whole cycle
+  transmission  157 (52.33 %)  min(mu) >= 25
+  passed        157 (52.33 %)
+
+  rows
+  found         3,592
+  out of reach      8
+  certified     3,592
+
+  of designs that passed  minimum      mean   maximum  unit
+  swing                   56.3015   69.8373   86.0954  deg
+  mu_mean                 52.7058   61.1892   68.0350  deg
+  B.x                     32.5994   85.1601  150.154   mm
+  rocker                  49.0665  101.299   138.877   deg
+
+  swing [deg]
+     from  count
+  56.3015      4  #########
+  58.7843      7  ################
+  61.2672     13  #############################
+  63.7500     19  ###########################################
+  66.2328     28  ##############################################################
+  68.7156     26  ##########################################################
+  71.1984     19  ###########################################
+  73.6813     14  ###############################
+  76.1641     11  #########################
+  78.6469      8  ##################
+  81.1297      7  ################
+  83.6125      1  ###
+
+  mu_mean [deg]
+     from  count
+  52.7058      2  #####
+  53.9833      3  #######
+  55.2607      9  ####################
+  56.5381     13  #############################
+  57.8155     12  ###########################
+  59.0930     19  ###########################################
+  60.3704     25  ########################################################
+  61.6478     28  ##############################################################
+  62.9253     13  #############################
+  64.2027     20  #############################################
+  65.4801      9  ####################
+  66.7575      4  #########
+
+"""
+
+
+@pytest.fixture(autouse=True)
+def plan(folder: Path) -> None:
+    (folder / "plan.toml").write_text(PLAN, encoding="utf-8")
+
+
+def test_the_page_of_a_study(run: Run) -> None:
+    done = run("study", "plan.toml", "-o", "out.zarr", "--workers", "1")
+    assert done.exit_code == 0
+    assert done.stderr == ""
+    assert done.stdout[: len(PAGE)] == PAGE
+    assert run("study", "--summary", "out.zarr").stdout == done.stdout
+    assert max(map(len, done.stdout.split("\n"))) <= 80
+
+
+def test_the_page_of_designs_that_cannot_be_built(run: Run, folder: Path) -> None:
+    text = edited(
+        ("latin-hypercube", "random"), ('"O4 B" = { from = 66, to = 90 }', '"O4 B" = [80, -10]')
+    )
+    (folder / "plan.toml").write_text(text, encoding="utf-8")
+    done = run("study", "plan.toml", "-o", "out.zarr", "--workers", "1")
+    assert done.stdout.split("\n")[2:7] == [
+        "  computed      300",
+        "  not built     158",
+        '                158: 1 problem in mechanism "Four-bar linkage, open"',
+        """                lengths."O4 B"  must be a positive length, got …""",
+        "  cycle         142 (47.33 %)  whole cycle",
+    ]
+
+
+def test_a_summary_as_json(run: Run) -> None:
+    run("study", "plan.toml", "-o", "out.zarr", "--workers", "1")
+    data = json.loads(run("study", "--summary", "out.zarr", "--json").stdout)
+    assert data["designs"] == data["computed"] == 300
+    assert [output["name"] for output in data["outputs"]] == ["swing", "mu_mean", "B.x", "rocker"]
+    assert data["filters"]["transmission"][0] == "min(mu) >= 25"
+
+
+def test_a_plan_from_standard_input(run: Run) -> None:
+    done = run("study", "-", "-o", "out.zarr", "--workers", "1", stdin=PLAN)
+    assert done.stdout.startswith("A small study\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ((), NEEDS),
+        (("plan.toml",), NEEDS),
+        (
+            ("plan.toml", "--summary", "x"),
+            "--summary reads a store: leave out the plan and -o",
+        ),
+        (("--summary", "x.zarr"), 'there is no "x.zarr"'),
+        (
+            ("--summary", "plan.toml"),
+            '"plan.toml" is there and is no store of a study: give another name',
+        ),
+        (("plan.toml", "-o", "no/x.zarr"), 'cannot write "no/x.zarr": there is no folder "no"'),
+        (
+            ("plan.toml", "-o", "x.zarr", "--workers", "0"),
+            "a study needs at least one worker, got 0",
+        ),
+    ],
+)
+def test_what_cannot_be_done_is_said(words: tuple[str, ...], message: str, run: Run) -> None:
+    done = run("study", *words)
+    assert (done.exit_code, done.stdout, done.stderr) == (2, "", f"Error: {message}\n")
+
+
+@pytest.mark.parametrize(
+    ("progress", "line"),
+    [
+        (Progress(total=1_000_000, done=0, before=0, seconds=0.0), "  0 %  0 of 1,000,000 designs"),
+        (
+            Progress(total=1_000_000, done=250_000, before=50_000, seconds=10.0),
+            " 25 %  250,000 of 1,000,000 designs  20,000/s  0:38 left",
+        ),
+        (
+            Progress(total=1_000_000, done=1_000, before=0, seconds=10.0),
+            "  0 %  1,000 of 1,000,000 designs  100/s  2:46:30 left",
+        ),
+    ],
+)
+def test_the_line_of_progress_has_rate_and_time_left(progress: Progress, line: str) -> None:
+    assert progress_line(progress) == line
+
+
+class _Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_progress_is_one_line_written_over_and_taken_away(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = _Terminal()
+    monkeypatch.setattr("linkwork.cli.study._PATIENCE", 0.0)
+    monkeypatch.setattr(sys, "stderr", terminal)
+    with study_progress(quiet=False) as tell:
+        assert tell is not None
+        for done in (500, 1000):
+            tell(Progress(total=1000, done=done, before=0, seconds=1.0))
+    longest = len(" 50 %  500 of 1,000 designs  500/s  0:01 left")
+    assert terminal.getvalue() == (
+        "\r 50 %  500 of 1,000 designs  500/s  0:01 left"
+        "\r100 %  1,000 of 1,000 designs  1,000/s  0:00 left\r" + " " * (longest + 4) + "\r"
+    )
+
+
+def test_there_is_no_progress_in_a_file_nor_where_it_is_not_wanted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    with study_progress(quiet=False) as tell:
+        assert tell is None
+    monkeypatch.setattr(sys, "stderr", _Terminal())
+    with study_progress(quiet=True) as tell:
+        assert tell is None
+
+
+def test_the_schema_of_plans_is_printed(run: Run) -> None:
+    schema = json.loads(run("schema", "--plan").stdout)
+    assert schema["title"] == "Linkwork study-plan file"
+    assert "filters" in schema["properties"]
