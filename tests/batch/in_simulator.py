@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 import linkwork as lw
+from benchmarks import gpu
 from linkwork.batch import Family
 from linkwork.batch.family_motion import FamilyMotion
 from linkwork.kernels.lanes import device_kernel
@@ -79,7 +80,8 @@ def main(path: str) -> None:
         motion = family.sweep(certify=certify, device="gpu")
         arrays |= {f"{name}/{key}": values for key, values in found(motion).items()}
         arrays |= {f"{name}/stopped": marches[0].stopped, f"{name}/last": marches[0].last}
-    np.savez(path, chunks=sizes, **arrays)
+    speed = gpu.kernel_speed(families()["jansen-leg"][0], False, 15)
+    np.savez(path, chunks=sizes, speed=speed, **arrays)
 
 
 if __name__ == "__main__":

@@ -97,6 +97,12 @@ def test_the_check_finds_another_status_and_positions_too_far_apart() -> None:
     assert gpu.compared(ours, reference).differing == 1
 
 
+def test_speed_is_that_of_at_least_so_many_positions(simulated: dict[str, np.ndarray]) -> None:
+    positions, seconds = simulated["speed"]
+    assert positions == 20  # two designs of five rows until there are 15
+    assert seconds > 0.0
+
+
 def test_without_numba_cuda_the_message_says_what_to_install(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
