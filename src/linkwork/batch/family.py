@@ -13,6 +13,7 @@ from linkwork.batch.lane_rows import design_rows
 from linkwork.batch.reductions import REDUCTIONS
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.errors import InputError
+from linkwork.kernels.lanes.device_compiling import graphics_card
 from linkwork.kernels.lanes.lane_kernel import Gear
 from linkwork.motion.model import Model
 
@@ -60,6 +61,7 @@ class Family:
         certify: bool = True,
         threads: int | None = None,
         specialised: bool | None = None,
+        device: str = "cpu",
     ) -> FamilyMotion:
         """Every design at every row of the mechanism's table, each on the branch of its start.
 
@@ -74,17 +76,27 @@ class Family:
         specialised : bool, optional
             Compile this mechanism's equations, which takes seconds once and is kept on disk. By
             default where so many positions are asked for that it saves time.
+        device : str
+            ``"gpu"``: a graphics card computes positions and proofs (the extra ``gpu``), the same
+            to rounding; compiling takes seconds once for each mechanism.
 
         Raises
         ------
         InputError
-            If the result would not fit into memory: use :meth:`parts` or :meth:`reduced`.
+            If the result would not fit into memory: use :meth:`parts` or :meth:`reduced`; if there
+            is no such device.
+        MissingPackageError
+            If ``gpu`` is not installed.
         """
-        gear = Gear(specialised=specialised, positions=self._positions())
+        gear = self._gear(specialised, device)
         return self._swept(certify, threads or _cores(), gear)
 
-    def _positions(self) -> int:
-        return len(self) * len(self.designs.base.rows)
+    def _gear(self, specialised: bool | None, device: str) -> Gear:
+        positions = len(self) * len(self.designs.base.rows)
+        gear = Gear(specialised=specialised, positions=positions, device=device)
+        if gear.device == "gpu":
+            graphics_card()  # or the reason why there is none, before anything is computed
+        return gear
 
     def _swept(self, certify: bool, threads: int, gear: Gear) -> FamilyMotion:
         model = self.designs.base
@@ -106,12 +118,13 @@ class Family:
         certify: bool = True,
         threads: int | None = None,
         specialised: bool | None = None,
+        device: str = "cpu",
     ) -> Iterator[FamilyMotion]:
         """The motions of so many designs at a time, in order; memory stays bounded."""
         if designs < 1:
             raise InputError(f"a part needs at least one design, got {designs}")
         parts = (self.take(slice(k, k + designs)) for k in range(0, len(self), designs))
-        gear = Gear(specialised=specialised, positions=self._positions())
+        gear = self._gear(specialised, device)
         return (part._swept(certify, threads or _cores(), gear) for part in parts)
 
     def _part(self) -> int:
@@ -127,6 +140,7 @@ class Family:
         certify: bool = True,
         threads: int | None = None,
         specialised: bool | None = None,
+        device: str = "cpu",
     ) -> dict[str, Array]:
         """One number per design and quantity over all its rows.
 
@@ -160,7 +174,7 @@ class Family:
         found |= {"found": [np.empty(0, dtype=int)], "certified": [np.empty(0, dtype=int)]}
         found |= {"limit.lower": [np.empty(0)], "limit.upper": [np.empty(0)]}
         for part in self.parts(
-            self._part(), certify=certify, threads=threads, specialised=specialised
+            self._part(), certify=certify, threads=threads, specialised=specialised, device=device
         ):
             for name, key, function in columns:
                 value = np.asarray(function(part[name]), dtype=float)

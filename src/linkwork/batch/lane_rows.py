@@ -18,6 +18,7 @@ from linkwork.foundation.arrays import Array, BoolArray, IndexArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.status import Status
+from linkwork.kernels.lanes.device_kernel import DeviceKernel
 from linkwork.kernels.lanes.folding import dead_points
 from linkwork.kernels.lanes.lane_kernel import Gear, LaneKernel, LaneRows, Steps
 from linkwork.mechanism.parts import Input
@@ -31,7 +32,7 @@ from linkwork.motion.sweeping import swept_rows
 from linkwork.motion.tracking import turns_freely
 from linkwork.results.motion import LimitKind
 
-__all__ = ["DesignRows", "design_rows", "message_alone"]
+__all__ = ["DesignRows", "March", "Path", "design_rows", "message_alone"]
 
 _ON_PATH = 1e-12
 _FINEST = 1e-8  # step, of a radian or a length, where a row lies right in front of a dead point
@@ -94,7 +95,7 @@ def design_rows(
     """
     model = designs.base
     left = designs.problem == 0
-    march = _Path.of(model)
+    march = Path.of(model)
     found = DesignRows.blank(
         model.compiled.solver.unknowns,
         len(model.rows),
@@ -113,7 +114,7 @@ def design_rows(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Path:
+class Path:
     """The straight line through the table's inputs: u = origin + rate t; ``size``: of a step."""
 
     model: Model
@@ -123,7 +124,7 @@ class _Path:
     size: float
 
     @classmethod
-    def of(cls, model: Model) -> _Path | None:
+    def of(cls, model: Model) -> Path | None:
         """``None`` where the compiled march does not serve."""
         table = model.compiled.table
         if table.functions or model.equations.redundant or not len(model.equations.inputs):
@@ -153,20 +154,22 @@ class _Path:
         self, designs: Designs, found: DesignRows, certify: bool, threads: int, gear: Gear
     ) -> BoolArray:
         """Designs that went through all rows are filled in; which they are, (D,)."""
-        n = self.model.compiled.solver.unknowns
-        inputs = designs.start[:, n:]
-        start = inputs[:, self.lead]
-        away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
-        served: BoolArray = np.all(away <= _ON_PATH * np.maximum(1.0, np.abs(inputs)), axis=1)
+        march = self.march(designs, certify, threads, gear)
         t = self.model.rows[:, self.lead]
         way = slice(None, None, -1 if self.falling else 1)
-        march = _March(self, designs, served, certify, threads)
-        march.kernel.shift(gear)
         march.turns = found.turns[way]
         whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
         self._note(found, reached[way], whole, certify)
         march.note_limits(found, whole)
         return whole
+
+    def march(self, designs: Designs, certify: bool, threads: int, gear: Gear) -> March:
+        """The march of designs whose start lies on the path, or can be led to it."""
+        inputs = designs.start[:, self.model.compiled.solver.unknowns :]
+        start = inputs[:, self.lead]
+        away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
+        served: BoolArray = np.all(away <= _ON_PATH * np.maximum(1.0, np.abs(inputs)), axis=1)
+        return March(self, designs, served, certify, threads, gear)
 
     def _note(self, found: DesignRows, reached: BoolArray, whole: BoolArray, certify: bool) -> None:
         """Statuses of rows that were reached, and of the others of designs that are done."""
@@ -184,23 +187,30 @@ class _Path:
 
 
 #: Kernels of mechanisms that are in use.
-_KERNELS: WeakKeyDictionary[Compiled, dict[tuple[frozenset[str], bool], LaneKernel]] = (
+_KERNELS: WeakKeyDictionary[Compiled, dict[tuple[frozenset[str], bool, str], LaneKernel]] = (
     WeakKeyDictionary()
 )
 
 
-def _kernel(model: Model, zeros: frozenset[str], certify: bool) -> LaneKernel:
-    known = _KERNELS.setdefault(model.compiled, {})
-    if (zeros, certify) not in known:
-        known[zeros, certify] = LaneKernel(model.compiled.table, block_parts(model), zeros, certify)
-    return known[zeros, certify]
+def _kernel(model: Model, zeros: frozenset[str], certify: bool, device: str) -> LaneKernel:
+    known, key = _KERNELS.setdefault(model.compiled, {}), (zeros, certify, device)
+    if key not in known:
+        kind = DeviceKernel if device == "gpu" else LaneKernel
+        known[key] = kind(model.compiled.table, block_parts(model), zeros, certify)
+    return known[key]
 
 
-class _March:
+class March:
     """The compiled march of a family, and what becomes of designs that stop at dead points."""
 
     def __init__(
-        self, path: _Path, designs: Designs, served: BoolArray, certify: bool, threads: int
+        self,
+        path: Path,
+        designs: Designs,
+        served: BoolArray,
+        certify: bool,
+        threads: int,
+        gear: Gear,
     ) -> None:
         self.path, self.certify, self.threads = path, certify, threads
         compiled, model = path.model.compiled, path.model
@@ -208,7 +218,8 @@ class _March:
         fine = designs.problem == 0
         self.coefficients = _coefficients(path, designs)
         self.zeros = zero_coefficients(designs, self.coefficients)
-        self.kernel = _kernel(model, frozenset(self.zeros), certify)
+        self.kernel = _kernel(model, frozenset(self.zeros), certify, gear.device)
+        self.kernel.shift(gear)
         self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # else not found
         self.start = designs.start[:, n + path.lead].copy()
         self._enter(designs, np.flatnonzero(fine & ~served))
@@ -350,7 +361,7 @@ class _March:
         return settled
 
 
-def _coefficients(path: _Path, designs: Designs) -> dict[str, Array]:
+def _coefficients(path: Path, designs: Designs) -> dict[str, Array]:
     """What the programs of a family read, by register, (D,) each."""
     found = loop_coefficients(designs)
     spread = path.spread(designs.start[:, path.model.compiled.solver.unknowns + path.lead])

@@ -38,7 +38,7 @@ def every_operation(rng: np.random.Generator, height: int) -> np.ndarray:
     code = []
     for op in [op for op in Op if op not in (Op.COS, Op.INPUT, Op.CONSTANT)] * 3:
         target, beside = rng.choice(height, 2, replace=False)
-        sources = rng.integers(0, PLACES * height + 2, 3)
+        sources = rng.integers(0, PLACES * height + 6, 3)
         if op is Op.SIN:
             sources[2] = beside
         sources[SOURCES[op] :] = beside if op is Op.SIN else target
@@ -51,12 +51,13 @@ def test_every_instruction_written_out_is_that_of_the_machine() -> None:
     height = 6
     for _ in range(3):
         code = every_operation(rng, height)
-        space = rng.choice([0.0, 1.0, -2.0, 0.3, 5.5, np.nan], (PLACES * height + 3, LANES))
-        register = PLACES * height + 2
-        space[register] = 0.25  # a constant
+        space = rng.choice([0.0, 1.0, -2.0, 0.3, 5.5, np.nan], (PLACES * height + 6, LANES))
+        constants = dict(enumerate([0.25, -np.inf, np.inf, np.nan], PLACES * height + 2))
+        for register, value in constants.items():
+            space[register] = value
         other = space.copy()
         run(code, space)
-        source = trial_source([code[:20], code[20:]], height, set(range(height)), {register: 0.25})
+        source = trial_source([code[:20], code[20:]], height, set(range(height)), constants)
         number = ctypes.POINTER(ctypes.c_double)
         places = [other[k * height :].ctypes.data_as(number) for k in range(PLACES + 1)]
         written(source, "trial").ctypes(*places, LANES)

@@ -27,7 +27,10 @@ from linkwork.kernels.lanes.trial import Topology
 from linkwork.kernels.lanes.written import is_written, written
 from linkwork.kernels.loop_table import LoopTable
 
-__all__ = ["Gear", "LaneKernel", "LaneRows", "Steps"]
+__all__ = ["DEVICES", "Gear", "LaneKernel", "LaneRows", "Steps"]
+
+#: What a march can run on.
+DEVICES = ("cpu", "gpu")
 
 _WEIGHTS = [f"{name}{role}" for role in range(1, ROLES) for name in "ab"]
 _FEW = 16  # designs in a part of which each goes with its rows side by side
@@ -116,10 +119,29 @@ class Gear:
     specialised : bool, optional
         Asked for; by default it is whatever takes less time for so many ``positions``.
     positions : int
+    device : str
+        Where it runs, one of :data:`DEVICES`; a graphics card runs nothing but what is compiled.
+
+    Raises
+    ------
+    InputError
+        For another device, or for a graphics card that should compile nothing.
     """
 
     specialised: bool | None = None
     positions: int = 0
+    device: str = "cpu"
+
+    def __post_init__(self) -> None:
+        if self.device not in DEVICES:
+            raise InputError(
+                f'there is no device "{self.device}" (there are: {", ".join(DEVICES)})'
+            )
+        if self.device == "gpu" and self.specialised is False:
+            raise InputError(
+                "a graphics card runs nothing but compiled equations: leave out "
+                'specialised=False or device="gpu"'
+            )
 
 
 # Compiling takes some 5 ms for each instruction, of which a position then costs 0.1 ns less.
@@ -227,10 +249,9 @@ class LaneKernel:
         found : LaneRows
             Filled.
         """
-        count, n = len(start), self.table.unknowns
+        count = len(start)
         places, design = self._registered(coefficients, count)
-        given = np.zeros((self.nodes.shape[1], count))
-        given[:n], given[-1] = guess, start
+        given = self.given(guess, start)
 
         def one(first: int) -> None:
             part = slice(first, first + _PART)
@@ -246,6 +267,12 @@ class LaneKernel:
         else:
             for first in firsts:
                 one(first)
+
+    def given(self, guess: Array, start: Array) -> Array:
+        """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""
+        node = np.zeros((self.nodes.shape[1], len(start)))
+        node[: self.table.unknowns], node[-1] = guess, start
+        return node
 
     def last_nodes(self, found: LaneRows, way: int, where: IndexArray) -> LastNodes:
         """The nodes at which some designs stopped, downwards (0) or upwards (1)."""

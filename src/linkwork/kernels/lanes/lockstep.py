@@ -14,6 +14,7 @@ import numpy as np
 from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
+from linkwork.kernels.lanes.stepping import SAME
 from linkwork.kernels.lanes.tasks import FOUND, TABLE, TASKS
 from linkwork.kernels.lanes.trial import (
     GOOD,
@@ -27,7 +28,6 @@ from linkwork.kernels.lanes.trial import (
 __all__ = ["in_step"]
 
 _LARGEST = 0.5  # of the largest step: further apart, rows have nodes between them
-_SAME = 1e-9  # relative: steps so nearly equal share the weights of their prediction
 _WORTH = LANES // 2  # with fewer lanes left each goes on by itself
 
 
@@ -55,7 +55,7 @@ def _weighted(w, topology, turn, steps, spacing):  # type: ignore[no-untyped-def
         for role in range(1, ROLES):
             times[role - 1] = w[nodes[(role - turn) % ROLES, last], lane]
         if shared:
-            near = _SAME * abs(w[trial, 0] - times[0])
+            near = SAME * abs(w[trial, 0] - times[0])
             same = abs(w[trial, 0] - times[0] - spacing[0]) <= near
             for k in range(1, NODES):
                 same &= abs(times[k - 1] - times[k] - spacing[k]) <= near

@@ -16,6 +16,7 @@ import numpy as np
 from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
+from linkwork.kernels.lanes.stepping import GROWTH, SAME
 from linkwork.kernels.lanes.tasks import FOUND, TABLE, TASKS
 from linkwork.kernels.lanes.trial import (
     GOOD,
@@ -29,9 +30,6 @@ from linkwork.kernels.lanes.trial import (
 
 __all__ = ["march"]
 
-_GROWTH = 2.0
-_SAME = 1e-9  # relative: steps so nearly equal share the weights of their prediction
-
 
 @compiled
 def _chosen(w, lane, weights, times, step, known, spacing):  # type: ignore[no-untyped-def]
@@ -39,9 +37,9 @@ def _chosen(w, lane, weights, times, step, known, spacing):  # type: ignore[no-u
 
     ``times``: of the last nodes.
     """
-    same = abs(step - spacing[0]) <= _SAME * abs(step)
+    same = abs(step - spacing[0]) <= SAME * abs(step)
     for k in range(1, len(times)):
-        same &= abs(times[k - 1] - times[k] - spacing[k]) <= _SAME * abs(step)
+        same &= abs(times[k - 1] - times[k] - spacing[k]) <= SAME * abs(step)
     if same:
         return
     spacing[0] = step
@@ -146,7 +144,7 @@ def march(topology, w, design, table, tasks, count, found):  # type: ignore[no-u
                     _noted(w, i, topology, turn, row[i], m, table.unknowns, found)
                     row[i] += 2 * way[i] - 1
                 if moved >= 0.5 * h[i]:
-                    h[i] = min(_GROWTH * h[i], steps[1])
+                    h[i] = min(GROWTH * h[i], steps[1])
                 known[i] = min(known[i] + 1, NODES)
             else:
                 h[i] = 0.5 * moved

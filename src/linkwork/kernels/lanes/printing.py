@@ -5,6 +5,7 @@ What is written knows no names but registers, so nothing of a mechanism's text g
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 
@@ -14,7 +15,7 @@ from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import ROLES
 from linkwork.kernels.lanes.program import Op
 
-__all__ = ["trial_source"]
+__all__ = ["Body", "Code", "trial_source"]
 
 Code = np.ndarray[tuple[int, int], np.dtype[np.uint32]]
 
@@ -41,7 +42,7 @@ _STATEMENT = {
 
 
 @dataclass
-class _Body:
+class Body:
     """Statements over local names; registers are read where first needed and written at the end."""
 
     place: Callable[[int], str]
@@ -51,8 +52,9 @@ class _Body:
     changed: set[int] = field(default_factory=set)
 
     def value(self, register: int) -> str:
+        """What a register holds by now."""
         if register in self.constants:
-            return repr(self.constants[register])
+            return _number(self.constants[register])
         if register not in self.known:
             self.known.add(register)
             self.lines.append(f"r{register} = {self.place(register)}")
@@ -63,6 +65,7 @@ class _Body:
         self.changed.update(registers)
 
     def add(self, code: Code) -> None:
+        """What a program does."""
         for number, d, a, b, c in code.tolist():
             op = Op(number)
             if op is Op.SIN:
@@ -79,8 +82,18 @@ class _Body:
             self._set(d)
 
     def end(self, kept: Set[int]) -> None:
+        """Write the registers that are kept and have changed."""
         for register in sorted(self.changed & kept):
             self.lines.append(f"{self.place(register)} = r{register}")
+
+
+def _number(value: float) -> str:
+    """As Python writes it; what is not finite has a name there."""
+    if math.isnan(value):
+        return "math.nan"
+    if math.isinf(value):
+        return "math.inf" if value > 0.0 else "-math.inf"
+    return repr(value)
 
 
 def trial_source(
@@ -99,7 +112,7 @@ def trial_source(
     constants : Mapping[int, float]
         Registers of constants.
     """
-    body = _Body(lambda register: _lane_place(register, height), constants)
+    body = Body(lambda register: _lane_place(register, height), constants)
     for code in programs:
         body.add(code)
     body.end(kept)

@@ -16,6 +16,7 @@ import numpy as np
 from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
 from linkwork.kernels.lanes.machine import LANES, run_lane
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
+from linkwork.kernels.lanes.stepping import GROWTH, SAME, STEPS
 from linkwork.kernels.lanes.tasks import FOUND, TABLE
 from linkwork.kernels.lanes.trial import (
     BLOCKS,
@@ -24,7 +25,6 @@ from linkwork.kernels.lanes.trial import (
     LIVE,
     PREDICT,
     RADIUS,
-    STEPS,
     TOPOLOGY,
     by_written,
     extrapolated,
@@ -38,8 +38,6 @@ __all__ = ["by_rows", "most_nodes"]
 #: Of the largest step: how far finer nodes are apart; half of it and a quarter where that fails.
 COARSE = 1.0 / 6.0
 _ORDER = 2 * NODES
-_GROWTH = 2.0
-_SAME = 1e-9
 _FAR = 1e-7  # of an unknown: as much as a node may be off
 
 
@@ -109,9 +107,9 @@ def _one_way(topology, w, end, steps, coarse):  # type: ignore[no-untyped-def]
         away = end - times[0]
         step = math.copysign(min(abs(away), h), away)
         w[t0, 0] = end if step == away else times[0] + step
-        same = abs(step - spacing[0]) <= _SAME * h
+        same = abs(step - spacing[0]) <= SAME * h
         for k in range(1, NODES):
-            same &= abs(times[k - 1] - times[k] - spacing[k]) <= _SAME * h
+            same &= abs(times[k - 1] - times[k] - spacing[k]) <= SAME * h
         if not same:
             extrapolated(w, 0, topology.weights, w[t0, 0], times, known)
             spacing[0] = step
@@ -121,7 +119,7 @@ def _one_way(topology, w, end, steps, coarse):  # type: ignore[no-untyped-def]
             count += 1
             for j in range(size):
                 coarse[count, j] = w[nodes[-turn % ROLES, j], 0]
-            known, h = min(known + 1, NODES), min(_GROWTH * h, steps[1])
+            known, h = min(known + 1, NODES), min(GROWTH * h, steps[1])
             turn = (turn + 1) % ROLES
         else:
             h = 0.5 * abs(step)

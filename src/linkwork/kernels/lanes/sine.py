@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from linkwork.kernels.lanes.compiling import compiled
 
 __all__ = ["sin_cos"]
 
 _TWO_OVER_PI = 2.0 / math.pi
+_WHOLE = 1.5 * 2.0**52  # added and taken away again, it leaves the nearest whole number
 # π/2 in three parts, of 33 bits each the first two: n times them is exact for |n| ≤ 2^20
 _MOST_QUARTERS = 2.0**20
 _PART_1 = float.fromhex("0x1.921fb54400000p+0")
@@ -25,7 +24,7 @@ def sin_cos(x):  # type: ignore[no-untyped-def]
     For |x| below a million the error is below 2.5 · 2⁻⁵³, and three units in the last place; far
     beyond, where the reduction would lose digits, what is returned is not a number.
     """
-    n = np.floor(x * _TWO_OVER_PI + 0.5)
+    n = (x * _TWO_OVER_PI + _WHOLE) - _WHOLE
     r = ((x - n * _PART_1) - n * _PART_2) - n * _PART_3
     r = r if abs(n) <= _MOST_QUARTERS else math.nan
     z = r * r
@@ -45,7 +44,7 @@ def sin_cos(x):  # type: ignore[no-untyped-def]
     p = -0.001388888888888889 + z * p
     p = 0.041666666666666664 + z * p
     p = 1.0 - 0.5 * z + z * z * p
-    q = n - 4.0 * np.floor(0.25 * n)
+    q = n - 4.0 * ((0.25 * n - 0.375 + _WHOLE) - _WHOLE)  # 0, 1, 2 or 3
     odd = (q == 1.0) | (q == 3.0)
     u = p if odd else s
     v = s if odd else p

@@ -15,6 +15,7 @@ from linkwork.foundation.arrays import IndexArray
 from linkwork.kernels.lanes.compiling import call_at, compiled, named_tuple, types
 from linkwork.kernels.lanes.machine import LANES, run_part
 from linkwork.kernels.lanes.march_programs import ROLES
+from linkwork.kernels.lanes.stepping import START_STEPS, STEPS, hermite, trusted
 
 __all__ = [
     "BLOCKS",
@@ -23,7 +24,6 @@ __all__ = [
     "LIVE",
     "PREDICT",
     "RADIUS",
-    "STEPS",
     "TOPOLOGY",
     "Topology",
     "by_written",
@@ -41,9 +41,6 @@ __all__ = [
 PREDICT, JUDGE, BLOCKS = 0, 1, 2
 # what is noted of a trial; behind LIVE: block by block
 GOOD, RADIUS, LIVE = 0, 1, 2
-STEPS = 6  # of Newton-Raphson
-_FAR = 2.5  # times the step before: further ahead fewer nodes are trusted
-_START_STEPS = 50
 
 
 class Topology(NamedTuple):
@@ -191,7 +188,7 @@ def solved_slowly(topology, w):  # type: ignore[no-untyped-def]
     for b in range(blocks):
         live = topology.noted[0, LIVE + b]
         w[live, :] = 1.0
-        _iterate(topology, 0, w, BLOCKS + blocks + b, live, _START_STEPS, everywhere)
+        _iterate(topology, 0, w, BLOCKS + blocks + b, live, START_STEPS, everywhere)
     if proved(topology):
         for _ in range(2):
             for lane in range(LANES):
@@ -231,23 +228,9 @@ def extrapolated(w, lane, weights, t, times, known):  # type: ignore[no-untyped-
     times : (4,) of the last nodes
     known : how many of them there are; fewer are trusted far ahead
     """
-    step, used = abs(t - times[0]), min(known, len(times))
-    for k in range(len(times) - 1, 0, -1):
-        if used > k and step > _FAR * abs(times[k - 1] - times[k]):
-            used = k
-    _polynomial(w, lane, weights, t, times, used)
-
-
-@compiled
-def _polynomial(w, lane, weights, t, nodes, count):  # type: ignore[no-untyped-def]
+    used = trusted(t, times, known)
     for j in range(len(weights)):
         w[weights[j], lane] = 0.0
-    for i in range(count):
-        basis, slope = 1.0, 0.0
-        for j in range(count):
-            if j != i:
-                basis *= (t - nodes[j]) / (nodes[i] - nodes[j])
-                slope += 1.0 / (nodes[i] - nodes[j])
-        square = basis * basis
-        w[weights[2 * i], lane] = (1.0 - 2.0 * slope * (t - nodes[i])) * square
-        w[weights[2 * i + 1], lane] = (t - nodes[i]) * square
+    for i in range(used):
+        a, b = hermite(t, times, i, used)
+        w[weights[2 * i], lane], w[weights[2 * i + 1], lane] = a, b

@@ -1,4 +1,4 @@
-"""Trials written out as modules of their own, in a folder where compiled code is kept."""
+"""Programs written out as modules of their own, in a folder where compiled code is kept."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from typing import Any
 from platformdirs import user_cache_path
 
 from linkwork.foundation.errors import InputError
-from linkwork.kernels.lanes import compiling, sine, trial
 
 __all__ = ["is_written", "written"]
 
 #: A folder that takes the place of the user's cache.
 FOLDER = "LINKWORK_CACHE"
+#: Modules of this package that written ones are compiled with.
+_WITH = ("compiling", "device_compiling", "device_march", "sine", "stepping", "tasks", "trial")
 
 
 def written(source: str, function: str) -> Any:
@@ -56,9 +57,8 @@ def _folder() -> Path:
 def _name(source: str) -> str:
     """By the text and all that it is compiled with."""
     digest = hashlib.sha256(source.encode())
-    for module in (compiling, sine, trial):
-        assert module.__file__ is not None
-        digest.update(Path(module.__file__).read_bytes())
+    for module in _WITH:
+        digest.update(Path(__file__).with_name(f"{module}.py").read_bytes())
     return f"linkwork_kernel_{digest.hexdigest()[:24]}"
 
 

@@ -1,0 +1,172 @@
+"""``scripts/gpu``: families on a graphics card are those of the processor; positions per second.
+
+Every family is swept by both, with proofs and without: statuses have to be equal, unknowns no
+further apart than their proofs allow, or than rounding. Then the card marches through the same
+chunk of designs again and again, and nothing is brought back: that is the speed of the kernels.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+import linkwork as lw
+from linkwork.batch import Family, latin_hypercube
+from linkwork.batch.family_motion import FamilyMotion
+from linkwork.batch.lane_rows import Path
+from linkwork.batch.quantities import quantities
+from linkwork.foundation.errors import InputError
+from linkwork.kernels.lanes.device_compiling import graphics_card, name_of
+from linkwork.kernels.lanes.device_kernel import DeviceKernel
+from linkwork.kernels.lanes.lane_kernel import Gear, Steps
+
+__all__ = ["FAMILIES", "Compared", "compared", "family_of", "kernel_speed", "main"]
+
+#: Mechanisms, the table of their numbers that varies, and by how much.
+FAMILIES = (
+    ("four-bar", "lengths", 0.02),
+    ("jansen-leg", "lengths", 0.01),
+    ("rapier-drive", "dimensions", 0.005),
+    ("rapier-drive-limited", "dimensions", 0.005),  # with dead points
+)
+_ROUNDING = 1e-11  # weighted, of positions that nothing proves
+_HOLDS = 1.0 + 1e-6  # the sum of two radii is rounded
+
+
+def family_of(name: str, table: str, share: float, count: int) -> Family:
+    """Designs of a mechanism of the library; points stay, which lengths are measured against."""
+    mechanism = lw.example(name)
+    ground = set(getattr(mechanism.description, "links", {}).get("ground", ()))
+    own = {
+        quantity.name: quantity.of(mechanism.description)
+        for quantity in quantities(mechanism.description)
+        if quantity.table == table and not ground.issuperset(quantity.key.split())
+    }
+    ranges = {
+        k: (v - share * abs(v), v + share * abs(v)) for k, v in own.items() if share * abs(v) > 0.0
+    }
+    return mechanism.family(latin_hypercube(count, ranges, seed=1))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compared:
+    """One family on the card and on the processor.
+
+    Parameters
+    ----------
+    positions : int
+        That were found.
+    differing : int
+        Rows with another status or certification.
+    apart : float
+        The largest distance of unknowns, weighted.
+    excess : float
+        The largest distance as a share of what is allowed; at most 1 if all agree.
+    """
+
+    positions: int
+    differing: int
+    apart: float
+    excess: float
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the card says what the processor says."""
+        return self.differing == 0 and self.excess <= _HOLDS
+
+
+def compared(ours: FamilyMotion, reference: FamilyMotion) -> Compared:
+    """The card's motion against that of the processor."""
+    differing = (ours.status != reference.status) | (ours.certification != reference.certification)
+    both = ours.found & reference.found
+    table = ours.designs.base.compiled.table
+    turns = table.turns[: table.unknowns]
+    weights = np.where(turns[:, None], 1.0, ours.designs.length_scale)
+    gaps = np.abs(ours.rows.v - reference.rows.v) / weights[:, None, :]
+    gap = gaps.max(axis=0).T[both]
+    proved = (ours.certified & reference.certified)[both]
+    radii = (ours.radius + reference.radius)[both]
+    allowed = np.where(proved, radii, _ROUNDING)
+    return Compared(
+        positions=int(ours.found.sum()),
+        differing=int(differing.sum()),
+        apart=float(gap.max(initial=0.0)),
+        excess=float((gap / allowed).max(initial=0.0)),
+    )
+
+
+def kernel_speed(family: Family, certify: bool, positions: int) -> tuple[int, float]:
+    """Positions that the card marches through without bringing them back, at least so many, and
+    the seconds that takes.
+    """
+    model = family.designs.base
+    path = Path.of(model)
+    assert path is not None
+    march = path.march(family.designs, certify, 1, Gear(device="gpu"))
+    kernel = march.kernel
+    assert isinstance(kernel, DeviceKernel)
+    rows = np.sort(model.rows[:, path.lead])
+    chunk = kernel.chunk(len(rows), len(family))
+    steps = Steps().times(path.size)
+    kernel.load(chunk, march.coefficients, march.guess, march.start, rows, steps)
+    chunk.launch()
+    chunk.send_back()
+    chunk.stream.synchronize()
+    each = max(1, int(chunk.staged["reached"].sum()))
+    times = -(-positions // each)
+    begin = time.perf_counter()
+    for _ in range(times):
+        chunk.launch()
+    chunk.stream.synchronize()
+    return times * each, time.perf_counter() - begin
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Print two lines for each family; 1 if one of them differs, 2 without a graphics card."""
+    parser = argparse.ArgumentParser(prog="scripts/gpu", description=__doc__)
+    names = [name for name, _, _ in FAMILIES]
+    parser.add_argument("family", nargs="*", choices=[[], *names], help="which; all without any")
+    parser.add_argument("--designs", type=int, default=65_536, help="of each family")
+    parser.add_argument(
+        "--positions", type=float, default=1e9, help="marched through for the kernels' speed"
+    )
+    options = parser.parse_args(arguments)
+    try:
+        print(name_of(graphics_card()))
+    except InputError as error:
+        print(error)
+        return 2
+    print(f"{options.designs} designs each; positions/s with transfers, of the kernels alone")
+    held = True
+    for name, table, share in FAMILIES:
+        if not options.family or name in options.family:
+            family = family_of(name, table, share, options.designs)
+            for certify in (True, False):
+                held = _report(name, family, certify, int(options.positions)) and held
+    return 0 if held else 1
+
+
+def _report(name: str, family: Family, certify: bool, positions: int) -> bool:
+    family.take(slice(0, 64)).sweep(certify=certify, device="gpu")  # compiles
+    begin = time.perf_counter()
+    ours = family.sweep(certify=certify, device="gpu")
+    seconds = time.perf_counter() - begin
+    found = compared(ours, family.sweep(certify=certify))
+    del ours
+    count, alone = kernel_speed(family, certify, positions)
+    print(
+        f"{name + (', proved' if certify else ''):<30}{found.positions / seconds:10.2e}"
+        f"{count / alone:10.2e}  {found.positions} positions, {found.differing} rows differ, "
+        f"{found.apart:.0e} apart, {found.excess:.2g} of what is allowed",
+        flush=True,
+    )
+    return found.agrees
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
