@@ -112,7 +112,7 @@ class Consensus:
         """Values (n,) as one number."""
         return cast(float, Lanes(values, self))
 
-    def picked(self, values: AnyArray) -> float:
+    def picked(self, values: AnyArray) -> Any:
         """Values (n,) that are each one of two plain numbers as one number."""
         return self.lanes(values)
 
@@ -430,7 +430,8 @@ def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
     if isinstance(truths, Truths):
         lanes = _first_of_many((yes, no))
         if lanes is None:
-            return cast(_Number, truths.consensus.picked(np.where(truths.values, yes, no)))
+            picked: _Number = truths.consensus.picked(np.where(truths.values, yes, no))
+            return picked
         return cast(_Number, lanes.applied(np.where, truths, yes, no))
     return yes if condition else no
 
@@ -500,7 +501,7 @@ def _extreme(numbers: list[float], default: float, *, most: bool) -> float:
         if many(number):
             better = np.fmax if most else np.fmin
             found = number if found is None else lanes.applied(better, found, number)
-    return _real(found)
+    return cast(float, found)
 
 
 def kept(x: complex) -> bool:

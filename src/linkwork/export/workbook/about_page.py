@@ -15,6 +15,7 @@ from linkwork.foundation.certification import Certification
 __all__ = ["notices", "write_about"]
 
 _WIDTH = 110  # characters of a line of equations
+_LINE, _LINE_LENGTH = 15.0, 95  # height of a line of text, and characters in one
 
 
 def write_about(book: Book, sheet: Any, columns: CycleColumns, version: str) -> None:
@@ -27,12 +28,12 @@ def write_about(book: Book, sheet: Any, columns: CycleColumns, version: str) -> 
     row = 2
     for head, text in _facts(book, version):
         sheet.write(row, 0, head, style["head_left"])
-        sheet.write(row, 1, text, style["wrapped"])
+        _wrapped(sheet, row, text, style["wrapped"])
         row += 1
     row = _checks(book, sheet, columns, row + 1)
     told = list(notices(book))
     row = _listed(book, sheet, row + 1, "Values only", told, "warning")
-    limits = [text for text in book.motion.message.split("\n") if text]
+    limits = [book.motion.message] if book.motion.limits or not book.motion.found.all() else []
     row = _listed(book, sheet, row, "Limits of the motion", limits, "wrapped")
     row += 1
     sheet.write(row, 0, "Equations", style["heading"])
@@ -44,18 +45,24 @@ def write_about(book: Book, sheet: Any, columns: CycleColumns, version: str) -> 
 
 def _facts(book: Book, version: str) -> Iterator[tuple[str, str]]:
     description, count = book.model.description, book.count
-    yield "How to use it", (
-        "Change a yellow cell of the sheet Dimensions: all rows of Cycle are solved again by the "
-        "formulas of Newton. Drawing shows the row whose number stands there."
+    yield (
+        "How to use it",
+        (
+            "Change a yellow cell of the sheet Dimensions: all rows of Cycle are solved again by "
+            "the formulas of Newton. Drawing shows the row whose number stands there."
+        ),
     )
     if description.source:
         yield "Source", description.source
     yield "Written by", f"Linkwork {version}; the sheet Linkwork holds its own values"
     unit = book.unit("angle")
     yield "Units", f"lengths in {description.length}, angles in {unit}, counter-clockwise"
-    yield "Names", (
-        "A name that spreadsheets read as a cell has an underscore behind it: a2 is called a2_. "
-        "Names of unknowns and points mean the row in which a formula stands."
+    yield (
+        "Names",
+        (
+            "A name that spreadsheets read as a cell has an underscore behind it: a2 is called "
+            "a2_. Names of unknowns and points mean the row in which a formula stands."
+        ),
     )
     yield "Rows", f"{count} values of the input, {int(book.iterations.found.sum())} with a position"
     statuses = ", ".join(f"{s.name} {n}" for s, n in book.motion.counts.items())
@@ -78,11 +85,11 @@ def _checks(book: Book, sheet: Any, columns: CycleColumns, row: int) -> int:
     lines: list[tuple[str, str, float, str]] = []
     if found:
         largest = f"=MAX({whole(columns.largest)})"
-        lines.append(("Largest difference from Linkwork", largest, 0.0, "small"))
+        lines.append(("Largest difference from Linkwork", largest, 0.0, "result"))
     if found and columns.equations:
-        lines.append(("Largest sum of squares", f"=MAX({whole(columns.squares)})", 0.0, "small"))
+        lines.append(("Largest sum of squares", f"=MAX({whole(columns.squares)})", 0.0, "result"))
         closing = f'=COUNTIF({whole(columns.closes)},"yes")'
-        lines.append(("Rows that close", closing, found, "count"))
+        lines.append(("Rows that close", closing, found, "result_count"))
     for head, formula, value, look in lines:
         sheet.write(row, 0, head, style["head_left"])
         sheet.write_formula(row, 1, formula, style[look], value)
@@ -90,16 +97,20 @@ def _checks(book: Book, sheet: Any, columns: CycleColumns, row: int) -> int:
     return row
 
 
-def _listed(
-    book: Book, sheet: Any, row: int, title: str, lines: list[str], look: str
-) -> int:
+def _listed(book: Book, sheet: Any, row: int, title: str, lines: list[str], look: str) -> int:
     if not lines:
         return row
     sheet.write(row, 0, title, book.style["head_left"])
     for line in lines:
-        sheet.write(row, 1, line, book.style[look])
+        _wrapped(sheet, row, line, book.style[look])
         row += 1
     return row + 1
+
+
+def _wrapped(sheet: Any, row: int, text: str, look: Any) -> None:
+    """A long text in as many lines as it needs."""
+    sheet.write(row, 1, text, look)
+    sheet.set_row(row, _LINE * -(-len(text) // _LINE_LENGTH))
 
 
 def notices(book: Book) -> Iterator[str]:
@@ -131,6 +142,6 @@ def notices(book: Book) -> Iterator[str]:
     added = int(np.count_nonzero(book.motion.added))
     if added:
         yield (
-            f"{added} rows that the table did not ask for, at limits and on further branches, stand "
-            "on the sheet Linkwork only"
+            f"{added} rows that the table did not ask for, at limits and on further branches, "
+            "stand on the sheet Linkwork only"
         )

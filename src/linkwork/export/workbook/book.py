@@ -24,7 +24,17 @@ from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind
 
-__all__ = ["CYCLE", "DIMENSIONS", "FIRST", "LINKWORK", "NEWTON", "Book", "apart", "cached", "column_name"]
+__all__ = [
+    "CYCLE",
+    "DIMENSIONS",
+    "FIRST",
+    "LINKWORK",
+    "NEWTON",
+    "Book",
+    "apart",
+    "cached",
+    "column_name",
+]
 
 DIMENSIONS, CYCLE, NEWTON, LINKWORK = "Dimensions", "Cycle", "Newton", "Linkwork"
 FIRST = 6  # rows above the first position, on every sheet with a row for every position
@@ -44,7 +54,8 @@ def column_name(column: int) -> str:
 class Book:
     """A workbook while its sheets are written.
 
-    ``values`` holds what formulas come to: numbers of dimensions, arrays (R,) of what every row has.
+    ``values`` holds what formulas come to: numbers of dimensions, arrays (R,) of what
+    every row has.
     """
 
     workbook: Any

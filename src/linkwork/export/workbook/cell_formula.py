@@ -50,7 +50,7 @@ class CellFormula:
 
 @dataclass(frozen=True)
 class _Writer:
-    """Precedence as in spreadsheets: a sign binds more tightly than ``^``, and ``^`` to the left."""
+    """Precedence of spreadsheets: a sign binds more tightly than ``^``, and ``^`` to the left."""
 
     cells: Mapping[str, str]
     degrees: bool

@@ -39,9 +39,7 @@ def _curves(book: Book, kind: Kind) -> list[tuple[str, str]]:
     return found
 
 
-def _chart(
-    book: Book, kind: Kind, curves: list[tuple[str, str]], columns: dict[str, int]
-) -> Any:
+def _chart(book: Book, kind: Kind, curves: list[tuple[str, str]], columns: dict[str, int]) -> Any:
     chart = book.workbook.add_chart({"type": "scatter", "subtype": "straight"})
     leading = next(
         (v for v in book.model.equations.inputs if _moves(book, v.name)),
@@ -72,7 +70,8 @@ def _chart(
     unit = book.unit(kind.value)
     title = {"angle": "angles", "length": "lengths", "number": "numbers"}[kind.value]
     chart.set_y_axis({"name": f"{title} [{unit}]" if unit else title, "major_gridlines": grid})
-    chart.set_title({"name": f"{title.capitalize()} over {book.shown(leading)}"})
+    heading = f"{title.capitalize()} over {book.shown(leading)}"
+    chart.set_title({"name": heading, "name_font": {"size": 13}})
     chart.set_legend({"position": "right"})
     chart.set_size({"width": _WIDTH, "height": _HEIGHT})
     return chart

@@ -6,11 +6,11 @@ Coefficients that are long to write get a cell of their own.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from linkwork.equations.compiling import coordinate_name
-from linkwork.equations.model import LinearEquation, RealEquation, Term, Variable
+from linkwork.equations.model import LinearEquation, RealEquation, Term
 from linkwork.export.workbook.cell_formula import CellFormula
 from linkwork.export.workbook.linear_form import LinearForm, cosine, product, sine
 from linkwork.export.workbook.traced_equations import TracedEquations, forms_of

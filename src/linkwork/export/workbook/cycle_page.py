@@ -9,7 +9,16 @@ from typing import Any
 import numpy as np
 
 from linkwork.equations.compiling import coordinate_name
-from linkwork.export.workbook.book import CYCLE, FIRST, LINKWORK, NEWTON, Book, apart, cached, column_name
+from linkwork.export.workbook.book import (
+    CYCLE,
+    FIRST,
+    LINKWORK,
+    NEWTON,
+    Book,
+    apart,
+    cached,
+    column_name,
+)
 from linkwork.export.workbook.cell_formula import CellFormula
 from linkwork.export.workbook.dimension_page import input_table
 from linkwork.export.workbook.newton_page import NewtonColumns
@@ -138,7 +147,7 @@ class _Page:
             column = self.columns.of[variable.symbol]
             self._head(column, book.shown(variable), book.unit(variable.kind))
             last = self.newton.last.get(number)
-            for k in np.flatnonzero(done.found):
+            for k in np.flatnonzero(done.found).tolist():
                 value = float(done.values[-1][k, number])
                 if last is None or not done.live[k]:
                     self.sheet.write_number(FIRST + k, column, value, book.style["value"])
@@ -151,10 +160,8 @@ class _Page:
         book = self.book
         shown = book.text(formula)
         values = book.over_rows(formula.value(book.values))
-        for k in np.flatnonzero(book.iterations.found):
-            self.sheet.write_formula(
-                FIRST + k, column, shown, book.style[look], cached(values[k])
-            )
+        for k in np.flatnonzero(book.iterations.found).tolist():
+            self.sheet.write_formula(FIRST + k, column, shown, book.style[look], cached(values[k]))
         return values
 
     def _equations(self) -> None:
@@ -177,12 +184,10 @@ class _Page:
             "small",
         )
 
-    def _written(
-        self, column: int, formula: Callable[[int], str], values: Any, look: str
-    ) -> None:
+    def _written(self, column: int, formula: Callable[[int], str], values: Any, look: str) -> None:
         """A formula of its own row's cells in every row that has a position."""
         book = self.book
-        for k in np.flatnonzero(book.iterations.found):
+        for k in np.flatnonzero(book.iterations.found).tolist():
             value = values[k] if isinstance(values[k], str) else cached(values[k])
             self.sheet.write_formula(
                 FIRST + k, column, formula(FIRST + k + 1), book.style[look], value
@@ -217,12 +222,19 @@ class _Page:
             square = column_name(columns.squares)
             self._written(
                 columns.closes,
-                lambda row: f'=IF(ISNUMBER({square}{row}),IF({square}{row}<tolerance,"yes","NO"),"NO")',
+                lambda row: (
+                    f'=IF(ISNUMBER({square}{row}),IF({square}{row}<tolerance,"yes","NO"),"NO")'
+                ),
                 ["yes"] * book.count,
                 "general",
             )
             area = FIRST, columns.closes, FIRST + book.count - 1, columns.closes
-            look = {"type": "cell", "criteria": "==", "value": '"NO"', "format": book.style["wrong"]}
+            look = {
+                "type": "cell",
+                "criteria": "==",
+                "value": '"NO"',
+                "format": book.style["wrong"],
+            }
             self.sheet.conditional_format(*area, look)
         self._written(columns.largest, self._difference, np.zeros(book.count), "small")
         for k, row in enumerate(book.iterations.rows):

@@ -73,7 +73,7 @@ class _Page:
         """Everything but the value; the row for it."""
         row, name = self.row, self.book.names.cells[key]
         self.sheet.write(row, 0, shown)
-        self.sheet.write(row, 2, unit)
+        self.sheet.write(row, 2, unit, self.book.style["unit_right"])
         self.sheet.write(row, 3, name, self.book.style["code"])
         self.sheet.write(row, 4, note, self.book.style["note"])
         self.book.define(key, DIMENSIONS, f"$B${row + 1}")
@@ -168,9 +168,7 @@ class _Page:
         for part in parts:
             row = self._line(part.wanted, "", part.key, "")
             value = cached(book.values[part.key])
-            self.sheet.write_formula(
-                row, 1, book.text(part.formula), book.style["derived"], value
-            )
+            self.sheet.write_formula(row, 1, book.text(part.formula), book.style["derived"], value)
 
     def _tolerance(self) -> None:
         book = self.book

@@ -103,7 +103,7 @@ class _Page:
             self._line(chart, line)
         for circle in book.model_circles:
             self._circle(chart, *circle)
-        self._pins(chart)
+        self._ground(chart)
         low_x, low_y, span, step = self._box()
         axis = {
             "major_gridlines": {"visible": True, "line": {"color": "#e4e7eb", "width": 0.5}},
@@ -126,7 +126,9 @@ class _Page:
         for guide in skeleton.guides:
             yield _Line(f"line of {guide.name}", guide.line, rail)
         for k, bar in enumerate(skeleton.bars):
-            look = {"line": {"color": _COLOURS[k % len(_COLOURS)], "width": 2.75}}
+            colour = {"color": _COLOURS[k % len(_COLOURS)]}
+            pin = {"type": "circle", "size": 7, "fill": {"color": "#ffffff"}, "border": colour}
+            look = {"line": {**colour, "width": 2.75}, "marker": pin}
             points = bar.points + bar.points[:1] if len(bar.points) > 2 else bar.points
             yield _Line(bar.name, points, look)
         for strut in skeleton.struts:
@@ -137,18 +139,23 @@ class _Page:
         known = [point for point in line.points if point in self.place]
         if len(known) < 2:
             return
+        self._placed(chart, line.name, known, {"name": line.name, **line.look})
+
+    def _placed(self, chart: Any, name: str, points: Sequence[str], look: dict[str, Any]) -> None:
+        """A curve through points, which stand below each other for it."""
+        if not points:
+            return
         first = self.bottom
-        for point in known:
-            self.sheet.write(self.bottom, 0, line.name)
+        for point in points:
+            self.sheet.write(self.bottom, 0, name)
             for column, axis in enumerate("xy", 1):
-                letter = column_name(column)
                 values = self.book.over_rows(self.book.values[coordinate_name(point, axis)])
-                self.sheet.write_formula(
-                    self.bottom, column, f"={letter}{self.place[point] + 1}",
-                    self.book.style["number"], cached(float(values[self.shown])),
-                )  # fmt: skip
+                formula = f"={column_name(column)}{self.place[point] + 1}"
+                look_of = self.book.style["number"]
+                value = cached(float(values[self.shown]))
+                self.sheet.write_formula(self.bottom, column, formula, look_of, value)
             self.bottom += 1
-        self._series(chart, SHEET, (first, self.bottom - 1), (1, 2), {"name": line.name, **line.look})
+        self._series(chart, SHEET, (first, self.bottom - 1), (1, 2), look)
         self.bottom += 1
 
     def _circle(self, chart: Any, name: str, center: str, radius: float) -> None:
@@ -161,47 +168,27 @@ class _Page:
         for k in range(_ROUND + 1):
             angle = 360 * k // _ROUND
             self.sheet.write(self.bottom, 0, name)
-            for column, (function, own, turned) in enumerate(
-                (("COS", x, math.cos(math.radians(angle))), ("SIN", y, math.sin(math.radians(angle)))),
-                1,
+            turned = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+            for column, function, own, part in zip(
+                (1, 2), ("COS", "SIN"), (x, y), turned, strict=True
             ):
                 origin = f"{column_name(column)}{self.place[center] + 1}"
                 formula = f"={origin}+{radius!r}*{function}(RADIANS({angle}))"
-                value = cached(float(own) + radius * turned)
-                self.sheet.write_formula(
-                    self.bottom, column, formula, self.book.style["number"], value
-                )
+                value = cached(float(own) + radius * part)
+                look_of = self.book.style["number"]
+                self.sheet.write_formula(self.bottom, column, formula, look_of, value)
             self.bottom += 1
         look = {"line": {"color": "#7b8794", "width": 1.25}, "name": name}
         self._series(chart, SHEET, (first, self.bottom - 1), (1, 2), look)
         self.bottom += 1
 
-    def _pins(self, chart: Any) -> None:
-        """All joints as small circles, ground's filled."""
-        skeleton = self.book.model.skeleton
-        for name, points, fill in (
-            ("joints", skeleton.pins, "#ffffff"), ("ground", skeleton.fixed, "#1f2933"),
-        ):  # fmt: skip
-            own = [point for point in points if point in self.place]
-            if not own:
-                continue
-            marker = {
-                "type": "circle", "size": 7, "fill": {"color": fill},
-                "border": {"color": "#1f2933"},
-            }  # fmt: skip
-            first = self.bottom
-            look = {"name": name, "line": {"none": True}, "marker": marker}
-            for point in own:
-                self.sheet.write(self.bottom, 0, f"{name}: {point}")
-                for column, axis in enumerate("xy", 1):
-                    values = self.book.over_rows(self.book.values[coordinate_name(point, axis)])
-                    self.sheet.write_formula(
-                        self.bottom, column, f"={column_name(column)}{self.place[point] + 1}",
-                        self.book.style["number"], cached(float(values[self.shown])),
-                    )  # fmt: skip
-                self.bottom += 1
-            self._series(chart, SHEET, (first, self.bottom - 1), (1, 2), look)
-            self.bottom += 1
+    def _ground(self, chart: Any) -> None:
+        """The points that stand still as dark squares."""
+        known = [p for p in self.book.model.skeleton.fixed if p in self.place]
+        dark = {"color": "#1f2933"}
+        marker = {"type": "square", "size": 8, "fill": dark, "border": dark}
+        look = {"name": "ground", "line": {"none": True}, "marker": marker}
+        self._placed(chart, "ground", known, look)
 
     def _trace(self, chart: Any, point: str) -> None:
         columns = tuple(self.columns[coordinate_name(point, axis)] for axis in "xy")
@@ -241,8 +228,8 @@ class _Page:
                 high = max(high, np.nanmax(own) + radius)
             lows.append(float(low))
             highs.append(float(high))
-        widest = 1.16 * max(h - l for l, h in zip(lows, highs, strict=True)) or 1.0
-        step = _nice(widest / 8)
+        widest = 1.16 * max(high - low for low, high in zip(lows, highs, strict=True)) or 1.0
+        step = _nice(widest / 10)
         corners = [
             math.floor(((low + high) / 2 - widest / 2) / step) * step
             for low, high in zip(lows, highs, strict=True)

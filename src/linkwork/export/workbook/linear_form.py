@@ -1,7 +1,7 @@
 """Real numbers that are known as formulas: sums of weighted terms, simplified as they are made.
 
-A term is a formula without a numerical factor. Functions take and give radians here; ``radians`` and
-``degrees`` are functions among them, because cells hold everyday angles.
+A term is a formula without a numerical factor. Functions take and give radians here;
+``radians`` and ``degrees`` are functions among them, because cells hold everyday angles.
 """
 
 from __future__ import annotations

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from linkwork.equations.model import Variable
 from linkwork.export.workbook.book import CYCLE, FIRST, NEWTON, Book, apart, cached, column_name
 from linkwork.export.workbook.closure_formulas import BlockFormulas
-from linkwork.equations.model import Variable
 
 __all__ = ["NewtonColumns", "planned_newton", "write_newton"]
 
@@ -179,9 +178,7 @@ class _Block:
     def _next(self, k: int, corrections: int) -> None:
         """x + δ."""
         book = self.book
-        for c, (i, variable) in enumerate(
-            zip(self.block.unknowns, self._variables, strict=True)
-        ):
+        for c, (i, variable) in enumerate(zip(self.block.unknowns, self._variables, strict=True)):
             column = self.columns.x[k + 1, i]
             self._head(column, f"{book.shown(variable)} {k + 1}", book.unit(variable.kind))
             old = book.names.cells[f"iterate {k} {variable.symbol}"]

@@ -10,10 +10,10 @@ import numpy as np
 from linkwork.batch.building import written_equations
 from linkwork.batch.quantities import Quantity, quantities, with_numbers
 from linkwork.equations.model import LoopEquations
-from linkwork.expression.grammar import parse
-from linkwork.expression.tree import Name, Node, names_in
 from linkwork.export.workbook.linear_form import LinearForm
 from linkwork.export.workbook.traced_number import Trace, TracedNumber
+from linkwork.expression.grammar import parse
+from linkwork.expression.tree import Name, Node, names_in
 from linkwork.foundation.lanes import NotElementwise
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Description
@@ -51,10 +51,11 @@ class TracedEquations:
     settled: tuple[str, ...]
 
 
-def forms_of(z: complex) -> tuple[LinearForm, LinearForm]:
+def forms_of(z: object) -> tuple[LinearForm, LinearForm]:
     """The formulas of both parts of a coefficient."""
     if isinstance(z, TracedNumber):
         return z.re, z.im
+    assert isinstance(z, int | float | complex)
     plain = complex(z)
     return LinearForm(plain.real), LinearForm(plain.imag)
 

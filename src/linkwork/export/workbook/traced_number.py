@@ -1,9 +1,9 @@
 """A number that remembers its formula while the equations are built with it.
 
 The builder of a mechanism's equations computes with floats and complex numbers. A traced number
-passes through it as :class:`~linkwork.foundation.lanes.Lanes` of one design do, and knows afterwards
-by which formula it follows from the dimensions. Decisions are taken by its value: which way round a
-link is, in which half turn an angle lies.
+passes through it as :class:`~linkwork.foundation.lanes.Lanes` of one design do, and knows
+afterwards by which formula it follows from the dimensions. Decisions are taken by its value: which
+way round a link is, in which half turn an angle lies.
 """
 
 from __future__ import annotations
@@ -13,8 +13,6 @@ from typing import Any, cast
 
 import numpy as np
 
-from linkwork.expression.lane_functions import FUNCTIONS, least, most
-from linkwork.expression.tree import Binary, Call, Node, Number
 from linkwork.export.workbook.linear_form import (
     LinearForm,
     call,
@@ -23,6 +21,8 @@ from linkwork.export.workbook.linear_form import (
     quotient,
     sine,
 )
+from linkwork.expression.lane_functions import FUNCTIONS, least, most
+from linkwork.expression.tree import Binary, Call, Node, Number
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.lanes import (
@@ -61,7 +61,7 @@ class Trace(Consensus):
         """A real number with its formula."""
         return cast(float, TracedNumber(np.array([value]), self, form, LinearForm()))
 
-    def picked(self, values: AnyArray) -> float:
+    def picked(self, values: AnyArray) -> Any:
         """One of two plain numbers."""
         return self.number(values[0], LinearForm(float(values[0])))
 
@@ -76,9 +76,7 @@ class TracedNumber(Lanes):
     __slots__ = ("im", "re")
     consensus: Trace
 
-    def __init__(
-        self, values: AnyArray, consensus: Trace, re: LinearForm, im: LinearForm
-    ) -> None:
+    def __init__(self, values: AnyArray, consensus: Trace, re: LinearForm, im: LinearForm) -> None:
         super().__init__(values, consensus)
         self.re, self.im = re, im
 

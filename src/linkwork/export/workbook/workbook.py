@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import io
 from dataclasses import dataclass
+from importlib import metadata
 from typing import Any
 
 from linkwork.export.workbook.about_page import notices, write_about
-from linkwork.export.workbook.book import CYCLE, LINKWORK, NEWTON, Book
+from linkwork.export.workbook.book import CYCLE, FIRST, LINKWORK, NEWTON, Book
 from linkwork.export.workbook.chart_page import write_charts
 from linkwork.export.workbook.closure_formulas import ClosureFormulas
 from linkwork.export.workbook.cycle_page import planned_cycle, write_cycle
@@ -24,6 +25,7 @@ from linkwork.results.motion import Motion
 __all__ = ["WrittenWorkbook", "workbook_of"]
 
 _MOST_ROWS = 20_000
+_A4 = 9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,7 +36,7 @@ class WrittenWorkbook:
     notices: tuple[str, ...]
 
 
-def workbook_of(model: Model, motion: Motion, version: str) -> WrittenWorkbook:
+def workbook_of(model: Model, motion: Motion) -> WrittenWorkbook:
     """Write a motion of a mechanism as a workbook that solves it again.
 
     Parameters
@@ -42,8 +44,6 @@ def workbook_of(model: Model, motion: Motion, version: str) -> WrittenWorkbook:
     model : Model
     motion : Motion
         A sweep of that mechanism.
-    version : str
-        Of the program that is named in the workbook.
 
     Raises
     ------
@@ -59,6 +59,7 @@ def workbook_of(model: Model, motion: Motion, version: str) -> WrittenWorkbook:
     not calculate show it as well.
     """
     _check(model, motion)
+    version = metadata.version("linkwork")
     buffer = io.BytesIO()
     workbook = _new(buffer)
     description = model.description
@@ -84,6 +85,12 @@ def workbook_of(model: Model, motion: Motion, version: str) -> WrittenWorkbook:
     write_charts(book, charts, columns.of)
     write_linkwork(book, own)
     write_about(book, about, columns, version)
+    cycle.repeat_rows(FIRST - 3, FIRST - 1)
+    for sheet in workbook.worksheets():
+        sheet.set_landscape()
+        sheet.set_paper(_A4)
+        if sheet.get_name() not in (CYCLE, NEWTON, LINKWORK):
+            sheet.fit_to_pages(1, 0)
     workbook.close()
     return WrittenWorkbook(content=buffer.getvalue(), notices=tuple(notices(book)))
 
