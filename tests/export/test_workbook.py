@@ -11,8 +11,13 @@ import openpyxl
 import pytest
 
 import linkwork as lw
+from linkwork.export.workbook.cell_formula import CellFormula
+from linkwork.export.workbook.cell_names import CellNames
+from linkwork.expression.grammar import parse
+from linkwork.expression.values import value
+from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import InputError, MissingPackageError
-from tests.oracles.spreadsheet import Spreadsheet
+from tests.oracles.spreadsheet import Spreadsheet, calculated
 
 _NEAR = 1e-9  # mm and degrees
 
@@ -37,7 +42,7 @@ def check_rows(sheet: Spreadsheet, motion: Any) -> None:
 @pytest.mark.parametrize(
     "name",
     ["rapier-drive", "four-bar", "slider-crank", "double-four-bar", "jansen-leg", "scotch-yoke",
-     "rack-and-pinion", "excavator", "scissor-lift"],
+     "rack-and-pinion", "excavator", "scissor-lift", "double-butterfly"],
 )  # fmt: skip
 def test_cells_come_to_linkworks_positions(name: str, tmp_path: Path) -> None:
     mechanism = lw.example(name)
@@ -60,6 +65,7 @@ def test_cells_come_to_linkworks_positions(name: str, tmp_path: Path) -> None:
         ("four-bar", "O2A", 37.0, {"lengths": {"O2 A": 37}}),
         ("slider-crank", "S_y", -24.0, {"points": {"S": (0, -24)}}),
         ("slider-crank", "d_offset", 3.0, {"sliders": 3.0}),
+        ("scotch-yoke", "T_y", 12.0, {"points": {"T": (150, 12)}}),
         ("jansen-leg", "BD", 57.0, {"lengths": {"B D": 57}}),
         ("planetary-gear", "OA", 50.0, {"lengths": {"O A": 50}}),
     ],
@@ -79,6 +85,39 @@ def test_a_changed_dimension_is_solved_by_the_cells(
         else:
             parts[table] = {**old, **new}
     check_rows(sheet, mechanism.changed(**parts).sweep(step=30, certify=False))
+
+
+@pytest.mark.parametrize(
+    ("wanted", "name"),
+    [("a2", "a2_"), ("θ12", "theta12"), ("C1C2", "C1C2_"), ("R", "R_"), ("O2A", "O2A"),
+     ("r3'", "r3_prime"), ("true", "true_"), ("B.x", "B.x"), ("3rd", "_3rd")],
+)  # fmt: skip
+def test_a_name_is_none_that_a_spreadsheet_reads_otherwise(wanted: str, name: str) -> None:
+    assert CellNames().claim("key", wanted) == name
+
+
+@pytest.mark.parametrize(
+    "formula",
+    ["-a^2", "-a^2*b", "(-a)^2", "a^b^c", "(a^b)^c", "a - (b - c)", "a/(b*c)", "a/b*c",
+     "-(a + b)^2/c",
+     "atan2(a, b) + hypot(b, c)", "2*sin(a) - cos(b)*tan(c)", "-sqrt(a)*ln(b)/log10(c)",
+     "max(a, b, c)^min(a, b)", "asin(a/c) + acos(a/c) + atan(b)", "exp(-a) + abs(b - c)",
+     "pi - e^a"],
+)  # fmt: skip
+@pytest.mark.parametrize("unit", list(AngleUnit))
+def test_a_cell_formula_means_what_the_files_formula_means(formula: str, unit: AngleUnit) -> None:
+    numbers = {"a": 1.3, "b": 2.1, "c": 1.7}
+    tree = parse(formula)
+    text = CellFormula(tree, unit).text({name: str(number) for name, number in numbers.items()})
+    assert calculated(text) == pytest.approx(value(tree, numbers, unit), rel=1e-13)
+    assert CellFormula(tree, unit).value(numbers) == pytest.approx(value(tree, numbers, unit))
+
+
+def test_names_differ_without_regard_to_capitals() -> None:
+    names = CellNames()
+    assert [names.claim(str(k), wanted) for k, wanted in enumerate(["a2", "A2", "ab", "AB"])] == [
+        "a2_", "A2_2", "ab", "AB_2",
+    ]  # fmt: skip
 
 
 def test_formulas_read_like_the_book(tmp_path: Path) -> None:
@@ -126,9 +165,9 @@ def test_rows_beyond_a_dead_point_say_so_and_the_next_starts_anew(tmp_path: Path
     said = sheet.column("Cycle", "Linkwork says")
     values = sheet.column("Cycle", "s16")
     assert 0 < found.sum() < len(found)
-    for there, text, value in zip(found, said, values, strict=True):
+    for there, text, shown in zip(found, said, values, strict=True):
         assert text.startswith("found") == there
-        assert (value is not None) == there
+        assert (shown is not None) == there
     first = int(np.flatnonzero(~found)[-1]) + 1
     assert said[first] == "found, not asked; starts from an estimate of its own"
     own = motion["s16"][motion.asked]

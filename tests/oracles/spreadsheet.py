@@ -67,8 +67,13 @@ class Spreadsheet:
         return [self[sheet, f"{column}{row}"] for row in range(7, cells.max_row + 1)]
 
 
+def calculated(text: str) -> Any:
+    """A formula without cells."""
+    return _Formula(None, "", 1, text).value()
+
+
 class _Formula:
-    def __init__(self, book: Spreadsheet, sheet: str, row: int, text: str) -> None:
+    def __init__(self, book: Any, sheet: str, row: int, text: str) -> None:
         self.book, self.sheet, self.row = book, sheet, row
         self.tokens: list[tuple[str, str]] = []
         at = 0

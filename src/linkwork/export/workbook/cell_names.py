@@ -10,7 +10,7 @@ from linkwork.foundation.names import canonical
 __all__ = ["CellNames"]
 
 #: What spreadsheets read as a cell, a row, a column or a truth.
-_TAKEN = re.compile(r"[a-z]{1,3}[0-9]+|r[0-9]*(c[0-9]*)?|c[0-9]*|true|false", re.IGNORECASE)
+_TAKEN = re.compile(r"[a-z]{1,3}[0-9]+|[rc][0-9]*([rc][0-9]*)?|true|false", re.IGNORECASE)
 _ODD = re.compile(r"[^\w.]")
 _LONGEST = 200
 

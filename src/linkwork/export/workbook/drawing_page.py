@@ -21,6 +21,7 @@ _CHART = "E2"
 _COLOURS = (
     "#1f6fb4", "#c8553d", "#3a8f5d", "#7d5ba6", "#b8860b", "#2a9d9d", "#a23b72", "#5f6c7b",
 )  # fmt: skip
+_ROW = 16.0  # height of a row, points
 _TABLE = 60  # rows above the tables behind the picture
 
 
@@ -54,6 +55,7 @@ class _Page:
         book, sheet, style = self.book, self.sheet, self.book.style
         found = np.flatnonzero(book.iterations.found)
         self.shown = int(found[len(found) // 6])
+        sheet.set_default_row(_ROW)  # its own, lest a program with another one distorts the chart
         sheet.set_column(0, 0, 18)
         sheet.set_column(1, 2, 14)
         sheet.write(0, 0, f"{book.model.description.name}: drawing", style["title"])

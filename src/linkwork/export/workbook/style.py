@@ -14,7 +14,7 @@ _FORMATS: dict[str, dict[str, Any]] = {
         "bold": True, "align": "center", "bg_color": "#d9e2ec", "border": 1, "border_color": _RULE,
     },
     "head": {"bold": True, "align": "right", "bg_color": "#eef2f6"},
-    "head_left": {"bold": True, "align": "left", "bg_color": "#eef2f6"},
+    "head_left": {"bold": True, "align": "left", "valign": "top", "bg_color": "#eef2f6"},
     "unit": {
         "italic": True, "align": "right", "font_color": _FAINT, "bg_color": "#eef2f6", "bottom": 1,
     },
