@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from linkwork import batch, drawing, motion, textfile
+from linkwork import batch, drawing, export, motion, textfile
 from linkwork import equations as closure
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.mechanism.description import Description
@@ -267,6 +267,35 @@ class Mechanism:
     ) -> None:
         """Draw one position to a PNG, SVG or PDF file; see :meth:`scene`."""
         drawing.write(self.scene(at, configuration=configuration), Path(path))
+
+    def to_excel(self, path: str | Path, motion: Motion | None = None) -> tuple[str, ...]:
+        """Write a sweep as an Excel workbook whose formulas solve it again.
+
+        Parameters
+        ----------
+        path : str or Path
+            Name of the .xlsx file.
+        motion : Motion, optional
+            A sweep of this mechanism; :meth:`sweep` unless given.
+
+        Returns
+        -------
+        tuple of str
+            What in the workbook is values only, and does not follow its dimensions.
+
+        Raises
+        ------
+        InputError
+            If the name is no .xlsx, or the motion is not this mechanism's.
+        MissingPackageError
+            Without XlsxWriter.
+        """
+        if Path(path).suffix.lower() != ".xlsx":
+            raise InputError(f'cannot write "{path}": workbooks are written as .xlsx')
+        cycle = self.sweep() if motion is None else motion
+        written = export.workbook_of(self.model, cycle)
+        Path(path).write_bytes(written.content)
+        return written.notices
 
     def save(self, path: str | Path) -> None:
         """Write the mechanism as a TOML file."""

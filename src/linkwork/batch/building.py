@@ -27,14 +27,15 @@ from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.motion.model import Model, model_of
 
-__all__ = ["Builder", "built", "family_base"]
+__all__ = ["Builder", "built", "family_base", "written_equations"]
 
 _BLOCK = 1 << 14  # designs built together: their lanes stay in the processor's cache
 _MOST_PASSES = 100
 _COMPLEX = ("loops", "points")
 
 
-def _equations(description: Description) -> LoopEquations:
+def written_equations(description: Description) -> LoopEquations:
+    """The equations of a description, whose numbers may be lanes."""
     match description:
         case Linkage():
             return write_loops(description)
@@ -115,7 +116,7 @@ class Builder:
         alone = False
         with np.errstate(all="ignore"):
             try:
-                equations = _equations(with_numbers(self.base.description, numbers))
+                equations = written_equations(with_numbers(self.base.description, numbers))
                 found = self.pattern.coefficients(equations)
             except NotElementwise:
                 alone = True
@@ -215,7 +216,7 @@ def family_base(model: Model, varied: Sequence[Quantity]) -> tuple[Model, bool]:
     numbers = {q: consensus.lanes(np.array([q.of(description)])) for q in varied}
     try:
         with np.errstate(all="ignore"):
-            equations = _equations(with_numbers(description, numbers))
+            equations = written_equations(with_numbers(description, numbers))
     except NotElementwise:
         return model, True
     own, wider = Pattern.of(model.equations), Pattern.of(equations)

@@ -30,9 +30,9 @@ class Quantity:
 
     def of(self, description: Description) -> float:
         """Its value in a description, everyday units."""
-        return description.numbers(self._written(description))
+        return description.numbers(self.written(description))
 
-    def _written(self, description: Description) -> Number:
+    def written(self, description: Description) -> Number:
         table: Any = getattr(description, self.table)
         if self.table == "points":
             number: Number = table[self.key][self.axis]

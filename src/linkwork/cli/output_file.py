@@ -8,24 +8,30 @@ from pathlib import Path
 
 from linkwork.foundation.errors import InputError
 
-__all__ = ["check_outputs", "write_text"]
+__all__ = ["check_outputs", "write_bytes", "write_text"]
 
 
-def check_outputs(source: str, *outputs: str | None) -> None:
+def check_outputs(source: str, *outputs: str | None, workbook: str | None = None) -> None:
     """Refuse files that cannot be written, before anything is computed.
 
     Raises
     ------
     InputError
-        If a folder is missing, two outputs are one file, or one is the mechanism file itself.
+        If a folder is missing, two outputs are one file, one is the mechanism file itself, or a
+        name ends as that of another kind of file.
     """
+    if workbook is not None and Path(workbook).suffix.lower() != ".xlsx":
+        raise InputError(f'cannot write "{workbook}": a workbook is an .xlsx file, name it so')
     taken = {} if source == "-" else {_real(source): f'"{source}" is the mechanism itself'}
-    for name in outputs:
+    for name in (*outputs, workbook):
         if name is None or name == "-":
             continue
         path = Path(name)
-        if path.suffix.lower() in (".xlsx", ".xls", ".ods"):
-            raise InputError(f'cannot write "{name}": tables are written as CSV, name it .csv')
+        if name is not workbook and path.suffix.lower() in (".xlsx", ".xls", ".ods"):
+            raise InputError(
+                f'cannot write "{name}": tables are written as CSV, name it .csv; '
+                "linkwork sweep writes workbooks with --xlsx"
+            )
         if path.is_dir():
             raise InputError(f'cannot write "{name}": it is a folder')
         if not path.parent.is_dir():
@@ -44,11 +50,22 @@ def write_text(name: str, pieces: Iterable[str]) -> None:
     InputError
         If the file cannot be written; what was there before is kept.
     """
+    write_bytes(name, (piece.encode() for piece in pieces))
+
+
+def write_bytes(name: str, pieces: Iterable[bytes]) -> None:
+    """Write a file; a link is followed, a device is written to.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written; what was there before is kept.
+    """
     target = Path(_real(name))
     regular = target.is_file() or not target.exists()
     part = target.with_name(f".{target.name}.{os.getpid()}.part") if regular else target
     try:
-        with part.open("w", encoding="utf-8", newline="\n") as file:
+        with part.open("wb") as file:
             file.writelines(pieces)
         if regular:
             part.replace(target)

@@ -19,12 +19,12 @@ from linkwork.cli.options import (
     json_option,
     set_option,
 )
-from linkwork.cli.output_file import check_outputs, write_text
+from linkwork.cli.output_file import check_outputs, write_bytes, write_text
 from linkwork.cli.position_page import residual_measure
 from linkwork.cli.terminal import print_json, print_lines, progress, wrapped
 from linkwork.drawing.scene import Scene
 from linkwork.everyday import Mechanism
-from linkwork.export.csv_file import csv_lines
+from linkwork.export import csv_lines, workbook_of
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.mechanism.parts import Number
@@ -56,6 +56,7 @@ __all__ = ["sweep"]
 )
 @click.option("--no-certificates", is_flag=True, help="Prove nothing: faster.")
 @click.option("--csv", metavar="PATH", help="Write the whole table; - is standard output.")
+@click.option("--xlsx", metavar="PATH", help="Write a workbook whose formulas solve it again.")
 @click.option("--draw", metavar="PATH", help="Draw the motion: .png, .svg or .pdf.")
 @set_option
 @json_option
@@ -73,6 +74,7 @@ def sweep(
     limits_of: tuple[str, ...],
     no_certificates: bool,
     csv: str | None,
+    xlsx: str | None,
     draw: str | None,
     changes: tuple[str, ...],
     as_json: bool,
@@ -85,6 +87,7 @@ def sweep(
     \b
       linkwork sweep rapier.toml
       linkwork sweep rapier.toml --csv rapier.csv --draw rapier.png
+      linkwork sweep rapier.toml --xlsx rapier.xlsx
       linkwork sweep rapier.toml --from 90 --to 180 --step 0.5 --csv - | head
       linkwork sweep rapier.toml --through --limits-of s16
     """
@@ -92,7 +95,7 @@ def sweep(
         raise InputError("--json and --csv - both want standard output: name a file for the table")
     if draw is not None:
         picture.check_picture(draw)
-    check_outputs(file, csv, draw)
+    check_outputs(file, csv, draw, workbook=xlsx)
     mechanism = read_mechanism(file, changes)
     if draw is not None:
         picture.check_points(mechanism)
@@ -110,6 +113,8 @@ def sweep(
         )
     page = None if draw is None else _scene(mechanism, motion, configuration)
     written = _written(motion, page, csv, draw)
+    if xlsx is not None:
+        written += _written_workbook(mechanism, motion, xlsx)
     if as_json:
         print_json(_data(motion))
     elif csv != "-":
@@ -142,6 +147,17 @@ def _written(motion: Motion, page: Scene | None, csv: str | None, draw: str | No
         said.append(f"Wrote {draw}: the start position{moving}.")
     elif draw is not None:
         said.append(f"Did not write {draw}: there is no position to draw.")
+    return said
+
+
+def _written_workbook(mechanism: Mechanism, motion: Motion, path: str) -> list[str]:
+    """Write the workbook, and say so with what in it is values only."""
+    found = workbook_of(mechanism.model, motion)
+    write_bytes(path, [found.content])
+    rows = int(motion.asked.sum())
+    said = [f"Wrote {path}: {rows} rows with formulas; change a yellow cell to solve them again."]
+    for notice in found.notices:
+        said += wrapped(f"  {notice}.")
     return said
 
 

@@ -8,16 +8,27 @@ from typing import Any, cast
 
 import numpy as np
 
-from linkwork.foundation.lanes import Lanes, many
+from linkwork.foundation.lanes import Lanes
 
-__all__ = ["applied"]
+__all__ = ["FUNCTIONS", "applied"]
 
-_FUNCTIONS: dict[str, Callable[..., Any]] = {
+
+def least(*numbers: Any) -> Any:
+    """The smallest of numbers, element by element."""
+    return reduce(np.minimum, numbers)
+
+
+def most(*numbers: Any) -> Any:
+    """The largest of numbers, element by element."""
+    return reduce(np.maximum, numbers)
+
+
+#: Functions of arrays by their name in formulas; angles in radians.
+FUNCTIONS: dict[str, Callable[..., Any]] = {
     "sqrt": np.sqrt, "exp": np.exp, "ln": np.log, "log10": np.log10, "abs": np.abs,
     "hypot": np.hypot, "sin": np.sin, "cos": np.cos, "tan": np.tan,
     "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2,
-    "min": lambda *numbers: reduce(np.minimum, numbers),
-    "max": lambda *numbers: reduce(np.maximum, numbers),
+    "min": least, "max": most,
 }  # fmt: skip
 
 _PARTIAL = ("sqrt", "exp", "ln", "log10", "asin", "acos")
@@ -33,8 +44,8 @@ def applied(name: str, arguments: Sequence[float]) -> float:
     """
     given: list[object] = list(arguments)
     first = next(number for number in given if isinstance(number, Lanes))
-    bare = [number.values if many(number) else number for number in given]
-    found = np.asarray(_FUNCTIONS[name](*bare))
-    if name in _PARTIAL and (wrong := ~np.isfinite(found)).any() and first.consensus.decide(wrong):
+    found = first.applied(FUNCTIONS[name], *given)
+    wrong = ~np.isfinite(found.values)
+    if name in _PARTIAL and wrong.any() and first.consensus.decide(wrong):
         raise OverflowError if name == "exp" else ValueError
-    return cast(float, first.like(found))
+    return cast(float, found)

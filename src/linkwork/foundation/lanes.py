@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, cast
 
 import numpy as np
 
-from linkwork.foundation.arrays import AnyArray, Array, BoolArray
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray
 
 if TYPE_CHECKING:
     from typing import TypeGuard
@@ -50,6 +50,7 @@ __all__ = [
     "phase",
     "rect",
     "remainder",
+    "remainders",
     "rest_of",
     "row_of",
     "settled",
@@ -58,6 +59,7 @@ __all__ = [
     "sqrt",
     "turn",
     "vector",
+    "with_parts",
 ]
 
 
@@ -110,6 +112,10 @@ class Consensus:
         """Values (n,) as one number."""
         return cast(float, Lanes(values, self))
 
+    def picked(self, values: AnyArray) -> Any:
+        """Values (n,) that are each one of two plain numbers as one number."""
+        return self.lanes(values)
+
 
 class Truths:
     """Whether something holds, lane by lane; as a condition the leader's answer."""
@@ -152,6 +158,14 @@ class Lanes:
     def like(self, values: AnyArray) -> Lanes:
         """Other values of the same lanes."""
         return Lanes(values, self.consensus)
+
+    def applied(self, function: Callable[..., Any], *numbers: object) -> Lanes:
+        """A NumPy function of plain numbers and lanes, lane by lane."""
+        return self.like(np.asarray(function(*map(_bare, numbers))))
+
+    def settled(self) -> Any:
+        """The leader's number, which has to be that of all lanes."""
+        return self.consensus.settle(self.values)
 
     def holds(self, truths: BoolArray) -> Truths:
         """Whether something holds in the same lanes."""
@@ -315,24 +329,27 @@ def vector(x: float, y: float) -> complex:
     lanes = _first_of_many((x, y))
     if lanes is None:
         return complex(x, y)
-    values = np.empty(len(lanes.values), dtype=complex)
-    values.real, values.imag = _bare(x), _bare(y)
-    return _complex(lanes.like(values))
+    return _complex(lanes.applied(with_parts, x, y))
+
+
+def with_parts(x: Array, y: Array) -> ComplexArray:
+    """Arrays x + iy, signs of zeros kept."""
+    values = np.empty(np.broadcast_shapes(np.shape(x), np.shape(y)), dtype=complex)
+    values.real, values.imag = x, y
+    return values
 
 
 def phase(z: complex) -> float:
     """The direction of a vector, in (-π, π]."""
     if many(z):
-        return _real(z.like(np.angle(z.values)))
+        return _real(z.applied(np.angle, z))
     return cmath.phase(z)
 
 
 def turn(angle: float) -> complex:
     """e^(i angle)."""
     if many(angle):
-        return vector(
-            _real(angle.like(np.cos(angle.values))), _real(angle.like(np.sin(angle.values)))
-        )
+        return vector(_real(angle.applied(np.cos, angle)), _real(angle.applied(np.sin, angle)))
     return cmath.exp(1j * angle)
 
 
@@ -340,10 +357,10 @@ def exponential(z: complex) -> complex:
     """e^z; raises OverflowError where it is too large, as ``cmath`` does."""
     if not many(z):
         return cmath.exp(z)
-    found = np.exp(z.values)
-    if (wrong := ~np.isfinite(found)).any() and z.consensus.decide(wrong):
+    found = z.applied(np.exp, z)
+    if (wrong := ~np.isfinite(found.values)).any() and z.consensus.decide(wrong):
         raise OverflowError
-    return _complex(z.like(found))
+    return _complex(found)
 
 
 def rect(length: float, angle: float) -> complex:
@@ -355,7 +372,7 @@ def rect(length: float, angle: float) -> complex:
 
 def sqrt(x: float) -> float:
     """The square root; NaN in lanes where it is not real."""
-    return _real(x.like(np.sqrt(x.values))) if many(x) else math.sqrt(x)
+    return _real(x.applied(np.sqrt, x)) if many(x) else math.sqrt(x)
 
 
 def hypot(x: float, y: float) -> float:
@@ -363,26 +380,29 @@ def hypot(x: float, y: float) -> float:
     lanes = _first_of_many((x, y))
     if lanes is None:
         return math.hypot(x, y)
-    return _real(lanes.like(np.hypot(_bare(x), _bare(y))))
+    return _real(lanes.applied(np.hypot, x, y))
 
 
 def copysign(size: float, sign: float) -> float:
     """A plain size with the sign of a number."""
-    return (
-        _real(sign.like(np.copysign(size, sign.values)))
-        if many(sign)
-        else math.copysign(size, sign)
-    )
+    if many(sign):
+        return _real(sign.applied(np.copysign, size, sign))
+    return math.copysign(size, sign)
 
 
 def remainder(x: float, period: float) -> float:
     """x less whole periods, at most half a period in size; exact."""
     if not many(x):
         return math.remainder(x, period)
-    rest = np.fmod(x.values, period)
-    size, odd = np.abs(rest), np.trunc(x.values / period) % 2 == 1
+    return _real(x.applied(remainders, x, period))
+
+
+def remainders(x: Array, period: float) -> Array:
+    """:func:`remainder` of an array."""
+    rest = np.fmod(x, period)
+    size, odd = np.abs(rest), np.trunc(x / period) % 2 == 1
     over = (size > period / 2) | ((size == period / 2) & odd)
-    return _real(x.like(np.where(over, rest - np.copysign(period, rest), rest)))
+    return np.where(over, rest - np.copysign(period, rest), rest)
 
 
 def degrees(angle: float) -> float:
@@ -408,8 +428,11 @@ def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
     """``yes`` where the condition holds, else ``no``; both are computed."""
     truths: object = condition
     if isinstance(truths, Truths):
-        chosen: AnyArray = np.where(truths.values, _bare(yes), _bare(no))
-        return cast(_Number, Lanes(chosen, truths.consensus))
+        lanes = _first_of_many((yes, no))
+        if lanes is None:
+            picked: _Number = truths.consensus.picked(np.where(truths.values, yes, no))
+            return picked
+        return cast(_Number, lanes.applied(np.where, truths, yes, no))
     return yes if condition else no
 
 
@@ -477,8 +500,8 @@ def _extreme(numbers: list[float], default: float, *, most: bool) -> float:
     for number in numbers:
         if many(number):
             better = np.fmax if most else np.fmin
-            found = number.values if found is None else better(found, number.values)
-    return _real(lanes.like(found))
+            found = number if found is None else lanes.applied(better, found, number)
+    return cast(float, found)
 
 
 def kept(x: complex) -> bool:
@@ -505,7 +528,7 @@ def led(x: float) -> float:
 
 def settled(x: float) -> float:
     """A number that has to be one for all designs, as a weight of an angle."""
-    return cast(float, x.consensus.settle(x.values)) if many(x) else x
+    return cast(float, x.settled()) if many(x) else x
 
 
 def row_of(numbers: Iterable[float]) -> Array:

@@ -12,7 +12,7 @@ from linkwork.foundation.arrays import Array, BoolArray, CountArray, StatusArray
 from linkwork.foundation.status import Status
 from linkwork.numerics.system import System
 
-__all__ = ["NewtonOptions", "NewtonResult", "newton"]
+__all__ = ["NewtonOptions", "NewtonResult", "corrections", "newton"]
 
 _CONVERGED = Status.CONVERGED.code
 _FAR = 1e9  # weighted size of a correction beyond which the iteration has run away
@@ -165,7 +165,7 @@ class _Iteration:
 
     def _corrected(self, k: int, here: Array, f: Array, jacobian: Array) -> Array:
         """The corrections of the live rows; rows with a singular Jacobian leave."""
-        change, singular = _corrections(jacobian, f)
+        change, singular = corrections(jacobian, f)
         if singular.any():
             self._leave(singular, Status.SINGULAR_JACOBIAN)
             if self.watch is not None:
@@ -186,7 +186,7 @@ class _Iteration:
         self.live, self.last = self.live[rows], self.last[rows]
 
 
-def _corrections(jacobian: Array, f: Array) -> tuple[Array, BoolArray]:
+def corrections(jacobian: Array, f: Array) -> tuple[Array, BoolArray]:
     """-J⁻¹F per lane, and the lanes where J is singular to rounding."""
     try:
         change = -np.linalg.solve(jacobian, f[:, :, None])[:, :, 0]

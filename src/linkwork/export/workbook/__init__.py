@@ -1,0 +1,1 @@
+"""A motion as an Excel workbook whose cells solve it again."""

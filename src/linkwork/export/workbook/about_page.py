@@ -1,0 +1,147 @@
+"""The first sheet: what the workbook is, what it can follow, and what Linkwork says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from linkwork.equations.writing import EquationSheet
+from linkwork.export.workbook.book import CYCLE, FIRST, Book, column_name
+from linkwork.export.workbook.cycle_page import CycleColumns
+from linkwork.foundation.certification import Certification
+
+__all__ = ["notices", "write_about"]
+
+_WIDTH = 110  # characters of a line of equations
+_LINE, _LINE_LENGTH = 15.0, 95  # height of a line of text, and characters in one
+
+
+def write_about(book: Book, sheet: Any, columns: CycleColumns, version: str) -> None:
+    """Title, how to use it, what is values only, Linkwork's evidence, the equations."""
+    style, description = book.style, book.model.description
+    sheet.hide_gridlines(2)
+    sheet.set_column(0, 0, 30)
+    sheet.set_column(1, 1, 100)
+    sheet.write(0, 0, description.name, style["title"])
+    row = 2
+    for head, text in _facts(book, version):
+        sheet.write(row, 0, head, style["head_left"])
+        _wrapped(sheet, row, text, style["wrapped"])
+        row += 1
+    row = _checks(book, sheet, columns, row + 1)
+    told = list(notices(book))
+    row = _listed(book, sheet, row + 1, "Values only", told, "warning")
+    limits = [book.motion.message] if book.motion.limits or not book.motion.found.all() else []
+    row = _listed(book, sheet, row, "Limits of the motion", limits, "wrapped")
+    row += 1
+    sheet.write(row, 0, "Equations", style["heading"])
+    sheet.write(row, 1, "", style["heading"])
+    for line in EquationSheet(book.model.equations).text(_WIDTH).splitlines():
+        row += 1
+        sheet.write_string(row, 0, line, style["code"])
+
+
+def _facts(book: Book, version: str) -> Iterator[tuple[str, str]]:
+    description, count = book.model.description, book.count
+    yield (
+        "How to use it",
+        (
+            "Change a yellow cell of the sheet Dimensions: all rows of Cycle are solved again by "
+            "the formulas of Newton. Drawing shows the row whose number stands there."
+        ),
+    )
+    if description.source:
+        yield "Source", description.source
+    yield "Written by", f"Linkwork {version}; the sheet Linkwork holds its own values"
+    unit = book.unit("angle")
+    yield "Units", f"lengths in {description.length}, angles in {unit}, counter-clockwise"
+    yield (
+        "Names",
+        (
+            "A name that spreadsheets read as a cell has an underscore behind it: a2 is called "
+            "a2_. Names of unknowns and points mean the row in which a formula stands."
+        ),
+    )
+    yield "Rows", f"{count} values of the input, {int(book.iterations.found.sum())} with a position"
+    statuses = ", ".join(f"{s.name} {n}" for s, n in book.motion.counts.items())
+    yield "Status of all rows", statuses
+    proved = sum(c is Certification.CERTIFIED for c in book.motion.certification)
+    yield "Proved by Linkwork", f"{proved} of {len(book.motion)} rows"
+    yield "Iterations in every row", str(book.iterations.count)
+
+
+def _checks(book: Book, sheet: Any, columns: CycleColumns, row: int) -> int:
+    """What the cells say about themselves, as formulas."""
+    style = book.style
+    rows = f"{FIRST + 1}", f"{book.last}"
+
+    def whole(column: int) -> str:
+        letter = column_name(column)
+        return f"{CYCLE}!{letter}{rows[0]}:{letter}{rows[1]}"
+
+    found = int(book.iterations.found.sum())
+    lines: list[tuple[str, str, float, str]] = []
+    if found:
+        largest = f"=MAX({whole(columns.largest)})"
+        lines.append(("Largest difference from Linkwork", largest, 0.0, "result"))
+    if found and columns.equations:
+        lines.append(("Largest sum of squares", f"=MAX({whole(columns.squares)})", 0.0, "result"))
+        closing = f'=COUNTIF({whole(columns.closes)},"yes")'
+        lines.append(("Rows that close", closing, found, "result_count"))
+    for head, formula, value, look in lines:
+        sheet.write(row, 0, head, style["head_left"])
+        sheet.write_formula(row, 1, formula, style[look], value)
+        row += 1
+    return row
+
+
+def _listed(book: Book, sheet: Any, row: int, title: str, lines: list[str], look: str) -> int:
+    if not lines:
+        return row
+    sheet.write(row, 0, title, book.style["head_left"])
+    for line in lines:
+        _wrapped(sheet, row, line, book.style[look])
+        row += 1
+    return row + 1
+
+
+def _wrapped(sheet: Any, row: int, text: str, look: Any) -> None:
+    """A long text in as many lines as it needs."""
+    sheet.write(row, 1, text, look)
+    sheet.set_row(row, _LINE * -(-len(text) // _LINE_LENGTH))
+
+
+def notices(book: Book) -> Iterator[str]:
+    """What does not follow the yellow cells, and why."""
+    unknowns = book.model.equations.unknowns
+    for block in book.closure.blocks:
+        if block.reason:
+            own = ", ".join(book.shown(unknowns[k]) for k in block.unknowns)
+            yield f"{own}: {block.reason}; the column holds Linkwork's values"
+    fixed = [d.name for d in book.dimensions if not d.live]
+    if fixed:
+        yield (
+            f"{', '.join(fixed)}: the equations follow from these by more than a formula; they "
+            "keep the values of the file"
+        )
+    names = {d.key: d.name for d in book.dimensions}
+    settled = [names.get(key, key) for key in book.traced.settled]
+    if settled:
+        yield f"{', '.join(settled)}: ratios of wheels keep the values of the file"
+    held = int((book.iterations.found & ~book.iterations.live).sum())
+    if held:
+        yield (
+            f"{held} rows: Newton-Raphson has no answer there, as at a change point; they hold "
+            "Linkwork's values"
+        )
+    lost = book.count - int(book.iterations.found.sum())
+    if lost:
+        yield f"{lost} rows: there is no position; what Linkwork says stands in the last column"
+    added = int(np.count_nonzero(book.motion.added))
+    if added:
+        yield (
+            f"{added} rows that the table did not ask for, at limits and on further branches, "
+            "stand on the sheet Linkwork only"
+        )

@@ -1,0 +1,38 @@
+"""Names of cells: ``a2`` is a cell of every sheet, so the dimension a2 is called ``a2_``."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from linkwork.foundation.names import canonical
+
+__all__ = ["CellNames"]
+
+#: What spreadsheets read as a cell, a row, a column or a truth.
+_TAKEN = re.compile(r"[a-z]{1,3}[0-9]+|[rc][0-9]*([rc][0-9]*)?|true|false", re.IGNORECASE)
+_ODD = re.compile(r"[^\w.]")
+_LONGEST = 200
+
+
+@dataclass
+class CellNames:
+    """Names that a spreadsheet takes, all different; upper and lower case are the same there."""
+
+    cells: dict[str, str] = field(default_factory=dict)
+    _used: set[str] = field(default_factory=set)
+
+    def claim(self, key: str, wanted: str) -> str:
+        """A name for what formulas call ``key``, as near as possible to the one that is wanted."""
+        stem = _ODD.sub("_", canonical(wanted).replace("'", "_prime"))[:_LONGEST]
+        if not (stem[0].isalpha() or stem[0] == "_"):
+            stem = f"_{stem}"
+        if _TAKEN.fullmatch(stem):
+            stem += "_"
+        name, count = stem, 1
+        while name.casefold() in self._used:
+            count += 1
+            name = f"{stem.rstrip('_')}_{count}"
+        self._used.add(name.casefold())
+        self.cells[key] = name
+        return name

@@ -1,0 +1,148 @@
+"""What the cells of a workbook come to: each row's Newton-Raphson from the row above."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.export.workbook.closure_formulas import ClosureFormulas
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray, IndexArray
+from linkwork.motion.model import Model
+from linkwork.numerics.newton import corrections
+from linkwork.results.motion import Motion
+
+__all__ = ["Iterations", "iterated"]
+
+_FEWEST, _MOST = 3, 8  # iterations in a row of cells
+_SPARE = 1  # more than this mechanism needs, for another one that is tried in the sheet
+_DONE = 1e-11  # weighted: a correction this small was the last that was needed
+_RIGHT = 1e-10  # weighted: how near the cells come to the position itself
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Iterations:
+    """The iterations of R rows that were asked for.
+
+    Parameters
+    ----------
+    rows : (R,)
+        Numbers of the rows among those of the motion.
+    values : (K + 1, R, N)
+        Unknowns at every iterate, inputs behind them, everyday units; NaN without a position.
+    above : (R,)
+        The row from which each row starts, -1 where it starts from an estimate of its own.
+    found, live : (R,) bool
+        Rows that have a position, and those whose cells find it themselves.
+    """
+
+    rows: IndexArray
+    values: Array
+    above: IndexArray
+    found: BoolArray
+    live: BoolArray
+
+    @property
+    def count(self) -> int:
+        """K: how many iterations every row has."""
+        return len(self.values) - 1
+
+
+def iterated(model: Model, motion: Motion, closure: ClosureFormulas) -> Iterations:
+    """Simulate the cells.
+
+    A row that does not come to its position from the row above starts from a rounded estimate of
+    it; where that fails as well, as at a change point, its cells hold the values only.
+    """
+    rows = np.flatnonzero(motion.asked)
+    scale = _everyday(model)
+    inputs = np.stack([motion.inputs[v.name] for v in model.equations.inputs], axis=1)[rows]
+    right = np.concatenate([motion.q[rows] / scale[: motion.q.shape[1]], inputs], axis=1)
+    found = motion.found[rows] & np.isfinite(right).all(axis=1)
+    right[~found] = np.nan
+    before = np.full(len(rows), -1, dtype=np.intp)
+    last = -1
+    for k in range(len(rows)):
+        before[k] = last
+        last = k if found[k] else last
+    start, above = _rounded(model, right), np.full(len(rows), -1, dtype=np.intp)
+    values = np.repeat(right[None], _MOST + 1, axis=0)
+    live = np.zeros(len(rows), dtype=bool)
+    for attempt in ("above", "estimate", "value"):
+        trying = np.flatnonzero(found & ~live & ((before >= 0) | (attempt != "above")))
+        if attempt == "above":
+            guess = right[before[trying]]
+        else:
+            guess = start[trying] if attempt == "estimate" else right[trying]
+        tried = _newton(model, closure, guess, right[trying])
+        away = np.abs((tried[-1] - right[trying]) * scale / _sizes(model)).max(axis=1, initial=0.0)
+        good = away <= _RIGHT
+        values[:, trying[good]] = tried[:, good]
+        live[trying[good]] = True
+        if attempt == "above":
+            above[trying[good]] = before[trying[good]]
+        elif attempt == "value":
+            values[:, trying[~good]] = right[trying[~good]]
+    needed = _needed(model, values[:, live])
+    return Iterations(
+        rows=rows,
+        values=_with_count(values, min(max(needed + _SPARE, _FEWEST), _MOST)),
+        above=above,
+        found=found,
+        live=live,
+    )
+
+
+def _with_count(values: Array, count: int) -> Array:
+    return values[: count + 1]
+
+
+def _everyday(model: Model) -> Array:
+    """Internal units per everyday unit of all variables, (N,)."""
+    turns = np.array([v.kind == "angle" for v in model.equations.variables])
+    return np.where(turns, model.equations.angle.radians, 1.0)
+
+
+def _sizes(model: Model) -> Array:
+    return model.compiled.solver.variable_scale
+
+
+def _rounded(model: Model, right: Array) -> Array:
+    """Estimates as a person would write them: three digits of a variable's size."""
+    digits = [
+        int(2 - np.floor(np.log10(size / unit)))
+        for size, unit in zip(_sizes(model), _everyday(model), strict=True)
+    ]
+    columns = [np.round(column, d) for column, d in zip(right.T, digits, strict=True)]
+    return np.stack(columns, axis=1) if columns else right
+
+
+def _newton(model: Model, closure: ClosureFormulas, guess: Array, right: Array) -> Array:
+    """Iterates of the cells, (K + 1, B, N): block by block, each with the values before it."""
+    unknowns = len(model.equations.unknowns)
+    scale = _everyday(model)
+    known = right.copy()
+    values = np.repeat(right[None], _MOST + 1, axis=0)
+    for block, formulas in zip(model.compiled.solver.blocks, closure.blocks, strict=True):
+        if not formulas.rows:
+            continue
+        own = block.unknowns
+        known[:, own] = guess[:, own]
+        values[0][:, own] = guess[:, own]
+        for k in range(_MOST):
+            here = (known * scale)[:, block.variables]
+            with np.errstate(all="ignore"):
+                f, jacobian = block.system.residual_and_jacobian(here)
+                change, _ = corrections(jacobian[:, :, : len(own)], f)
+            known[:, own] += change / scale[own]
+            values[k + 1][:, own] = known[:, own]
+    assert unknowns <= values.shape[2]
+    return values
+
+
+def _needed(model: Model, values: Array) -> int:
+    """After how many iterations nothing changes any more."""
+    scale = _everyday(model) / _sizes(model)
+    changes: AnyArray = np.abs(np.diff(values, axis=0) * scale).max(axis=(1, 2), initial=0.0)
+    large = np.flatnonzero(changes > _DONE)
+    return int(large[-1]) + 1 if len(large) else 1

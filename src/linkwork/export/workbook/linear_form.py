@@ -1,0 +1,200 @@
+"""Real numbers that are known as formulas: sums of weighted terms, simplified as they are made.
+
+A term is a formula without a numerical factor. Functions take and give radians here;
+``radians`` and ``degrees`` are functions among them, because cells hold everyday angles.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
+
+__all__ = ["LinearForm", "call", "cosine", "product", "quotient", "sine"]
+
+_DEGREE = math.pi / 180.0
+_SHORT = 1e-13  # relative: a factor this near to a short number is that number
+
+
+@dataclass(frozen=True)
+class LinearForm:
+    """``Σ weight · term + constant``; terms differ and no weight is 0."""
+
+    constant: float = 0.0
+    terms: tuple[tuple[Node, float], ...] = ()
+
+    @classmethod
+    def of(cls, node: Node) -> LinearForm:
+        """One term."""
+        return cls(0.0, ((node, 1.0),))
+
+    @classmethod
+    def named(cls, name: str) -> LinearForm:
+        """A cell by its key."""
+        return cls.of(Name(name))
+
+    @property
+    def fixed(self) -> bool:
+        """Whether it is a plain number."""
+        return not self.terms
+
+    @property
+    def zero(self) -> bool:
+        """Whether it is the number 0."""
+        return not self.terms and self.constant == 0.0
+
+    @property
+    def single(self) -> tuple[Node, float] | None:
+        """Its only term with its weight; ``None`` for a sum and for a number."""
+        return self.terms[0] if len(self.terms) == 1 and self.constant == 0.0 else None
+
+    def __add__(self, other: LinearForm) -> LinearForm:
+        weights = dict(self.terms)
+        for node, weight in other.terms:
+            weights[node] = weights.get(node, 0.0) + weight
+        kept = tuple((node, weight) for node, weight in weights.items() if weight)
+        return LinearForm(self.constant + other.constant, kept)
+
+    def times(self, factor: float) -> LinearForm:
+        """All weights multiplied."""
+        if factor == 0.0:
+            return LinearForm()
+        scaled = tuple((node, weight * factor) for node, weight in self.terms)
+        return LinearForm(self.constant * factor, scaled)
+
+    def __neg__(self) -> LinearForm:
+        return self.times(-1.0)
+
+    def __sub__(self, other: LinearForm) -> LinearForm:
+        return self + -other
+
+    @property
+    def node(self) -> Node:
+        """The formula, a positive term first if there is one."""
+        ordered = sorted(self.terms, key=lambda part: part[1] < 0.0)
+        parts = [(weight < 0.0, _weighted(node, abs(weight))) for node, weight in ordered]
+        if self.constant or not parts:
+            constant = (self.constant < 0.0, Number(abs(self.constant)))
+            first = bool(parts) and parts[0][0] and not constant[0]
+            parts = [constant, *parts] if first else [*parts, constant]
+        minus, found = parts[0]
+        found = Negative(found) if minus else found
+        for minus, part in parts[1:]:
+            found = Binary("-" if minus else "+", found, part)
+        return found
+
+    def per(self, unit: float) -> LinearForm | None:
+        """The form with all numbers divided by a unit, if they are short numbers then."""
+        weights = [_short(weight / unit) for _, weight in self.terms]
+        constant = _short(self.constant / unit)
+        if constant is None or None in weights:
+            return None
+        nodes = (node for node, _ in self.terms)
+        kept = ((n, w) for n, w in zip(nodes, weights, strict=True) if w is not None)
+        return LinearForm(constant, tuple(kept))
+
+    @property
+    def angle(self) -> Node:
+        """The formula of an angle in radians; ``radians(…)`` of what is short in degrees."""
+        turned = self.per(1.0 / _DEGREE)
+        if turned is not None and not self.fixed:
+            return Call("degrees", (turned.node,))
+        in_degrees = [(n, d) for n, w in self.terms if (d := _short(w / _DEGREE)) is not None]
+        if not in_degrees:
+            return self.node
+        rest = tuple((n, w) for n, w in self.terms if _short(w / _DEGREE) is None)
+        constant = _short(self.constant / _DEGREE)
+        everyday = LinearForm(constant or 0.0, tuple(in_degrees))
+        own = LinearForm.of(Call("radians", (everyday.node,)))
+        return (own + LinearForm(self.constant if constant is None else 0.0, rest)).node
+
+    @property
+    def in_degrees(self) -> Node:
+        """The formula of an angle in radians, in degrees."""
+        everyday = self.per(_DEGREE)
+        return Call("degrees", (self.angle,)) if everyday is None else everyday.node
+
+
+def _weighted(node: Node, weight: float) -> Node:
+    return node if weight == 1.0 else Binary("*", Number(weight), node)
+
+
+def _short(number: float) -> float | None:
+    near = float(f"{number:.9g}")
+    return near if abs(number - near) <= _SHORT * abs(number) else None
+
+
+def product(a: LinearForm, b: LinearForm) -> LinearForm:
+    """a · b, numbers taken out."""
+    if a.fixed:
+        return b.times(a.constant)
+    if b.fixed:
+        return a.times(b.constant)
+    (left, one), (right, other) = _factored(a), _factored(b)
+    node = Binary("^", left, Number(2.0)) if left == right else Binary("*", left, right)
+    return LinearForm.of(node).times(one * other)
+
+
+def _factored(form: LinearForm) -> tuple[Node, float]:
+    return form.single or (form.node, 1.0)
+
+
+def quotient(a: LinearForm, b: LinearForm) -> LinearForm:
+    """a / b; common factors are left out."""
+    if b.fixed:
+        return a.times(1.0 / b.constant)
+    if a.zero:
+        return a
+    below, weight = _factored(b)
+    reduced = [_without(node, below) for node, _ in a.terms]
+    if not a.constant and None not in reduced:
+        parts = (
+            form.times(own / weight)
+            for form, (_, own) in zip(reduced, a.terms, strict=True)
+            if form is not None
+        )
+        return _sum(parts)
+    above, own = _factored(a)
+    return LinearForm.of(Binary("/", above, below)).times(own / weight)
+
+
+def _without(node: Node, factor: Node) -> LinearForm | None:
+    """A term without a factor; ``None`` if it has not got it."""
+    if node == factor:
+        return LinearForm(1.0)
+    match node:
+        case Binary("*"):
+            for own, other in ((node.left, node.right), (node.right, node.left)):
+                if own == factor:
+                    return LinearForm.of(other)
+        case Binary("^") if node.left == factor and node.right == Number(2.0):
+            return LinearForm.of(factor)
+    return None
+
+
+def _sum(parts: Iterable[LinearForm]) -> LinearForm:
+    total = LinearForm()
+    for part in parts:
+        total += part
+    return total
+
+
+def call(function: str, *arguments: LinearForm) -> LinearForm:
+    """A function of forms."""
+    return LinearForm.of(Call(function, tuple(argument.node for argument in arguments)))
+
+
+def cosine(angle: LinearForm) -> LinearForm:
+    """cos of an angle in radians."""
+    if angle.fixed:
+        return LinearForm(math.cos(angle.constant))
+    return LinearForm.of(Call("cos", (angle.angle,)))
+
+
+def sine(angle: LinearForm) -> LinearForm:
+    """sin of an angle in radians."""
+    if angle.fixed:
+        return LinearForm(math.sin(angle.constant))
+    return LinearForm.of(Call("sin", (angle.angle,)))

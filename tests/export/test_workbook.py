@@ -1,0 +1,226 @@
+"""Workbooks solve their mechanism themselves: an independent spreadsheet calculates their cells."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import openpyxl
+import pytest
+
+import linkwork as lw
+from linkwork.export.workbook.cell_formula import CellFormula
+from linkwork.export.workbook.cell_names import CellNames
+from linkwork.expression.grammar import parse
+from linkwork.expression.values import value
+from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.errors import InputError, MissingPackageError
+from tests.oracles.spreadsheet import Spreadsheet, calculated
+
+_NEAR = 1e-9  # mm and degrees
+
+
+def written(tmp_path: Path, mechanism: Any, motion: Any) -> Spreadsheet:
+    path = tmp_path / "cycle.xlsx"
+    mechanism.to_excel(path, motion)
+    return Spreadsheet(path)
+
+
+def check_rows(sheet: Spreadsheet, motion: Any) -> None:
+    """Unknowns, points and outputs of every row are Linkwork's."""
+    asked = motion.asked
+    names = [*motion.inputs, *motion.unknowns, *motion.outputs]
+    names += [f"{point}.{axis}" for point in motion.points for axis in "xy"]
+    for name in names:
+        found = np.array(sheet.column("Cycle", name), dtype=float)
+        np.testing.assert_allclose(found, motion[name][asked], rtol=0, atol=_NEAR, err_msg=name)
+    assert set(sheet.column("Cycle", "closes")) == {"yes"}
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["rapier-drive", "four-bar", "slider-crank", "double-four-bar", "jansen-leg", "scotch-yoke",
+     "rack-and-pinion", "excavator", "scissor-lift", "double-butterfly"],
+)  # fmt: skip
+def test_cells_come_to_linkworks_positions(name: str, tmp_path: Path) -> None:
+    mechanism = lw.example(name)
+    inputs = [
+        lw.Input(
+            **{**vars(which), "step": (float(which.stop or 360) - float(which.start or 0)) / 10}
+        )
+        for which in mechanism.description.inputs
+    ]
+    mechanism = mechanism.changed(inputs=inputs)
+    motion = mechanism.sweep(certify=False)
+    check_rows(written(tmp_path, mechanism, motion), motion)
+
+
+@pytest.mark.parametrize(
+    ("name", "cell", "value", "change"),
+    [
+        ("rapier-drive", "a2_", 240.0, {"dimensions": {"a2": 240}}),
+        ("double-four-bar", "beta", 26.0, {"dimensions": {"beta": 26}}),
+        ("four-bar", "O2A", 37.0, {"lengths": {"O2 A": 37}}),
+        ("slider-crank", "S_y", -24.0, {"points": {"S": (0, -24)}}),
+        ("slider-crank", "d_offset", 3.0, {"sliders": 3.0}),
+        ("scotch-yoke", "T_y", 12.0, {"points": {"T": (150, 12)}}),
+        ("jansen-leg", "BD", 57.0, {"lengths": {"B D": 57}}),
+        ("planetary-gear", "OA", 50.0, {"lengths": {"O A": 50}}),
+    ],
+)
+def test_a_changed_dimension_is_solved_by_the_cells(
+    name: str, cell: str, value: float, change: dict[str, Any], tmp_path: Path
+) -> None:
+    mechanism = lw.example(name)
+    sheet = written(tmp_path, mechanism, mechanism.sweep(step=30, certify=False))
+    sheet.set(cell, value)
+    description = mechanism.description
+    parts: dict[str, Any] = {}
+    for table, new in change.items():
+        old = getattr(description, table)
+        if table == "sliders":
+            parts[table] = [lw.Slider(**{**vars(part), "offset": new}) for part in old]
+        else:
+            parts[table] = {**old, **new}
+    check_rows(sheet, mechanism.changed(**parts).sweep(step=30, certify=False))
+
+
+@pytest.mark.parametrize(
+    ("wanted", "name"),
+    [("a2", "a2_"), ("θ12", "theta12"), ("C1C2", "C1C2_"), ("R", "R_"), ("O2A", "O2A"),
+     ("r3'", "r3_prime"), ("true", "true_"), ("B.x", "B.x"), ("3rd", "_3rd")],
+)  # fmt: skip
+def test_a_name_is_none_that_a_spreadsheet_reads_otherwise(wanted: str, name: str) -> None:
+    assert CellNames().claim("key", wanted) == name
+
+
+@pytest.mark.parametrize(
+    "formula",
+    ["-a^2", "-a^2*b", "(-a)^2", "a^b^c", "(a^b)^c", "a - (b - c)", "a/(b*c)", "a/b*c",
+     "-(a + b)^2/c",
+     "atan2(a, b) + hypot(b, c)", "2*sin(a) - cos(b)*tan(c)", "-sqrt(a)*ln(b)/log10(c)",
+     "max(a, b, c)^min(a, b)", "asin(a/c) + acos(a/c) + atan(b)", "exp(-a) + abs(b - c)",
+     "pi - e^a"],
+)  # fmt: skip
+@pytest.mark.parametrize("unit", list(AngleUnit))
+def test_a_cell_formula_means_what_the_files_formula_means(formula: str, unit: AngleUnit) -> None:
+    numbers = {"a": 1.3, "b": 2.1, "c": 1.7}
+    tree = parse(formula)
+    text = CellFormula(tree, unit).text({name: str(number) for name, number in numbers.items()})
+    assert calculated(text) == pytest.approx(value(tree, numbers, unit), rel=1e-13)
+    assert CellFormula(tree, unit).value(numbers) == pytest.approx(value(tree, numbers, unit))
+
+
+def test_names_differ_without_regard_to_capitals() -> None:
+    names = CellNames()
+    assert [names.claim(str(k), wanted) for k, wanted in enumerate(["a2", "A2", "ab", "AB"])] == [
+        "a2_", "A2_2", "ab", "AB_2",
+    ]  # fmt: skip
+
+
+def test_formulas_read_like_the_book(tmp_path: Path) -> None:
+    mechanism = lw.example("rapier-drive")
+    book = written(tmp_path, mechanism, mechanism.sweep(step=90)).book
+    assert book["Cycle"]["G7"].value == (
+        "=a2_*COS(RADIANS(theta12))+a3_*COS(RADIANS(theta13))+d1_"
+        "-a5_*COS(RADIANS(theta15))-a4_*COS(RADIANS(theta14))"
+    )
+    assert book["Cycle"]["B8"].value == "=theta12_from+theta12_step*($A8-1)"
+    assert book.defined_names["theta13_0"].attr_text == "Newton!$B1"
+
+
+def test_a_derived_dimension_is_a_formula_of_the_others(tmp_path: Path) -> None:
+    mechanism = lw.linkage(
+        dimensions={"a": 40, "b": "3*a"},
+        points={"O": (0, 0), "A": (35, 20), "B": (146, 66), "C": (100, 0)},
+        links={"ground": ["O", "C"], "crank": ["O", "A"], "rod": ["A", "B"], "rocker": ["C", "B"]},
+        lengths={"O A": "a", "A B": "b", "C B": "2*a"},
+        inputs=[lw.Input(link="crank", step=45)],
+    )
+    sheet = written(tmp_path, mechanism, mechanism.sweep(certify=False))
+    sheet.set("a", 39.0)
+    check_rows(sheet, mechanism.with_dimensions(a=39).sweep(certify=False))
+
+
+def test_cells_hold_what_they_come_to(tmp_path: Path) -> None:
+    mechanism = lw.example("jansen-leg")
+    sheet = written(tmp_path, mechanism, mechanism.sweep(step=60, certify=False))
+    plain = openpyxl.load_workbook(tmp_path / "cycle.xlsx", data_only=True)
+    for name in ("Dimensions", "Cycle", "Newton", "Drawing"):
+        for row in sheet.book[name].iter_rows():
+            for cell in row:
+                shown = plain[name][cell.coordinate].value
+                if isinstance(shown, int | float):
+                    calculated = sheet[name, cell.coordinate]
+                    assert calculated == pytest.approx(shown, rel=1e-9, abs=1e-9), cell.coordinate
+
+
+def test_rows_beyond_a_dead_point_say_so_and_the_next_starts_anew(tmp_path: Path) -> None:
+    mechanism = lw.example("rapier-drive-limited")
+    motion = mechanism.sweep(step=12, certify=False)
+    sheet = written(tmp_path, mechanism, motion)
+    found = motion.found[motion.asked]
+    said = sheet.column("Cycle", "Linkwork says")
+    values = sheet.column("Cycle", "s16")
+    assert 0 < found.sum() < len(found)
+    for there, text, shown in zip(found, said, values, strict=True):
+        assert text.startswith("found") == there
+        assert (shown is not None) == there
+    first = int(np.flatnonzero(~found)[-1]) + 1
+    assert said[first] == "found, not asked; starts from an estimate of its own"
+    own = motion["s16"][motion.asked]
+    near = [abs(v - o) for v, o in zip(values, own, strict=True) if v is not None]
+    assert max(near) < _NEAR
+
+
+def test_limits_and_further_branches_stand_with_linkworks_values_only(tmp_path: Path) -> None:
+    mechanism = lw.example("rapier-drive-limited")
+    motion = mechanism.sweep(step=10, through=True, certify=False)
+    sheet = written(tmp_path, mechanism, motion)
+    assert sheet.book["Cycle"].max_row - 6 == motion.asked.sum() < len(motion)
+    assert sheet.book["Linkwork"].max_row - 6 == len(motion)
+
+
+def test_a_cams_law_is_told_to_be_values_only(tmp_path: Path) -> None:
+    mechanism = lw.example("cam-roller-follower")
+    told = mechanism.to_excel(tmp_path / "cam.xlsx", mechanism.sweep(step=30, certify=False))
+    assert told[0] == (
+        's: "rise" is a motion law or a curve, given piece by piece; '
+        "the column holds Linkwork's values"
+    )
+    about = openpyxl.load_workbook(tmp_path / "cam.xlsx")["About"]
+    assert told[0] in [row[1].value for row in about.iter_rows()]
+
+
+def test_a_shape_without_a_formula_keeps_its_numbers(tmp_path: Path) -> None:
+    mechanism = lw.example("watt-linkage")
+    motion = mechanism.sweep(step=6, certify=False)
+    sheet = written(tmp_path, mechanism, motion)
+    check_rows(sheet, motion)
+    told = mechanism.to_excel(tmp_path / "again.xlsx", motion)
+    assert told == (
+        "A B, A P, A P B: the equations follow from these by more than a formula; "
+        "they keep the values of the file",
+    )
+
+
+def test_another_mechanisms_motion_is_refused(tmp_path: Path) -> None:
+    motion = lw.example("slider-crank").sweep(step=90, certify=False)
+    with pytest.raises(InputError, match='is of "Offset slider-crank", not of "Four-bar linkage'):
+        lw.example("four-bar").to_excel(tmp_path / "x.xlsx", motion)
+
+
+def test_another_kind_of_file_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"workbooks are written as \.xlsx"):
+        lw.example("four-bar").to_excel(tmp_path / "x.xls")
+
+
+def test_without_xlsxwriter_the_install_command_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "xlsxwriter", None)
+    bar = lw.example("four-bar")
+    with pytest.raises(MissingPackageError, match=r'pip install "linkwork\[tables\]"'):
+        bar.to_excel(tmp_path / "x.xlsx", bar.sweep(step=90, certify=False))
