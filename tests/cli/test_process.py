@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Start
+from tests.interruptible import interruptible
 
 #: Nothing is followed when the position asked for is the guess's own.
 FOR_MOTION = {f"linkwork.numerics.{name}" for name in ("curve", "proven_path", "track")}
@@ -53,7 +54,11 @@ def test_a_reader_that_goes_away_is_no_trouble(environment: dict[str, str]) -> N
 def test_an_interrupt_is_quiet(environment: dict[str, str]) -> None:
     words = [sys.executable, "-m", "linkwork", "solve", "-"]
     with subprocess.Popen(
-        words, env=environment, stdin=subprocess.PIPE, stderr=subprocess.PIPE
+        words,
+        env=environment,
+        stdin=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        preexec_fn=interruptible,
     ) as process:
         _wait_until_it_reads(process.pid)
         process.send_signal(signal.SIGINT)

@@ -22,6 +22,7 @@ from linkwork.batch.study.job import Job, computed
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.status import Status
 from tests.batch.study.plans import PLAN, contents, edited, study
+from tests.interruptible import interruptible
 
 FEW = (
     ("count = 300", "count = 100"),
@@ -186,6 +187,7 @@ def _started(folder: Path, *more: str) -> subprocess.Popen[bytes]:
         env={**os.environ, "PYTHONPATH": str(source)},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
+        preexec_fn=interruptible,
     )
 
 
