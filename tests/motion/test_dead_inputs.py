@@ -120,6 +120,7 @@ ISOSCELES = {"evans", "hoeken", "pantograph", "five-bar-robot"}
 COSTLY = {
     "beam-engine", "dixon-one", "dixon-two", "double-butterfly", "scissor-lift",
     "stephenson-valve-gear", "trotbot-leg",
+    "jansen-leg",
     "pantograph",  # among the isosceles ones below
 }  # fmt: skip
 
