@@ -24,7 +24,8 @@ class LinkworkFamily(Peer):
 
     def __init__(self, *, certify: bool, specialised: bool = False) -> None:
         self.certify, self.specialised = certify, specialised
-        self.name = f"family{' compiled' * specialised}{', certified' * certify}"
+        kind = "compiled" if specialised else "family"
+        self.name = f"{kind}, certified" if certify else kind
 
     def prepare(self, work: Work) -> Prepared:
         family = family_of(work)

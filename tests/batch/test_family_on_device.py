@@ -19,6 +19,8 @@ from linkwork.foundation.status import Status
 from linkwork.kernels.lanes import device_compiling
 from tests.batch.in_simulator import ARRAYS, families, found
 
+pytestmark = pytest.mark.extended
+
 ROOT = Path(__file__).resolve().parents[2]
 FAMILIES = families()
 

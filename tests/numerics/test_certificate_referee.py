@@ -41,7 +41,9 @@ FOLDING = FourBar(4.0, 2.0, 5.0, 2.0)
 # ------------------------------------------------------------------ single positions
 
 
-@pytest.mark.parametrize("part", range(10))
+@pytest.mark.parametrize(
+    "part", [*range(4), *[pytest.param(k, marks=pytest.mark.extended) for k in range(4, 10)]]
+)
 def test_no_constant_and_no_radius_of_a_random_position_is_too_small(part: int) -> None:
     verdict = judge([random_position(k) for k in range(part * 50, part * 50 + 50)], part)
     assert verdict.false == []
@@ -308,7 +310,9 @@ def test_rows_a_whole_turn_away_count_the_rounding_of_two_pi() -> None:
 # ------------------------------------------------------------------ steps
 
 
-@pytest.mark.parametrize("part", range(4))
+@pytest.mark.parametrize(
+    "part", [*range(1), *[pytest.param(k, marks=pytest.mark.extended) for k in range(1, 4)]]
+)
 def test_proved_steps_follow_the_branch_and_steps_to_another_root_are_refused(part: int) -> None:
     verdict = judge_steps(32, part)
     assert verdict.false == []

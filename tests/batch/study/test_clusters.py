@@ -18,6 +18,8 @@ from linkwork.batch.study.cluster import cluster_crew
 from linkwork.foundation.errors import InputError, MissingPackageError
 from tests.batch.study.plans import contents, edited, study
 
+pytestmark = pytest.mark.extended
+
 SOURCE = Path(__file__).parents[3] / "src"
 LONG = (("count = 300", "count = 800"), ("chunk = 64", "chunk = 40"))
 

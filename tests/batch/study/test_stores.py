@@ -204,6 +204,7 @@ def _until(store: Path, chunks: int, process: subprocess.Popen[bytes]) -> None:
 LONG = (("count = 300", "count = 800"), ("chunk = 64", "chunk = 40"))
 
 
+@pytest.mark.extended
 def test_killed_processes_lose_nothing_and_leave_no_workers(tmp_path: Path) -> None:
     run_study(study(*LONG), tmp_path / "whole.zarr", workers=1)
     store = tmp_path / "out.zarr"
@@ -247,6 +248,7 @@ def _alive(pid: int) -> bool:
         return False
 
 
+@pytest.mark.extended
 def test_an_interrupt_leaves_a_store_to_go_on_with_and_says_so(tmp_path: Path) -> None:
     store = tmp_path / "out.zarr"
     (tmp_path / "plan.toml").write_text(edited(*LONG), encoding="utf-8")
@@ -269,6 +271,7 @@ def test_an_interrupt_leaves_a_store_to_go_on_with_and_says_so(tmp_path: Path) -
     assert told[-1] == 800
 
 
+@pytest.mark.extended
 def test_a_worker_that_dies_is_replaced(
     whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -301,6 +304,7 @@ def test_workers_that_die_again_and_again_end_the_run(
     )
 
 
+@pytest.mark.extended
 def test_a_worker_of_another_version_refuses(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -85,7 +85,9 @@ def test_constants_and_radii_are_those_of_the_scalar_proof(seed: int) -> None:
     assert held or sharper or seed % 3 == 0
 
 
-@pytest.mark.parametrize("part", range(2))
+@pytest.mark.parametrize(
+    "part", [0, *[pytest.param(k, marks=pytest.mark.extended) for k in range(1, 4)]]
+)
 def test_where_lanes_claim_a_position_there_is_one(part: int) -> None:
     verdict = judge_lanes(range(part * 8, part * 8 + 8), part)
     assert verdict.false == []
