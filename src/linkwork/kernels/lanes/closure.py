@@ -184,10 +184,7 @@ class Closure:
         )
         a, b = self.whole(term)
         product = rec.multiply(turn, other)
-        x, y = (
-            rec.subtract(0.0, rec.multiply(product, a)),
-            rec.subtract(0.0, rec.multiply(product, b)),
-        )
+        x, y = -rec.multiply(product, a), -rec.multiply(product, b)
         if length >= 0:
             a, b = self.bare(term)
             mixed = rec.add(

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from linkwork.kernels.lanes.march_programs import ROLES, MarchPrograms
+from linkwork.kernels.lanes.march_programs import WEIGHTS, MarchPrograms
 from linkwork.kernels.lanes.printing import Body
 from linkwork.kernels.lanes.program import Program
 from linkwork.kernels.lanes.stepping import START_STEPS, STEPS
 
 __all__ = ["ThreadState", "device_source"]
 
-_WEIGHTS = [f"{name}{role}" for role in range(1, ROLES) for name in "ab"]
 _HEAD = """\
 import math
 
@@ -74,10 +73,10 @@ class ThreadState:
         named, blocks = programs.registers.named, len(programs.begin)
         roles = set(programs.places.ravel().tolist())
         noted = ["good.0", "radius.0", *(f"live{b}.0" for b in range(blocks))]
-        given = [name for name in named if named[name] not in roles and name not in _WEIGHTS]
+        given = [name for name in named if named[name] not in roles and name not in WEIGHTS]
         coefficients = tuple(name for name in given if name not in options)
         used = tuple(name for name in options if name in named)
-        order = [named[name] for name in (*_WEIGHTS, *noted, *coefficients, *used)]
+        order = [named[name] for name in (*WEIGHTS, *noted, *coefficients, *used)]
         order = [*programs.nodes.ravel().tolist(), *order]
         order += sorted(set(programs.places[0].tolist()) - set(order))
         place = {register: k for k, register in enumerate(order)}

@@ -17,7 +17,7 @@ from linkwork.kernels.lanes.closure import BlockPart
 from linkwork.kernels.lanes.folding import LastNodes
 from linkwork.kernels.lanes.lockstep import in_step
 from linkwork.kernels.lanes.machine import LANES
-from linkwork.kernels.lanes.march_programs import ROLES, march_programs
+from linkwork.kernels.lanes.march_programs import ROLES, WEIGHTS, march_programs
 from linkwork.kernels.lanes.marching import march
 from linkwork.kernels.lanes.printing import trial_source
 from linkwork.kernels.lanes.program import SOURCES, Op, Program
@@ -32,7 +32,6 @@ __all__ = ["DEVICES", "Gear", "LaneKernel", "LaneRows", "Steps"]
 #: What a march can run on.
 DEVICES = ("cpu", "gpu")
 
-_WEIGHTS = [f"{name}{role}" for role in range(1, ROLES) for name in "ab"]
 _FEW = 16  # designs in a part of which each goes with its rows side by side
 _PART = 4096  # designs that one thread works on at a time
 
@@ -182,7 +181,7 @@ class LaneKernel:
         self.noted = np.stack(
             [reg.all_of([f"{name}.{role}" for name in noted]) for role in range(ROLES)]
         )
-        self.weights = reg.all_of(_WEIGHTS)
+        self.weights = reg.all_of(WEIGHTS)
         self.height = max(programs.height, reg.count)
         self._sections = programs
         #: The same without proofs, which goes ahead where rows are side by side.

@@ -48,10 +48,12 @@ from linkwork.kernels.lanes.proof_program import BlockProof
 from linkwork.kernels.lanes.recorder import Recorder, Value
 from linkwork.kernels.loop_table import LoopTable
 
-__all__ = ["ROLES", "MarchPrograms", "march_programs"]
+__all__ = ["NODES", "ROLES", "WEIGHTS", "MarchPrograms", "march_programs"]
 
 ROLES = 5
 NODES = ROLES - 1  # that a prediction can use
+#: Registers of the weights of nodes' values and derivatives in a prediction.
+WEIGHTS = tuple(f"{name}{role}" for role in range(1, ROLES) for name in "ab")
 _UNIT = float(np.finfo(float).eps) / 2.0
 
 

@@ -75,7 +75,7 @@ class _Writer:
         side = self._driven(drives, [first[k] for k in known])
         for k, x in zip(unknowns, self._solution(matrix, side), strict=True):
             first[k] = -x
-        bends = self._bends(closure, first)
+        bends = closure.bending(first, first)
         driven = self._driven(drives, [second[k] for k in known])
         side = [self.rec.add(x, y) for x, y in zip(bends, driven, strict=True)]
         for k, x in zip(unknowns, self._solution(matrix, side), strict=True):
@@ -91,29 +91,6 @@ class _Writer:
             rec.total([rec.multiply(x, rate) for x, rate in zip(row, rates, strict=True)])
             for row in drives
         ]
-
-    def _bends(self, closure: Closure, rates: dict[int, Number]) -> list[Number]:
-        """D²F along the rates: a term c s e^{iψ} gives (2i s' ψ' - s ψ'²) c e^{iψ}."""
-        rec, real, imag = self.rec, [], []
-        for loop in closure.loops:
-            x: Number = 0.0
-            y: Number = 0.0
-            for term in closure.terms[loop]:
-                phase = closure.phases.get(term, ())
-                turn = rec.total([rec.multiply(rates[k], weight) for k, weight in phase])
-                square = rec.multiply(turn, turn)
-                a, b = closure.whole(term)
-                x = rec.subtract(x, rec.multiply(square, a))
-                y = rec.subtract(y, rec.multiply(square, b))
-                length = int(self.table.loops.length[term])
-                if length >= 0:
-                    twice = rec.multiply(rec.multiply(2.0, rates[length]), turn)
-                    a, b = closure.bare(term)
-                    x = rec.subtract(x, rec.multiply(twice, b))
-                    y = rec.add(y, rec.multiply(twice, a))
-            real.append(x)
-            imag.append(y)
-        return [*real, *imag, *[0.0] * len(closure.lines)]
 
     # ---------------------------------------------------------------- evidence
 
