@@ -31,8 +31,8 @@ _BLOCKS = 6  # of numbers, which a trial that is written out is called with
 
 
 def trial_at(function: Any) -> Any:
-    """A function of six blocks of numbers, and of how many lanes there are, compiled for
-    :func:`call_at`; its ``address``, which unlike a function costs nothing to hand over.
+    """A function of six blocks of numbers and a number of lanes, compiled for :data:`call_at`; its
+    ``address``, which unlike a function costs nothing to hand over.
     """
     numbers = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
     signature = types.void(*[numbers] * _BLOCKS, types.int64)

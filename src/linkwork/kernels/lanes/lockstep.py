@@ -14,13 +14,12 @@ import numpy as np
 from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
-from linkwork.kernels.lanes.stepping import SAME
 from linkwork.kernels.lanes.tasks import FOUND, TABLE, TASKS
 from linkwork.kernels.lanes.trial import (
     GOOD,
     RADIUS,
     TOPOLOGY,
-    extrapolated,
+    chosen,
     loaded,
     settled,
 )
@@ -49,25 +48,17 @@ def _weighted(w, topology, turn, steps, spacing):  # type: ignore[no-untyped-def
     """
     nodes, weights = topology.nodes, topology.weights
     last, times = nodes.shape[1] - 1, np.zeros(NODES)
-    trial = nodes[-turn % ROLES, last]
-    shared = steps > NODES
+    trial, shared = nodes[-turn % ROLES, last], steps > NODES
     for lane in range(1 if shared else LANES):
         for role in range(1, ROLES):
             times[role - 1] = w[nodes[(role - turn) % ROLES, last], lane]
-        if shared:
-            near = SAME * abs(w[trial, 0] - times[0])
-            same = abs(w[trial, 0] - times[0] - spacing[0]) <= near
-            for k in range(1, NODES):
-                same &= abs(times[k - 1] - times[k] - spacing[k]) <= near
-            if same:
-                return
-            spacing[0] = w[trial, 0] - times[0]
-            for k in range(1, NODES):
-                spacing[k] = times[k - 1] - times[k]
-        extrapolated(w, lane, weights, w[trial, lane], times, steps)
-    if shared:
-        for j in range(len(weights)):
-            w[weights[j], 1:] = w[weights[j], 0]
+        step = w[trial, lane] - times[0]
+        if not shared:
+            spacing[:] = np.inf  # each lane's own
+        changed = chosen(w, lane, weights, times, step, steps, spacing)
+        if shared and changed:
+            for j in range(len(weights)):
+                w[weights[j], 1:] = w[weights[j], 0]
 
 
 @compiled
@@ -142,7 +133,7 @@ def _one_way(  # type: ignore[no-untyped-def]
             w[trial, i] = goal
         steps += 1
         _weighted(w, topology, turn, steps, spacing)
-        settled(topology, turn, w, standing)
+        settled(topology, turn, w, standing, LANES)
         bad, good = 0, topology.noted[-turn % ROLES, GOOD]
         for i in range(LANES):
             bad += standing[i] > w[good, i]

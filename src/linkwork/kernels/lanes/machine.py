@@ -12,126 +12,81 @@ import math
 from linkwork.kernels.lanes.compiling import compiled
 from linkwork.kernels.lanes.sine import sin_cos
 
-__all__ = ["LANES", "run", "run_lane", "run_part"]
+__all__ = ["LANES", "run", "run_part"]
 
 LANES = 64
 
 
 @compiled
-def run_part(code, first, end, w):  # type: ignore[no-untyped-def]
-    """Run some instructions of a program."""
+def run_part(code, first, end, w, lanes):  # type: ignore[no-untyped-def]
+    """Run some instructions of a program in the first lanes."""
     for k in range(first, end):
         op = code[k, 0]
         d, a, b, c = code[k, 1], code[k, 2], code[k, 3], code[k, 4]
         if op == 5:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i] = w[a, i] * w[b, i] + w[c, i]
         elif op == 3:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i] = w[a, i] * w[b, i]
         elif op == 1:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i] = w[a, i] + w[b, i]
         elif op == 2:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i] = w[a, i] - w[b, i]
         elif op == 7:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i] = w[c, i] - w[a, i] * w[b, i]
         elif op == 6:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i] = w[a, i] * w[b, i] - w[c, i]
         elif op == 15:
-            for i in range(LANES):
+            for i in range(lanes):
                 yes, no = w[b, i], w[c, i]
                 w[d, i] = yes if w[a, i] > 0.5 else no
         elif op == 18:
-            for i in range(LANES):
+            for i in range(lanes):
                 yes = w[b, i]
                 w[d, i] = yes if w[a, i] > 0.5 else w[d, i]
         elif op == 19:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i] -= w[a, i]
         elif op == 13:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i], w[c, i] = sin_cos(w[a, i])
         elif op == 0:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i] = w[a, i]
         elif op == 8:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i] = -w[a, i]
         elif op == 9:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i] = abs(w[a, i])
         elif op == 10:
-            for i in range(LANES):
+            for i in range(lanes):
                 x, y = w[a, i], w[b, i]
                 w[d, i] = x if (x > y) | (x != x) else y
         elif op == 11:
-            for i in range(LANES):
+            for i in range(lanes):
                 x, y = w[a, i], w[b, i]
                 w[d, i] = x if (x < y) | (x != x) else y
         elif op == 16:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i] = 1.0 if w[a, i] <= w[b, i] else 0.0
         elif op == 17:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i] = w[a, i] * w[b, i]
         elif op == 4:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i] = w[a, i] / w[b, i]
         elif op == 12:
-            for i in range(LANES):
+            for i in range(lanes):
                 w[d, i] = math.sqrt(w[a, i])
 
 
 @compiled
 def run(code, w):  # type: ignore[no-untyped-def]
     """Run a program (K, 5) over a workspace (R, LANES)."""
-    run_part(code, 0, code.shape[0], w)
-
-
-@compiled
-def run_lane(code, first, end, w):  # type: ignore[no-untyped-def]
-    """Run some instructions of a program in the first lane alone."""
-    for k in range(first, end):
-        op = code[k, 0]
-        d, a, b, c = code[k, 1], code[k, 2], code[k, 3], code[k, 4]
-        x, y, z = w[a, 0], w[b, 0], w[c, 0]
-        if op == 5:
-            w[d, 0] = x * y + z
-        elif op == 3 or op == 17:
-            w[d, 0] = x * y
-        elif op == 1:
-            w[d, 0] = x + y
-        elif op == 2:
-            w[d, 0] = x - y
-        elif op == 7:
-            w[d, 0] = z - x * y
-        elif op == 6:
-            w[d, 0] = x * y - z
-        elif op == 15:
-            w[d, 0] = y if x > 0.5 else z
-        elif op == 18:
-            w[d, 0] = y if x > 0.5 else w[d, 0]
-        elif op == 19:
-            w[d, 0] -= x
-        elif op == 13:
-            w[d, 0], w[c, 0] = sin_cos(x)
-        elif op == 0:
-            w[d, 0] = x
-        elif op == 8:
-            w[d, 0] = -x
-        elif op == 9:
-            w[d, 0] = abs(x)
-        elif op == 10:
-            w[d, 0] = x if (x > y) | (x != x) else y
-        elif op == 11:
-            w[d, 0] = x if (x < y) | (x != x) else y
-        elif op == 16:
-            w[d, 0] = 1.0 if x <= y else 0.0
-        elif op == 4:
-            w[d, 0] = x / y
-        elif op == 12:
-            w[d, 0] = math.sqrt(x)
+    run_part(code, 0, code.shape[0], w, LANES)

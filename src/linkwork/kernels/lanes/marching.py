@@ -16,36 +16,19 @@ import numpy as np
 from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
-from linkwork.kernels.lanes.stepping import GROWTH, SAME
+from linkwork.kernels.lanes.stepping import GROWTH
 from linkwork.kernels.lanes.tasks import FOUND, TABLE, TASKS
 from linkwork.kernels.lanes.trial import (
     GOOD,
     RADIUS,
     TOPOLOGY,
+    chosen,
     copied,
-    extrapolated,
     loaded,
     settled,
 )
 
 __all__ = ["march"]
-
-
-@compiled
-def _chosen(w, lane, weights, times, step, known, spacing):  # type: ignore[no-untyped-def]
-    """The weights of a lane's prediction, computed anew where its spacing has changed.
-
-    ``times``: of the last nodes.
-    """
-    same = abs(step - spacing[0]) <= SAME * abs(step)
-    for k in range(1, len(times)):
-        same &= abs(times[k - 1] - times[k] - spacing[k]) <= SAME * abs(step)
-    if same:
-        return
-    spacing[0] = step
-    for k in range(1, len(times)):
-        spacing[k] = times[k - 1] - times[k]
-    extrapolated(w, lane, weights, times[0] + step, times, known)
 
 
 @compiled
@@ -128,10 +111,10 @@ def march(topology, w, design, table, tasks, count, found):  # type: ignore[no-u
             w[t0, i] = goal if abs(away) <= h[i] else w[t1, i] + step
             for role in range(1, ROLES):
                 times[role - 1] = w[nodes[(role - turn) % ROLES, size - 1], i]
-            _chosen(w, i, weights, times, step, known[i], spacing[i])
+            chosen(w, i, weights, times, step, known[i], spacing[i])
         if busy == 0:
             break
-        settled(topology, turn, w, standing)
+        settled(topology, turn, w, standing, LANES)
         for i in range(LANES):
             if task[i] < 0:
                 continue

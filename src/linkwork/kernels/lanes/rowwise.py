@@ -14,20 +14,15 @@ import math
 import numpy as np
 
 from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
-from linkwork.kernels.lanes.machine import LANES, run_lane
+from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
-from linkwork.kernels.lanes.stepping import GROWTH, SAME, STEPS
+from linkwork.kernels.lanes.stepping import GROWTH
 from linkwork.kernels.lanes.tasks import FOUND, TABLE
 from linkwork.kernels.lanes.trial import (
-    BLOCKS,
     GOOD,
-    JUDGE,
-    LIVE,
-    PREDICT,
     RADIUS,
     TOPOLOGY,
-    by_written,
-    extrapolated,
+    chosen,
     judged,
     proved,
     settled,
@@ -47,46 +42,6 @@ def most_nodes(far: float, largest: float) -> int:
 
 
 @compiled
-def _one(topology, turn, w, number):  # type: ignore[no-untyped-def]
-    first = turn * topology.length
-    run_lane(topology.code, first + topology.spans[number, 0], first + topology.spans[number, 1], w)
-
-
-@compiled
-def _iterated(topology, turn, w, b):  # type: ignore[no-untyped-def]
-    blocks, live = topology.noted.shape[1] - LIVE, topology.noted[-turn % ROLES, LIVE + b]
-    for _ in range(STEPS - 1):
-        if w[live, 0] == 0.0:
-            break
-        _one(topology, turn, w, BLOCKS + 2 * blocks + b)
-
-
-@compiled
-def _tried(topology, turn, w):  # type: ignore[no-untyped-def]
-    """A trial of the first lane without proof; whether it is good."""
-    blocks, again = topology.noted.shape[1] - LIVE, True
-    if topology.trial != 0:
-        by_written(topology, turn, w, 1)
-        again = False
-        for b in range(blocks):
-            again |= w[topology.noted[-turn % ROLES, LIVE + b], 0] != 0.0
-    else:
-        _one(topology, turn, w, PREDICT)
-        for b in range(blocks):
-            _one(topology, turn, w, BLOCKS + b)
-            _iterated(topology, turn, w, b)
-    if again and topology.trial != 0:
-        for b in range(blocks):  # what follows was computed with a worse position
-            if w[topology.noted[-turn % ROLES, LIVE + b], 0] != 0.0:
-                for later in range(b + 1, blocks):
-                    w[topology.noted[-turn % ROLES, LIVE + later], 0] = 1.0
-            _iterated(topology, turn, w, b)
-    if again:
-        _one(topology, turn, w, JUDGE)
-    return w[topology.noted[-turn % ROLES, GOOD], 0] > 0.5
-
-
-@compiled
 def _one_way(topology, w, end, steps, coarse):  # type: ignore[no-untyped-def]
     """From the first node of ``coarse`` (K, S) to ``end``; how many nodes were found after it, -1
     where the scout does not get there.
@@ -98,24 +53,18 @@ def _one_way(topology, w, end, steps, coarse):  # type: ignore[no-untyped-def]
             w[nodes[role, j], 0] = coarse[0, j]
     h, turn, known, count = steps[0], 0, 1, 0
     times, spacing = np.zeros(NODES), np.full(NODES, np.inf)
+    alone = np.ones(1)
     while w[nodes[(1 - turn) % ROLES, size - 1], 0] != end:
         if count + 1 == len(coarse):
             return -1
-        t0 = nodes[-turn % ROLES, size - 1]
         for role in range(1, ROLES):
             times[role - 1] = w[nodes[(role - turn) % ROLES, size - 1], 0]
         away = end - times[0]
         step = math.copysign(min(abs(away), h), away)
-        w[t0, 0] = end if step == away else times[0] + step
-        same = abs(step - spacing[0]) <= SAME * h
-        for k in range(1, NODES):
-            same &= abs(times[k - 1] - times[k] - spacing[k]) <= SAME * h
-        if not same:
-            extrapolated(w, 0, topology.weights, w[t0, 0], times, known)
-            spacing[0] = step
-            for k in range(1, NODES):
-                spacing[k] = times[k - 1] - times[k]
-        if _tried(topology, turn, w):
+        w[nodes[-turn % ROLES, size - 1], 0] = end if step == away else times[0] + step
+        chosen(w, 0, topology.weights, times, step, known, spacing)
+        settled(topology, turn, w, alone, 1)
+        if w[topology.noted[-turn % ROLES, GOOD], 0] > 0.5:
             count += 1
             for j in range(size):
                 coarse[count, j] = w[nodes[-turn % ROLES, j], 0]
@@ -257,7 +206,9 @@ def _linked(topology, w, first, lanes, start, place, n, fine):  # type: ignore[n
         for i in range(lanes):
             size_k = max(size_k, abs(w[nodes[0, k], i]))
         w[error, :] = _FAR * max(size_k, 1e-300)
-    judged(topology, 0, w)
+        if first and not fine[first - 1, 2 * n + k] <= w[error, 0]:
+            return False
+    judged(topology, 0, w, LANES)
     for k in range(n):
         for i in range(lanes):
             if not w[nodes[0, 2 * n + k], i] <= w[nodes[1, 2 * n + k], i]:
@@ -278,7 +229,7 @@ def _refined(topology, w, start, table, step, coarse, count, fine):  # type: ign
     for first in range(0, many, LANES):
         lanes = min(LANES, many - first)
         interval = _set_rows(topology, w, t, first, lanes, coarse, count, interval, n, z, c)
-        settled(topology, 0, w, standing)
+        settled(topology, 0, w, standing, LANES)
         if proved(topology):
             if not _linked(topology, w, first, lanes, start, own - first, n, fine):
                 return 0
@@ -346,7 +297,10 @@ def by_rows(topology, scout, w, own, node, table, room, found):  # type: ignore[
     coarse, fine = room[1], room[2]
     for k in range(count):
         coarse[k, : 2 * n], coarse[k, size - 1] = seen[k, : 2 * n], seen[k, small - 1]
-        coarse[k, 2 * n : size - 1] = 0.0  # no sign of det J, or no error, is known
+        if proved(topology):
+            coarse[k, 2 * n : size - 1] = 0.0  # no error is known
+        else:
+            coarse[k, 2 * n : size - 1] = seen[k, 2 * n : size - 1]  # the sign of det J
     for j in range(len(topology.weights)):
         w[topology.weights[j], :] = 1.0 if j == 2 else 0.0  # role 2 is the prediction
     known, count, step = count, 0, COARSE * table.steps[1]
@@ -360,7 +314,7 @@ def by_rows(topology, scout, w, own, node, table, room, found):  # type: ignore[
     for first in range(0, len(rows), LANES):
         lanes = min(LANES, len(rows) - first)
         interval = _set_rows(topology, w, rows, first, lanes, fine, count, interval, n, z, c)
-        settled(topology, 0, w, standing)
+        settled(topology, 0, w, standing, LANES)
         if not _all_good(topology, w, lanes):
             return False
         _kept(topology, w, first, lanes, n, found)

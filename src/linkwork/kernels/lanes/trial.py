@@ -15,7 +15,7 @@ from linkwork.foundation.arrays import IndexArray
 from linkwork.kernels.lanes.compiling import call_at, compiled, named_tuple, types
 from linkwork.kernels.lanes.machine import LANES, run_part
 from linkwork.kernels.lanes.march_programs import ROLES
-from linkwork.kernels.lanes.stepping import START_STEPS, STEPS, hermite, trusted
+from linkwork.kernels.lanes.stepping import SAME, START_STEPS, STEPS, hermite, trusted
 
 __all__ = [
     "BLOCKS",
@@ -26,7 +26,7 @@ __all__ = [
     "RADIUS",
     "TOPOLOGY",
     "Topology",
-    "by_written",
+    "chosen",
     "copied",
     "extrapolated",
     "judged",
@@ -88,9 +88,9 @@ TOPOLOGY = named_tuple(
 
 
 @compiled
-def _one(topology, turn, w, number):  # type: ignore[no-untyped-def]
-    first = turn * topology.length
-    run_part(topology.code, first + topology.spans[number, 0], first + topology.spans[number, 1], w)
+def _one(topology, turn, w, number, lanes):  # type: ignore[no-untyped-def]
+    first, spans = turn * topology.length, topology.spans
+    run_part(topology.code, first + spans[number, 0], first + spans[number, 1], w, lanes)
 
 
 @compiled
@@ -105,34 +105,33 @@ def proved(topology):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _any(w, row, standing):  # type: ignore[no-untyped-def]
+def _any(w, row, standing, lanes):  # type: ignore[no-untyped-def]
     """Whether a mask holds in a lane that counts."""
     found = 0
-    for i in range(LANES):
+    for i in range(lanes):
         found += w[row, i] * standing[i] != 0.0
     return found > 0
 
 
 @compiled
-def _iterate(topology, turn, w, program, live, most, standing):  # type: ignore[no-untyped-def]
+def _iterate(topology, turn, w, program, live, most, standing, lanes):  # type: ignore[no-untyped-def]
     """Newton-Raphson of one block until no lane iterates."""
     for _ in range(most):
-        if not _any(w, live, standing):
+        if not _any(w, live, standing, lanes):
             break
-        _one(topology, turn, w, program)
+        _one(topology, turn, w, program, lanes)
 
 
 @compiled
-def judged(topology, turn, w):  # type: ignore[no-untyped-def]
+def judged(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
     """Proofs, if there are any, and the judgement."""
     for program in range(BLOCKS + 3 * _blocks(topology), len(topology.spans)):
-        _one(topology, turn, w, program)
-    _one(topology, turn, w, JUDGE)
+        _one(topology, turn, w, program, lanes)
+    _one(topology, turn, w, JUDGE, lanes)
 
 
 @compiled
-def by_written(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
-    """The trial that is written out, in the first lanes."""
+def _by_written(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
     place, first = 8 * LANES * topology.height, w.ctypes.data
     call_at(
         topology.trial,
@@ -147,33 +146,35 @@ def by_written(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def settled(topology, turn, w, standing):  # type: ignore[no-untyped-def]
+def settled(topology, turn, w, standing, lanes):  # type: ignore[no-untyped-def]
     """From the prediction to the judgement.
 
     Parameters
     ----------
     standing : (LANES,)
         1.0 in lanes that count, 0.0 in others.
+    lanes : int
+        How many of them are computed.
     """
     blocks, live = _blocks(topology), topology.noted[-turn % ROLES, LIVE:]
     is_written = topology.trial != 0
     if is_written:
-        by_written(topology, turn, w, LANES)
+        _by_written(topology, turn, w, lanes)
         again = False
         for k in range(blocks):
-            again |= _any(w, live[k], standing)
+            again |= _any(w, live[k], standing, lanes)
         if not again:
             return
     else:
-        _one(topology, turn, w, PREDICT)
+        _one(topology, turn, w, PREDICT, lanes)
     for k in range(blocks):
         if not is_written:
-            _one(topology, turn, w, BLOCKS + k)
-        elif _any(w, live[k], standing):  # what follows was computed with a worse position
+            _one(topology, turn, w, BLOCKS + k, lanes)
+        elif _any(w, live[k], standing, lanes):  # what follows was computed with a worse position
             for later in range(k + 1, blocks):
-                w[live[later], :] = 1.0
-        _iterate(topology, turn, w, BLOCKS + 2 * blocks + k, live[k], STEPS - 1, standing)
-    judged(topology, turn, w)
+                w[live[later], :lanes] = 1.0
+        _iterate(topology, turn, w, BLOCKS + 2 * blocks + k, live[k], STEPS - 1, standing, lanes)
+    judged(topology, turn, w, lanes)
 
 
 @compiled
@@ -184,16 +185,16 @@ def solved_slowly(topology, w):  # type: ignore[no-untyped-def]
     """
     blocks, nodes = _blocks(topology), topology.nodes
     everywhere = np.ones(LANES)
-    _one(topology, 0, w, PREDICT)
+    _one(topology, 0, w, PREDICT, LANES)
     for b in range(blocks):
         live = topology.noted[0, LIVE + b]
         w[live, :] = 1.0
-        _iterate(topology, 0, w, BLOCKS + blocks + b, live, START_STEPS, everywhere)
+        _iterate(topology, 0, w, BLOCKS + blocks + b, live, START_STEPS, everywhere, LANES)
     if proved(topology):
         for _ in range(2):
             for lane in range(LANES):
                 copied(w, lane, nodes[1], nodes[0])
-            judged(topology, 0, w)
+            judged(topology, 0, w, LANES)
 
 
 @compiled
@@ -234,3 +235,28 @@ def extrapolated(w, lane, weights, t, times, known):  # type: ignore[no-untyped-
     for i in range(used):
         a, b = hermite(t, times, i, used)
         w[weights[2 * i], lane], w[weights[2 * i + 1], lane] = a, b
+
+
+@compiled
+def chosen(w, lane, weights, times, step, known, spacing):  # type: ignore[no-untyped-def]
+    """The weights of a lane's prediction, computed anew where its spacing has changed; whether it
+    has.
+
+    Parameters
+    ----------
+    times : (4,) of the last nodes
+    step : from the last one
+    known : how many of them there are
+    spacing : (4,) for which the weights are at hand, changed
+    """
+    near = SAME * abs(step)
+    same = abs(step - spacing[0]) <= near
+    for k in range(1, len(times)):
+        same &= abs(times[k - 1] - times[k] - spacing[k]) <= near
+    if same:
+        return False
+    spacing[0] = step
+    for k in range(1, len(times)):
+        spacing[k] = times[k - 1] - times[k]
+    extrapolated(w, lane, weights, times[0] + step, times, known)
+    return True
