@@ -15,7 +15,7 @@ from typing import Any
 from linkwork.batch.study.job import Part
 from linkwork.batch.study.ledger import PARTIAL, Entry, read_entries, write_entry, write_whole
 from linkwork.batch.study.study import DESIGN, Study
-from linkwork.batch.study.zarr_files import LEDGER, ZarrFiles
+from linkwork.batch.study.zarr_files import LEDGER, METADATA, ZarrFiles
 from linkwork.foundation.errors import InputError, key_text
 
 if sys.platform == "win32":
@@ -25,7 +25,6 @@ else:
 
 __all__ = ["Store", "attributes_of", "opened"]
 
-_METADATA = "zarr.json"
 _IDENTITY = "linkwork_identity"
 _LOCK = "lock"
 _LONGEST_SHOWN = 60  # characters of a value that differs
@@ -99,7 +98,7 @@ def attributes_of(path: Path) -> Mapping[str, Any]:
     if not path.exists():
         raise InputError(f'there is no "{path}"')
     try:
-        found = json.loads((path / _METADATA).read_text(encoding="utf-8"))["attributes"]
+        found = json.loads((path / METADATA).read_text(encoding="utf-8"))["attributes"]
         found[_IDENTITY] = json.loads(found[_IDENTITY])
     except (OSError, ValueError, KeyError, TypeError):
         raise InputError(
