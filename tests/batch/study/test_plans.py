@@ -104,21 +104,32 @@ keep = ["B.z", "crank", "B.x", "B.x"]
 passed = "min(mu)"
 a = "min(mew)"
 "x/y" = "min(mu)"
+"zarr.json" = "min(mu)"
 ".x" = "min(mu)"
 [filters]
 x = "mew <= 40"
 """,
         """\
-9 problems in plan.toml
-  line 6   keep[1]            there is no "B.z" (names: B.y, B.x, crank, coupler, rocker, mu, O2.x, O2.y, … 4 more)
-  line 6   keep[2]            "crank" is an input, the same for every design: leave it out
-  line 6   keep[4]            "B.x" is already the name of keep[3]: leave it out or rename it
-  line 10  reductions."B.x"   "B.x" is already the name of keep[3]: leave it out or rename it
-  line 11  reductions.passed  "passed" is already an array of every study: leave it out or rename it
-  line 12  reductions.a       there is no "mew" (names: crank, coupler, rocker, mu, O2.x, O2.y, O4.x, O4.y, … 4 more)
-  line 13  reductions."x/y"   "x/y" cannot name an array: up to 80 letters, without / \\ : *
-  line 14  reductions.".x"    ".x" cannot name an array: begin with a letter
-  line 16  filters.x          there is no "mew" (names: crank, coupler, rocker, mu, O2.x, O2.y, O4.x, O4.y, … 4 more)""",
+10 problems in plan.toml
+  line 6   keep[1]                 there is no "B.z" (names: B.y, B.x, crank, coupler, rocker, mu, O2.x, O2.y, … 4 more)
+  line 6   keep[2]                 "crank" is an input, the same for every design: leave it out
+  line 6   keep[4]                 "B.x" is already the name of keep[3]: leave it out or rename it
+  line 10  reductions."B.x"        "B.x" is already the name of keep[3]: leave it out or rename it
+  line 11  reductions.passed       "passed" is already an array of every study: leave it out or rename it
+  line 12  reductions.a            there is no "mew" (names: crank, coupler, rocker, mu, O2.x, O2.y, O4.x, O4.y, … 4 more)
+  line 13  reductions."x/y"        "x/y" cannot name an array: up to 80 letters, without / \\ : *
+  line 14  reductions."zarr.json"  "zarr.json" is already an array of every study: leave it out or rename it
+  line 15  reductions.".x"         ".x" cannot name an array: begin with a letter
+  line 17  filters.x               there is no "mew" (names: crank, coupler, rocker, mu, O2.x, O2.y, O4.x, O4.y, … 4 more)""",
+    ),
+    "numbers of the mechanism that are called like an array of the store": (
+        'format = 1\nmechanism = "circle.toml"\nsampling = "grid"\n'
+        "[dimensions]\npassed = [1, 2]\nfound = [0, 1]\n",
+        """\
+3 problems in plan.toml
+  line 2  mechanism          "found" is already an array of every study: leave it out or rename it
+  line 5  dimensions.passed  "passed" is already an array of every study: leave it out or rename it
+  line 6  dimensions.found   "found" is already an input, which every row has: leave it out or rename it""",
     ),
     "a mechanism that the library lacks": (
         edited(('"four-bar"', '"four-ber"')),
@@ -178,6 +189,12 @@ def test_a_wrong_plan_is_refused_with_its_whole_message(
 ) -> None:
     (tmp_path / "sums.toml").write_text(
         'format = 1\n[equations]\nf = "x^2 - 2 = 0"\n[guess]\nx = 1\n', encoding="utf-8"
+    )
+    (tmp_path / "circle.toml").write_text(
+        'format = 1\n[loops]\n1 = "passed*e^(i*found) = x + i*y"\n[dimensions]\npassed = 2\n'
+        "[guess]\nfound = 30\nx = 1\ny = 1\n"
+        '[input]\nvariable = "found"\nfrom = 0\nto = 360\nstep = 30\n',
+        encoding="utf-8",
     )
     monkeypatch.chdir(tmp_path)
     text, message = WRONG[title]

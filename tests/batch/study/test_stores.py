@@ -364,6 +364,43 @@ def test_fresh_begins_again_and_takes_nothing_else_away(whole: Path, tmp_path: P
     assert (tmp_path / "notes" / "zarr.json").exists()
 
 
+def test_a_store_that_is_killed_while_it_is_taken_away_is_there_or_not(
+    whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def killed(path: Path) -> None:
+        (path / "crank" / "c" / "0").unlink()
+        raise Killed
+
+    store = tmp_path / "out.zarr"
+    run_study(study(*FEW), store, workers=1)
+    with monkeypatch.context() as patch:
+        patch.setattr("linkwork.batch.study.store.shutil.rmtree", killed)
+        with pytest.raises(Killed):
+            run_study(study(*FEW), store, workers=1, fresh=True)
+    run_study(study(), store, workers=1)
+    assert contents(store) == contents(whole)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a folder with an open file has to stay there")
+def test_a_store_that_was_taken_away_meanwhile_is_not_written_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The other run takes the store away when this one has opened its lock, and not locked it."""
+    import fcntl
+
+    store, lock = tmp_path / "out.zarr", fcntl.flock
+    run_study(study(*FEW), store, workers=1)
+
+    def late(file: object, how: int) -> None:
+        monkeypatch.setattr(fcntl, "flock", lock)
+        run_study(study(*FEW, ("seed = 1", "seed = 2")), store, workers=1, fresh=True)
+        lock(file, how)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(fcntl, "flock", late)
+    with pytest.raises(InputError, match="^another run is writing to"):
+        run_study(study(*FEW), store, workers=1)
+
+
 def test_two_runs_do_not_write_to_one_store(whole: Path, tmp_path: Path) -> None:
     def second(_: object) -> None:
         run_study(study(), tmp_path / "out.zarr", workers=1)

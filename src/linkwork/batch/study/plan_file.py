@@ -17,6 +17,7 @@ from linkwork.batch.study.job import Job, linkwork_version, passes_name
 from linkwork.batch.study.measures import Comparison, Condition, Reduced, Word, read_condition
 from linkwork.batch.study.plan_keys import PLAN
 from linkwork.batch.study.study import DESIGN, Study, usual_chunk
+from linkwork.batch.study.zarr_files import LEDGER, METADATA
 from linkwork.foundation.errors import (
     InputError,
     MechanismError,
@@ -37,7 +38,7 @@ from linkwork.textfile.toml_text import bytes_of, data_of, text_of
 __all__ = ["read_plan", "read_plan_bytes", "read_plan_text"]
 
 _LONGEST_NAME = 80
-_TAKEN = ("built", "found", "certified", "passed", "status", "ledger", DESIGN)
+_TAKEN = ("built", "found", "certified", "passed", "status", LEDGER, METADATA, DESIGN)
 
 Key = tuple[str | int, ...]
 T = TypeVar("T")
@@ -183,8 +184,7 @@ class _Reader:
             try:
                 quantity_named(model.description, name)
             except UnknownNameError as error:
-                key = ("dimensions", name) if name in self.content.get("dimensions", {}) else None
-                self.problems.add(key or ("table",), str(error))
+                self.problems.add(self._key_of_number(name), str(error))
                 known = False
         if not known or self.problems:
             return None
@@ -194,6 +194,10 @@ class _Reader:
             self.problems.add(("dimensions",), str(error))
             return None
         return family.take(slice(0)).sweep(certify=False, threads=1)
+
+    def _key_of_number(self, name: str) -> Key:
+        """Where a plan names a number of the mechanism."""
+        return ("dimensions", name) if name in self.content.get("dimensions", {}) else ("table",)
 
     def _texts(self, table: str, read: Callable[[str], T]) -> dict[str, T]:
         """The entries of a table of texts."""
@@ -233,8 +237,12 @@ class _Reader:
         ]
         known = [self._check_quantity(key, name, inputs, motion) for key, name in asked]
         taken = dict.fromkeys(_TAKEN, "an array of every study")
-        taken |= dict.fromkeys(inputs, "an input, which every row has")
-        taken |= dict.fromkeys(plan, "what varies")
+        for name in inputs:
+            self._check_free(("mechanism",), name, name, taken)
+            taken[name] = "an input, which every row has"
+        for name in plan:
+            self._check_free(self._key_of_number(name), name, name, taken)
+            taken[name] = "what varies"
         for k, name in enumerate(keep):
             if known[k]:
                 self._check_free(("keep", k), name, name, taken)

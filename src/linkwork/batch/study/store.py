@@ -15,7 +15,7 @@ from typing import Any
 from linkwork.batch.study.job import Part
 from linkwork.batch.study.ledger import PARTIAL, Entry, read_entries, write_entry, write_whole
 from linkwork.batch.study.study import DESIGN, Study
-from linkwork.batch.study.zarr_files import LEDGER, ZarrFiles
+from linkwork.batch.study.zarr_files import LEDGER, METADATA, ZarrFiles
 from linkwork.foundation.errors import InputError, key_text
 
 if sys.platform == "win32":
@@ -25,7 +25,6 @@ else:
 
 __all__ = ["Store", "attributes_of", "opened"]
 
-_METADATA = "zarr.json"
 _IDENTITY = "linkwork_identity"
 _LOCK = "lock"
 _LONGEST_SHOWN = 60  # characters of a value that differs
@@ -79,12 +78,12 @@ def opened(study: Study, path: Path, *, fresh: bool = False) -> Iterator[Store]:
     files = _files_of(study)
     if fresh and path.exists():
         attributes_of(path)  # nothing but a study's store is ever taken away
-        with _locked(path):
-            shutil.rmtree(path)
+        _take_away(path)
     if not path.exists():
         _make(path, files.first)
-    _check_same(study, path)
+    attributes_of(path)  # what is no store has no lock either
     with _locked(path):
+        _check_same(study, path)
         yield Store(path, study, files)
 
 
@@ -99,7 +98,7 @@ def attributes_of(path: Path) -> Mapping[str, Any]:
     if not path.exists():
         raise InputError(f'there is no "{path}"')
     try:
-        found = json.loads((path / _METADATA).read_text(encoding="utf-8"))["attributes"]
+        found = json.loads((path / METADATA).read_text(encoding="utf-8"))["attributes"]
         found[_IDENTITY] = json.loads(found[_IDENTITY])
     except (OSError, ValueError, KeyError, TypeError):
         raise InputError(
@@ -137,6 +136,14 @@ def _make(path: Path, files: Mapping[str, bytes]) -> None:
         (part / name).write_bytes(data)
     (part / LEDGER / _LOCK).touch()
     os.rename(part, path)
+
+
+def _take_away(path: Path) -> None:
+    """The store is there or not: a part of it that is left would be gone on with."""
+    aside = path.with_name(f".{path.name}.{os.getpid()}.old{PARTIAL}")
+    with _locked(path):
+        os.rename(path, aside)
+    shutil.rmtree(aside)
 
 
 def _check_same(study: Study, path: Path) -> None:
@@ -194,12 +201,16 @@ def _shown(value: Any) -> str:
 @contextmanager
 def _locked(path: Path) -> Iterator[None]:
     """Nobody else writes meanwhile; the lock of a process that was killed is gone with it."""
-    with (path / LEDGER / _LOCK).open("ab") as file:
+    lock = path / LEDGER / _LOCK
+    with lock.open("ab") as file:
         try:
             if sys.platform == "win32":
                 msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
             else:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            # of a store that was taken away between opening and locking: as if it were locked
+            if not os.path.samestat(os.fstat(file.fileno()), lock.stat()):
+                raise FileNotFoundError(lock)
         except OSError:
             raise InputError(
                 f'another run is writing to "{path}": wait for it, or end it'

@@ -15,10 +15,12 @@ from linkwork.batch.study.study import DESIGN, Variable
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.errors import MissingPackageError
 
-__all__ = ["LEDGER", "ZarrFiles", "check_packages", "open_arrays"]
+__all__ = ["LEDGER", "METADATA", "ZarrFiles", "check_packages", "open_arrays"]
 
 #: The group beside the arrays in which finished chunks are listed.
 LEDGER = "ledger"
+#: The file that describes the whole store, or one array in its folder.
+METADATA = "zarr.json"
 
 
 def check_packages() -> None:
