@@ -4,32 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from linkwork.expression.precedence import ATOM, NEGATIVE, STRENGTH, strength
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 from linkwork.foundation.names import latex_name, pretty
 
 __all__ = ["latex", "number_text", "text"]
-
-_STRENGTH = {"+": 1, "-": 1, "*": 2, "/": 2, "^": 4}
-_NEGATIVE = 3
-_ATOM = 5
 
 
 def number_text(value: float) -> str:
     """A number without needless zeros; short, and exact to 12 digits."""
     shown = f"{value:.12g}"
     return shown[:-2] if shown.endswith(".0") else shown
-
-
-def _strength(node: Node) -> int:
-    match node:
-        case Binary():
-            return _STRENGTH[node.operator]
-        case Negative():
-            return _NEGATIVE
-        case Number() if node.value < 0:
-            return _NEGATIVE
-        case _:
-            return _ATOM
 
 
 def _spelled(node: Name) -> str:
@@ -44,20 +29,20 @@ def text(node: Node, name: Callable[[Name], str] = _spelled) -> str:
         case Name():
             return name(node)
         case Negative():
-            return "-" + _inside(node.operand, _NEGATIVE, name)
+            return "-" + _inside(node.operand, NEGATIVE, name)
         case Call():
             return f"{node.function}({', '.join(text(a, name) for a in node.arguments)})"
         case Binary():
-            strength = _STRENGTH[node.operator]
-            left = _inside(node.left, strength + (node.operator == "^"), name)
-            right = _inside(node.right, strength + (node.operator != "^"), name)
-            space = " " if strength == 1 else ""
+            own = STRENGTH[node.operator]
+            left = _inside(node.left, own + (node.operator == "^"), name)
+            right = _inside(node.right, own + (node.operator != "^"), name)
+            space = " " if node.operator in "+-" else ""
             return f"{left}{space}{node.operator}{space}{right}"
 
 
 def _inside(node: Node, least: int, name: Callable[[Name], str]) -> str:
     shown = text(node, name)
-    return f"({shown})" if _strength(node) < least else shown
+    return f"({shown})" if strength(node) < least else shown
 
 
 def latex(node: Node) -> str:
@@ -84,16 +69,13 @@ def latex(node: Node) -> str:
         case Binary("/"):
             return rf"\frac{{{latex(node.left)}}}{{{latex(node.right)}}}"
         case Binary("^"):
-            return f"{_latex_inside(node.left, _ATOM)}^{{{latex(node.right)}}}"
+            return f"{_latex_inside(node.left, ATOM)}^{{{latex(node.right)}}}"
         case Binary():
-            strength = _STRENGTH[node.operator]
+            own = STRENGTH[node.operator]
             sign = r" \, " if node.operator == "*" else f" {node.operator} "
-            return (
-                f"{_latex_inside(node.left, strength)}{sign}"
-                f"{_latex_inside(node.right, strength + 1)}"
-            )
+            return f"{_latex_inside(node.left, own)}{sign}{_latex_inside(node.right, own + 1)}"
 
 
 def _latex_inside(node: Node, least: int) -> str:
     shown = latex(node)
-    return rf"\left({shown}\right)" if _strength(node) < least else shown
+    return rf"\left({shown}\right)" if strength(node) < least else shown

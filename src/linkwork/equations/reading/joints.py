@@ -42,6 +42,20 @@ class Slide:
     foot: complex
     along: complex
 
+    def follows(self, other: Slide) -> bool:
+        """Whether the length is measured the same way round as in ``other``.
+
+        Raises
+        ------
+        NotRead
+            If it has another direction or another scale there.
+        """
+        if abs(other.along - self.along) <= _ALIKE * abs(other.along):
+            return True
+        if abs(other.along + self.along) <= _ALIKE * abs(other.along):
+            return False
+        raise NotRead(f'"{self.variable}" is a length in two directions or scales')
+
 
 @dataclass(frozen=True)
 class Corner:
@@ -235,10 +249,8 @@ class _Joining:
             if one is slide:
                 continue
             before, after, foot = slide.before, slide.after, slide.foot
-            if abs(one.along + slide.along) <= _ALIKE * abs(one.along):
+            if not slide.follows(one):
                 before, after, foot = after, before, -foot
-            elif abs(one.along - slide.along) > _ALIKE * abs(one.along):
-                raise NotRead(f'"{slide.variable}" is a length in two directions or scales')
             if self.phase[before] != self.phase[one.before]:
                 raise NotRead(f'"{slide.variable}" is a length along two links')
             changed |= self.link.unite(one.before, before)
@@ -280,7 +292,7 @@ class _Joining:
         for slide in self.slides:
             one = first.setdefault(slide.variable, slide)
             ends = [(slide.before, slide.foot), (slide.after, 0j)]
-            if abs(one.along + slide.along) <= _ALIKE * abs(one.along):
+            if not slide.follows(one):
                 ends.reverse()
             for known, (piece, place) in zip(
                 ((one.before, one.foot), (one.after, 0j)), ends, strict=True

@@ -16,6 +16,8 @@ from linkwork.mechanism.loops import Loops
 
 __all__ = ["PartNames"]
 
+_CANCELLED = 1e-12  # part of the largest vector: the rounding of vectors that add up to nothing
+
 
 @dataclass(frozen=True, kw_only=True)
 class PartNames:
@@ -77,7 +79,7 @@ def _direction(equations: LoopEquations, points: Sequence[str]) -> Phase | None:
             key = (phase_of(term), term.length)
             total[key] = total.get(key, 0j) + sign * term.value
     size = max(map(abs, total.values()), default=0.0)
-    left = {phase for (phase, _), value in total.items() if abs(value) > 1e-12 * size}
+    left = {phase for (phase, _), value in total.items() if abs(value) > _CANCELLED * size}
     return left.pop() if len(left) == 1 and len(points) > 1 else None
 
 

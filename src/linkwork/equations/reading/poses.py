@@ -13,6 +13,8 @@ from linkwork.foundation.arrays import Array
 
 __all__ = ["Poses"]
 
+_NEAR = 1e-6  # part of a length: a closed position is far nearer, no two pins are as near as this
+
 
 @dataclass(frozen=True)
 class Poses:
@@ -27,7 +29,7 @@ class Poses:
         """The position with unknowns and inputs v (N,)."""
         names = (variable.symbol for variable in equations.variables)
         values = dict(zip(names, map(float, v), strict=True))
-        poses = cls(values, {}, 1e-6 * equations.length_scale)
+        poses = cls(values, {}, _NEAR * equations.length_scale)
         points = {name: poses.sum(path.terms) for name, path in equations.points.items()}
         return cls(values, points, poses.tolerance)
 

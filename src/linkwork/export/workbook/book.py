@@ -155,6 +155,11 @@ class Book:
         """Give a cell its name; ``$B1`` is column B of the row that asks."""
         self.workbook.define_name(self.names.cells[key], f"={sheet}!{place}")
 
+    def head(self, sheet: Any, column: int, title: str, unit: str) -> None:
+        """A heading with its unit, above the rows of a sheet with a row for every position."""
+        sheet.write(FIRST - 2, column, title, self.style["head"])
+        sheet.write(FIRST - 1, column, unit, self.style["unit"])
+
     def over_rows(self, values: Any) -> np.ndarray[Any, Any]:
         """Values as an array (R,)."""
         return np.broadcast_to(np.asarray(values, dtype=float), self.count)

@@ -10,14 +10,12 @@ import numpy as np
 
 from linkwork.expression.grammar import CONSTANTS
 from linkwork.expression.lane_functions import FUNCTIONS
+from linkwork.expression.precedence import ATOM, STRENGTH, strength
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 from linkwork.foundation.angles import AngleUnit
 
 __all__ = ["CellFormula"]
 
-_STRENGTH = {"+": 1, "-": 1, "*": 2, "/": 2, "^": 4}
-_NEGATIVE = 3
-_ATOM = 5
 _OF_ANGLE = ("sin", "cos", "tan")
 _TO_ANGLE = ("asin", "acos", "atan", "atan2")
 _CONVERSIONS: dict[str, Callable[..., Any]] = {"radians": np.radians, "degrees": np.degrees}
@@ -62,15 +60,15 @@ class _Writer:
             case Name():
                 return self._name(node)
             case Negative():
-                least = _ATOM if _begins_with_power(node.operand) else _STRENGTH["*"]
+                least = ATOM if _begins_with_power(node.operand) else STRENGTH["*"]
                 return "-" + self._inside(node.operand, least)
             case Call():
                 return self._call(node.function, [self.text(part) for part in node.arguments])
             case Binary("^"):
-                left, right = (self._inside(part, _ATOM) for part in (node.left, node.right))
+                left, right = (self._inside(part, ATOM) for part in (node.left, node.right))
                 return f"{left}^{right}"
             case Binary():
-                least = _STRENGTH[node.operator]
+                least = STRENGTH[node.operator]
                 left = self._inside(node.left, least)
                 return f"{left}{node.operator}{self._inside(node.right, least + 1)}"
 
@@ -92,19 +90,7 @@ class _Writer:
 
     def _inside(self, node: Node, least: int) -> str:
         shown = self.text(node)
-        return f"({shown})" if _strength(node) < least else shown
-
-
-def _strength(node: Node) -> int:
-    match node:
-        case Binary():
-            return _STRENGTH[node.operator]
-        case Negative():
-            return _NEGATIVE
-        case Number() if node.value < 0.0:
-            return _NEGATIVE
-        case _:
-            return _ATOM
+        return f"({shown})" if strength(node) < least else shown
 
 
 def _begins_with_power(node: Node) -> bool:

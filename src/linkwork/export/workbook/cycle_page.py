@@ -109,7 +109,7 @@ class _Page:
                 sheet.write(FIRST - 3, first, title, style["group"])
             else:
                 sheet.merge_range(FIRST - 3, first, FIRST - 3, last, title, style["group"])
-        self._head(0, "row", "")
+        book.head(self.sheet, 0, "row", "")
         for k in range(book.count):
             sheet.write_number(FIRST + k, 0, k + 1, style["count"])
         self._inputs()
@@ -119,15 +119,11 @@ class _Page:
         self._check()
         sheet.freeze_panes(FIRST, 1 + len(book.model.equations.inputs))
 
-    def _head(self, column: int, title: str, unit: str) -> None:
-        self.sheet.write(FIRST - 2, column, title, self.book.style["head"])
-        self.sheet.write(FIRST - 1, column, unit, self.book.style["unit"])
-
     def _inputs(self) -> None:
         book = self.book
         for variable in book.model.equations.inputs:
             column = self.columns.of[variable.symbol]
-            self._head(column, book.shown(variable), book.unit(variable.kind))
+            book.head(self.sheet, column, book.shown(variable), book.unit(variable.kind))
             values = book.motion.inputs[variable.name][book.iterations.rows]
             even = input_table(values) is not None
             for k, value in enumerate(values):
@@ -145,7 +141,7 @@ class _Page:
         book, done = self.book, self.book.iterations
         for number, variable in enumerate(book.model.equations.unknowns):
             column = self.columns.of[variable.symbol]
-            self._head(column, book.shown(variable), book.unit(variable.kind))
+            book.head(self.sheet, column, book.shown(variable), book.unit(variable.kind))
             last = self.newton.last.get(number)
             for k in np.flatnonzero(done.found).tolist():
                 value = float(done.values[-1][k, number])
@@ -170,11 +166,11 @@ class _Page:
         for block in book.closure.blocks:
             for row in block.rows:
                 column = self.columns.of[f"row {row.name}"]
-                self._head(column, row.name, "")
+                book.head(self.sheet, column, row.name, "")
                 squares = squares + self._formulas(column, row.formula, "small") ** 2
         if not self.columns.equations:
             return
-        self._head(self.columns.squares, "ΣF²", "")
+        book.head(self.sheet, self.columns.squares, "ΣF²", "")
         first = column_name(self.columns.equations[0])
         last = column_name(self.columns.equations[-1])
         self._written(
@@ -200,22 +196,22 @@ class _Page:
             for axis, formula in zip("xy", pair, strict=True):
                 key = coordinate_name(point, axis)
                 column = self.columns.of[key]
-                self._head(column, f"{point}.{axis}", book.unit("length"))
+                book.head(self.sheet, column, f"{point}.{axis}", book.unit("length"))
                 book.values[key] = self._formulas(column, formula, "number")
         for link, formula in closure.links.items():
             column = self.columns.of[canonical(link)]
-            self._head(column, link, book.unit("angle"))
+            book.head(self.sheet, column, link, book.unit("angle"))
             book.values[canonical(link)] = self._formulas(column, formula, "number")
         kinds = {name: output.kind for name, output in book.model.equations.outputs.items()}
         for name, formula in closure.outputs.items():
             column = self.columns.of[f"output {name}"]
-            self._head(column, name, book.model.units.of(Kind(kinds[name])))
+            book.head(self.sheet, column, name, book.model.units.of(Kind(kinds[name])))
             book.values[f"output {name}"] = self._formulas(column, formula, "number")
 
     def _check(self) -> None:
         book, columns = self.book, self.columns
-        self._head(columns.largest, "difference", "from Linkwork")
-        self._head(columns.closes, "closes", "")
+        book.head(self.sheet, columns.largest, "difference", "from Linkwork")
+        book.head(self.sheet, columns.closes, "closes", "")
         self.sheet.write(FIRST - 2, columns.status, "Linkwork says", book.style["head_left"])
         self.sheet.write(FIRST - 1, columns.status, "", book.style["unit"])
         if columns.equations:

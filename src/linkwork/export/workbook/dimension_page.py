@@ -16,6 +16,7 @@ from linkwork.foundation.arrays import Array
 __all__ = ["input_table", "write_dimensions"]
 
 _CLOSED = 1e-9  # of the longest link: a row whose equations are off by more does not close
+_EVEN = 1e-12  # of the largest value: rounding of a table that is spaced evenly
 _HEADS = ("name", "value", "unit", "cell name", "note")
 
 
@@ -27,7 +28,7 @@ def input_table(values: Array) -> tuple[float, float] | None:
     first = float(values[0])
     even = first + step * np.arange(len(values))
     size = max(np.abs(values).max(), abs(step))
-    return (first, step) if np.abs(even - values).max() <= 1e-12 * size else None
+    return (first, step) if np.abs(even - values).max() <= _EVEN * size else None
 
 
 def write_dimensions(book: Book) -> None:

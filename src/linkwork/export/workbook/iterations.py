@@ -86,15 +86,11 @@ def iterated(model: Model, motion: Motion, closure: ClosureFormulas) -> Iteratio
     needed = _needed(model, values[:, live])
     return Iterations(
         rows=rows,
-        values=_with_count(values, min(max(needed + _SPARE, _FEWEST), _MOST)),
+        values=values[: min(max(needed + _SPARE, _FEWEST), _MOST) + 1],
         above=above,
         found=found,
         live=live,
     )
-
-
-def _with_count(values: Array, count: int) -> Array:
-    return values[: count + 1]
 
 
 def _everyday(model: Model) -> Array:
@@ -119,7 +115,6 @@ def _rounded(model: Model, right: Array) -> Array:
 
 def _newton(model: Model, closure: ClosureFormulas, guess: Array, right: Array) -> Array:
     """Iterates of the cells, (K + 1, B, N): block by block, each with the values before it."""
-    unknowns = len(model.equations.unknowns)
     scale = _everyday(model)
     known = right.copy()
     values = np.repeat(right[None], _MOST + 1, axis=0)
@@ -136,7 +131,6 @@ def _newton(model: Model, closure: ClosureFormulas, guess: Array, right: Array) 
                 change, _ = corrections(jacobian[:, :, : len(own)], f)
             known[:, own] += change / scale[own]
             values[k + 1][:, own] = known[:, own]
-    assert unknowns <= values.shape[2]
     return values
 
 

@@ -63,8 +63,7 @@ def write_newton(book: Book, sheet: Any, columns: NewtonColumns, cycle: dict[str
         1, 0, "J δ = -F, x + δ; every row starts from the row above. δ of angles is in radians.",
         style["note"],
     )  # fmt: skip
-    sheet.write(FIRST - 2, 0, "row", style["head"])
-    sheet.write(FIRST - 1, 0, "", style["unit"])
+    book.head(sheet, 0, "row", "")
     for k in range(book.count):
         sheet.write_number(FIRST + k, 0, k + 1, style["count"])
     for b, block in enumerate(book.closure.blocks):
@@ -100,10 +99,6 @@ class _Block:
         else:
             self.sheet.merge_range(FIRST - 3, first, FIRST - 3, last, title, style)
 
-    def _head(self, column: int, title: str, unit: str) -> None:
-        self.sheet.write(FIRST - 2, column, title, self.book.style["head"])
-        self.sheet.write(FIRST - 1, column, unit, self.book.style["unit"])
-
     def _start(self) -> None:
         book = self.book
         first = self.columns.x[0, self.block.unknowns[0]]
@@ -112,7 +107,7 @@ class _Block:
         self._title(first, first + len(self.block.unknowns) - 1, title)
         for i, variable in zip(self.block.unknowns, self._variables, strict=True):
             column = self.columns.x[0, i]
-            self._head(column, f"{book.shown(variable)} 0", book.unit(variable.kind))
+            book.head(self.sheet, column, f"{book.shown(variable)} 0", book.unit(variable.kind))
             source = column_name(self.cycle[variable.symbol])
             for k in self.live:
                 value = float(book.iterations.values[0][k, i])
@@ -142,11 +137,11 @@ class _Block:
         }
         values = {**book.values, **here}
         for r, row in enumerate(block.rows):
-            self._head(place + r, row.name, "")
+            book.head(self.sheet, place + r, row.name, "")
             self._cells(place + r, book.text(row.formula, **cells), row.formula, values, "small")
             for c, slope in enumerate(row.slopes):
                 column = place + n + n * r + c
-                self._head(column, f"∂{row.name}/∂{book.shown(self._variables[c])}", "")
+                book.head(self.sheet, column, f"∂{row.name}/∂{book.shown(self._variables[c])}", "")
                 self._cells(column, book.text(slope, **cells), slope, values, "slope")
         self._corrections(k, place)
         self._next(k, place + n + n * n)
@@ -169,7 +164,7 @@ class _Block:
         ]
         for c, variable in enumerate(self._variables):
             unit = "rad" if variable.kind == "angle" else book.unit(variable.kind)
-            self._head(first + c, f"δ{book.shown(variable)}", unit)
+            book.head(self.sheet, first + c, f"δ{book.shown(variable)}", unit)
         for row in self.live:
             for c, change in enumerate(changes):
                 formula = _correction(place, n, c, FIRST + row + 1)
@@ -180,7 +175,9 @@ class _Block:
         book = self.book
         for c, (i, variable) in enumerate(zip(self.block.unknowns, self._variables, strict=True)):
             column = self.columns.x[k + 1, i]
-            self._head(column, f"{book.shown(variable)} {k + 1}", book.unit(variable.kind))
+            book.head(
+                self.sheet, column, f"{book.shown(variable)} {k + 1}", book.unit(variable.kind)
+            )
             old = book.names.cells[f"iterate {k} {variable.symbol}"]
             change = column_name(corrections + c)
             for row in self.live:
