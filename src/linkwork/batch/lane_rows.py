@@ -14,6 +14,7 @@ from linkwork.batch.limits import LIMIT_KINDS
 from linkwork.batch.own_rows import OwnRows, ends_as_limits
 from linkwork.equations.compiling import Compiled
 from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.aligned import aligned
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray, StatusArray, TurnArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import LinkworkError
@@ -73,10 +74,10 @@ class DesignRows:
         way = slice(None, None, -1 if falling else 1)
         none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
         return cls(
-            v=np.empty((unknowns, rows, designs))[:, way],
+            v=aligned(unknowns, rows, designs)[:, way],
             status=np.full((rows, designs), Status.NO_START.code, dtype=np.int8),
             certification=np.full((rows, designs), none.code, dtype=np.int8),
-            radius=np.empty((rows, designs))[way],
+            radius=aligned(rows, designs)[way],
             turns=np.zeros((rows, designs), dtype=np.int32),
             limits=np.full((2, designs), np.nan),
             limit_kinds=np.zeros((2, designs), dtype=np.int8),

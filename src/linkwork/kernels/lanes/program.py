@@ -13,6 +13,7 @@ from enum import IntEnum
 
 import numpy as np
 
+from linkwork.foundation.aligned import aligned
 from linkwork.foundation.arrays import Array, IndexArray
 
 __all__ = ["SOURCES", "Op", "Program", "Registers"]
@@ -83,7 +84,8 @@ class Registers:
 
     def filled(self, height: int, lanes: int) -> Array:
         """A workspace (height, lanes) with the constants in their places."""
-        space = np.zeros((height, lanes))
+        space = aligned(height, lanes)
+        space[:] = 0.0
         for value, register in self.constants.items():
             space[register] = value
         return space
