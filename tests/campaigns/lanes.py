@@ -342,20 +342,10 @@ def _proved_here(
             put(f"e{k}.1", space[reg.named[f"e{k}.0"], :count])
         put("t.0", at[:, n])
         put("t.1", before[:, n])
-        run(_phasors(programs), space)
-        for program in (*programs.prove, programs.judge):
+        for program in (programs.given, *programs.prove, programs.judge):
             run(program.code, space)
         own = space[reg.named["good.0"], :count] > 0.5
         if at is node:
             proved_node = own
     found: npt.NDArray[np.bool_] = own & proved_node
     return found
-
-
-def _phasors(programs: MarchPrograms) -> npt.NDArray[np.uint32]:
-    """The part of the prediction that turns phasors by the input: after the unknowns' own."""
-    code = programs.predict.code
-    unknowns = {
-        programs.registers.named[name] for name in programs.registers.named if name[0] == "x"
-    }
-    return code[[int(target) not in unknowns for target in code[:, 1]]]

@@ -218,7 +218,8 @@ class FamilyMotion:
     @property
     def radius(self) -> Array:
         """Within this a true position lies, (D, R), weighted; NaN where nothing is proved."""
-        return self.rows.radius.T
+        radius = self.rows.radius
+        return radius.T if len(radius) else np.full(self.status.shape, np.nan)
 
     @property
     def counts(self) -> Counter[Status]:

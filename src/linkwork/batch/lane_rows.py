@@ -13,8 +13,8 @@ from linkwork.batch.entering import led_to_rows
 from linkwork.batch.limits import LIMIT_KINDS
 from linkwork.batch.own_rows import OwnRows, ends_as_limits
 from linkwork.equations.compiling import Compiled
-from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.aligned import aligned
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray, StatusArray, TurnArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import LinkworkError
@@ -45,10 +45,10 @@ class DesignRows:
     """D designs over R rows of inputs, internal units.
 
     ``v`` (n, R, D): unknowns, NaN where there is no position. ``status``, ``certification``
-    (R, D): codes. ``radius`` (R, D): of the proof, weighted; NaN without one. ``turns`` (R, D): how
-    many whole turns further the position of a row was found. ``limits`` (2, D): where the branch
-    ends below and above, and ``limit_kinds`` (2, D) what ends it, see
-    :func:`linkwork.batch.own_rows.ends_as_limits`; NaN without a position.
+    (R, D): codes. ``radius`` (R, D): of the proof, weighted, NaN without one; (0, D) if none is
+    asked for. ``turns`` (R, D): how many whole turns further the position of a row was found.
+    ``limits`` (2, D): where the branch ends below and above, and ``limit_kinds`` (2, D) what ends
+    it, see :func:`linkwork.batch.own_rows.ends_as_limits`; NaN without a position.
     ``alone`` (D,): designs that were computed one at a time; ``own``: what they say themselves.
     """
 
@@ -77,7 +77,7 @@ class DesignRows:
             v=aligned(unknowns, rows, designs)[:, way],
             status=np.full((rows, designs), Status.NO_START.code, dtype=np.int8),
             certification=np.full((rows, designs), none.code, dtype=np.int8),
-            radius=aligned(rows, designs)[way],
+            radius=aligned(rows if certify else 0, designs)[way],
             turns=np.zeros((rows, designs), dtype=np.int32),
             limits=np.full((2, designs), np.nan),
             limit_kinds=np.zeros((2, designs), dtype=np.int8),
@@ -174,17 +174,18 @@ class Path:
 
     def _note(self, found: DesignRows, reached: BoolArray, whole: BoolArray, certify: bool) -> None:
         """Statuses of rows that were reached, and of the others of designs that are done."""
-        if not reached.all():
-            found.v[:, ~reached] = np.nan
-            found.radius[~reached] = np.nan
-            found.status[:, whole] = Status.OUT_OF_REACH.code
+        if reached.all():
+            found.status[:] = Status.CONVERGED.code
             if certify:
-                found.certification[~reached] = Certification.NO_POSITION.code
+                found.certification[:] = Certification.CERTIFIED.code
+            return
+        found.v[:, ~reached] = np.nan
+        found.status[:, whole] = Status.OUT_OF_REACH.code
         np.copyto(found.status, Status.CONVERGED.code, where=reached)
         if certify:
+            found.radius[~reached] = np.nan
+            found.certification[~reached] = Certification.NO_POSITION.code
             np.copyto(found.certification, Certification.CERTIFIED.code, where=reached)
-        else:
-            found.radius[:] = np.nan
 
 
 #: Kernels of mechanisms that are in use.
@@ -285,7 +286,7 @@ class March:
         ``smallest``: of the steps, if it is another one than usual.
         """
         steps = Steps() if smallest is None else Steps(smallest=smallest)
-        found = LaneRows.over(v, radius if self.certify else radius[:0], self.kernel)
+        found = LaneRows.over(v, radius, self.kernel)
         coefficients = {name: values[where] for name, values in self.coefficients.items()}
         coefficients["u0.spread"] = coefficients["u0.spread"] + apart
         self.kernel.run(
@@ -337,13 +338,14 @@ class March:
         if not len(those):
             return
         mine = stopped[those]
-        own, radii = np.empty((len(v), len(t), len(mine))), np.empty((len(t), len(mine)))
+        own, radii = np.empty((len(v), len(t), len(mine))), np.empty((len(radius), len(mine)))
         # neither 2π nor the sum is exact
         apart = 4.0 * _UNIT * (float(np.abs(t).max()) + abs(turns) * FULL_TURN) if turns else 0.0
         further = self._marched(moved, own, radii, mine, apart, smallest)
         row, column = np.nonzero(further.reached & ~reached[:, mine])
         v[:, row, mine[column]] = own[:, row, column]
-        radius[row, mine[column]] = radii[row, column]
+        if self.certify:
+            radius[row, mine[column]] = radii[row, column]
         reached[row, mine[column]] = True
         if self.turns is not None:
             self.turns[row, mine[column]] = turns
@@ -405,7 +407,8 @@ def _alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
     n = len(found.v)
     found.v[:, :, k] = rows.v[:, :n].T
     found.status[:, k], found.certification[:, k] = rows.status, rows.certification
-    found.radius[:, k] = rows.radius
+    if certify:
+        found.radius[:, k] = rows.radius
     found.own[k] = OwnRows.of(rows, n)
     _note_way(designs.base, k, rows, ends, found)
 

@@ -10,8 +10,8 @@ from linkwork.kernels.lanes.trial import (
     GOOD,
     LIVE,
     TOPOLOGY,
+    all_loaded,
     copied,
-    loaded,
     solved_slowly,
     tangent,
 )
@@ -36,21 +36,21 @@ def begin(topology, w, design, guess, node, found):  # type: ignore[no-untyped-d
     guess, node : (S, M) the guess, and what is found from there
     found : (M,) bool, set
     """
-    count, nodes, good = design.shape[1], topology.nodes, topology.noted[0, GOOD]
+    count, nodes, good = design.shape[1], topology.nodes, topology.noted[GOOD]
     for base in range(0, count, LANES):
+        width = min(LANES, count - base)
+        all_loaded(w, topology.coefficients, design, base, width)
+        all_loaded(w, nodes[1], guess, base, width)
         for lane in range(LANES):
-            member = min(base + lane, count - 1)
-            loaded(w, lane, topology.coefficients, design, member)
-            loaded(w, lane, nodes[1], guess, member)
             for role in range(len(nodes)):
                 copied(w, lane, nodes[role], nodes[1])
             tangent(w, lane, topology.weights, 0.0)
             w[good, lane] = 1.0
         solved_slowly(topology, w)
-        for lane in range(min(LANES, count - base)):
+        for lane in range(width):
             member = base + lane
             fine = w[good, lane] > 0.5
-            for live in topology.noted[0, LIVE:]:
+            for live in topology.noted[LIVE:]:
                 fine &= w[live, lane] == 0.0
             for j in range(nodes.shape[1]):
                 node[j, member] = w[nodes[0, j], lane]

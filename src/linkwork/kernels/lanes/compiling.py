@@ -7,9 +7,19 @@ from typing import Any
 import numba  # noqa: TID253 - this module is loaded when a family is solved
 from llvmlite import ir
 from numba import types  # noqa: TID253
+from numba.core import cgutils  # noqa: TID253
 from numba.extending import intrinsic  # noqa: TID253
 
-__all__ = ["call_at", "compiled", "compiled_for", "named_tuple", "trial_at", "types"]
+__all__ = [
+    "call_at",
+    "compiled",
+    "compiled_for",
+    "copied_to",
+    "named_tuple",
+    "soon_written",
+    "trial_at",
+    "types",
+]
 
 
 def compiled_for(signature: object):  # type: ignore[no-untyped-def]
@@ -27,6 +37,8 @@ def named_tuple(fields: list[object], kind: type) -> Any:
     return types.NamedTuple(fields, kind)  # type: ignore[no-untyped-call]
 
 
+_intrinsic: Any = cgutils.get_or_insert_function
+_BYTES = ir.PointerType(ir.IntType(8))
 _BLOCKS = 6  # of numbers, which a trial that is written out is called with
 
 
@@ -54,3 +66,32 @@ def _call(typing, address, one, two, three, four, five, six, lanes):  # type: ig
 #: Calls what :func:`trial_at` has compiled, by its address, with the addresses of six blocks and
 #: the number of lanes.
 call_at: Any = intrinsic(_call)
+
+
+def _copy(typing, to, source, count):  # type: ignore[no-untyped-def]
+    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        target, origin = (builder.inttoptr(a, _BYTES) for a in arguments[:2])
+        cgutils.raw_memcpy(builder, target, origin, arguments[2], 8)  # type: ignore[no-untyped-call]
+        return context.get_dummy_value()
+
+    return types.void(types.int64, types.int64, types.int64), code
+
+
+#: Copies numbers, at once, to an address from another one; ``count`` of them.
+copied_to: Any = intrinsic(_copy)
+
+
+def _prefetch(typing, address):  # type: ignore[no-untyped-def]
+    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        whole = ir.IntType(32)
+        kind = ir.FunctionType(ir.VoidType(), [_BYTES, whole, whole, whole])
+        fetch = _intrinsic(builder.module, kind, "llvm.prefetch.p0")
+        place = builder.inttoptr(arguments[0], _BYTES)
+        builder.call(fetch, [place, whole(1), whole(3), whole(1)])  # to write, to keep, data
+        return context.get_dummy_value()
+
+    return types.void(types.int64), code
+
+
+#: Says that the cache line of an address will be written to.
+soon_written: Any = intrinsic(_prefetch)

@@ -71,14 +71,14 @@ class ThreadState:
     def of(cls, programs: MarchPrograms, options: Sequence[str]) -> ThreadState:
         """The state that the programs of a topology need; ``options``: names that may be read."""
         named, blocks = programs.registers.named, len(programs.begin)
-        roles = set(programs.places.ravel().tolist())
+        own = {*programs.nodes.ravel().tolist(), *(named[name] for name in programs.noted)}
         noted = ["good.0", "radius.0", *(f"live{b}.0" for b in range(blocks))]
-        given = [name for name in named if named[name] not in roles and name not in WEIGHTS]
+        noted += [name for name in programs.noted if name not in noted]
+        given = [name for name in named if named[name] not in own and name not in WEIGHTS]
         coefficients = tuple(name for name in given if name not in options)
         used = tuple(name for name in options if name in named)
         order = [named[name] for name in (*WEIGHTS, *noted, *coefficients, *used)]
         order = [*programs.nodes.ravel().tolist(), *order]
-        order += sorted(set(programs.places[0].tolist()) - set(order))
         place = {register: k for k, register in enumerate(order)}
         return cls(place=place, coefficients=coefficients, options=used, blocks=blocks)
 
@@ -99,13 +99,14 @@ def device_source(programs: MarchPrograms, state: ThreadState, certified: bool) 
         f"coefficients={len(state.coefficients)}, options={len(state.options)}, "
         f"certified={certified})"
     )
-    named = {"predict": programs.predict, "agree": programs.judge}
+    named = {"reach": programs.predict, "given": programs.given, "agree": programs.judge}
     for kind in ("begin", "damped", "iterate", "prove"):
         named |= {f"{kind}{b}": program for b, program in enumerate(getattr(programs, kind))}
     constants = {register: value for value, register in programs.registers.constants.items()}
     live = [state.place[programs.registers.named[f"live{b}.0"]] for b in range(state.blocks)]
     functions = [
         *(_section(name, program, state, constants) for name, program in named.items()),
+        _function("predict", ["reach(w)", "given(w)"]),
         _function("correct", *map(_newton, range(state.blocks), live)),
         _function("correct_slowly", *map(_slowly, range(state.blocks), live)),
         _function("judge", [f"prove{b}(w)" for b in range(len(programs.prove))], ["agree(w)"]),

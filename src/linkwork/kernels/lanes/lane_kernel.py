@@ -176,11 +176,9 @@ class LaneKernel:
         ends = np.cumsum([len(section.code) for section in programs.sections])
         self.spans = np.stack([np.concatenate([[0], ends[:-1]]), ends], axis=1)
         self.nodes = np.ascontiguousarray(programs.nodes)
-        self.places = programs.places
         noted = ["good", "radius", *[f"live{b}" for b in range(len(parts))]]
-        self.noted = np.stack(
-            [reg.all_of([f"{name}.{role}" for name in noted]) for role in range(ROLES)]
-        )
+        self.noted = reg.all_of([f"{name}.0" for name in noted])
+        self.shared = reg.all_of(programs.shared)
         self.weights = reg.all_of(WEIGHTS)
         self.height = max(programs.height, reg.count)
         self._sections = programs
@@ -201,6 +199,8 @@ class LaneKernel:
         InputError
             If it is asked for, and the folder for compiled code cannot be written to.
         """
+        if gear.specialised is False:
+            self._trial = None
         if gear.specialised is False or self.trial:
             return
         if not gear.specialised and gear.positions < _PAYS_COMPILED:
@@ -217,10 +217,10 @@ class LaneKernel:
         sections = self._sections
         ordered = [sections.predict, *sections.begin, *sections.prove, sections.judge]
         after = [*sections.iterate, *sections.prove, sections.judge]
-        kept = {*self.nodes[0].tolist(), *self.noted[0].tolist(), *_read(after)}
+        kept = {*self.nodes[0].tolist(), *self.noted.tolist(), *_read(after)}
         return trial_source(
             [section.code for section in ordered],
-            self.places.shape[1],
+            self.nodes.shape[1],
             kept,
             {register: value for value, register in self.registers.constants.items()},
         )
@@ -389,7 +389,7 @@ class LaneKernel:
             weights=self.weights,
             nodes=self.nodes,
             noted=self.noted,
-            height=self.places.shape[1],
+            shared=self.shared,
             coefficients=coefficients,
             trial=self.trial,
         )

@@ -11,7 +11,13 @@ import math
 
 import numpy as np
 
-from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
+from linkwork.kernels.lanes.compiling import (
+    compiled,
+    compiled_for,
+    copied_to,
+    soon_written,
+    types,
+)
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
 from linkwork.kernels.lanes.tasks import FOUND, TABLE, TASKS
@@ -19,13 +25,14 @@ from linkwork.kernels.lanes.trial import (
     GOOD,
     RADIUS,
     TOPOLOGY,
+    all_loaded,
     chosen,
-    loaded,
     settled,
 )
 
 __all__ = ["in_step"]
 
+_LINE = 64  # bytes of a cache line
 _LARGEST = 0.5  # of the largest step: further apart, rows have nodes between them
 _WORTH = LANES // 2  # with fewer lanes left each goes on by itself
 
@@ -41,14 +48,15 @@ def _left(lane, member, way, topology, turn, w, tasks, count):  # type: ignore[n
 
 
 @compiled
-def _weighted(w, topology, turn, steps, spacing):  # type: ignore[no-untyped-def]
+def _weighted(w, topology, turn, steps, together, spacing, times):  # type: ignore[no-untyped-def]
     """The weights of the prediction: for each lane by itself until all have the same nodes behind.
 
-    ``spacing`` (4,): of the trial and the nodes before, for which the weights are at hand.
+    ``together``: whether they have started at the same t. ``spacing`` (4,): of the trial and the
+    nodes before, for which the weights are at hand. ``times`` (4,): room.
     """
     nodes, weights = topology.nodes, topology.weights
-    last, times = nodes.shape[1] - 1, np.zeros(NODES)
-    trial, shared = nodes[-turn % ROLES, last], steps > NODES
+    last, trial = nodes.shape[1] - 1, nodes[-turn % ROLES, nodes.shape[1] - 1]
+    shared = together or steps > NODES
     for lane in range(1 if shared else LANES):
         for role in range(1, ROLES):
             times[role - 1] = w[nodes[(role - turn) % ROLES, last], lane]
@@ -62,14 +70,33 @@ def _weighted(w, topology, turn, steps, spacing):  # type: ignore[no-untyped-def
 
 
 @compiled
+def _address(array, j, row, first):  # type: ignore[no-untyped-def]
+    strides = array.strides
+    return array.ctypes.data + j * strides[0] + row * strides[1] + first * strides[2]
+
+
+@compiled
+def _fetched(first, width, row, table, found):  # type: ignore[no-untyped-def]
+    """The places of a row are brought near while the row is computed."""
+    target = found.unknowns
+    for j in range(table.unknowns):
+        place = _address(target, j, row, first)
+        for line in range(0, width * target.strides[2], _LINE):
+            soon_written(place + line)
+
+
+@compiled
 def _kept(first, width, row, topology, turn, w, standing, all_stand, table, found):  # type: ignore[no-untyped-def]
     """A row is reached by the lanes that stand."""
     target, radius, reached = found.unknowns, found.radius, found.reached
-    place, error = topology.nodes, topology.noted[-turn % ROLES, RADIUS]
+    place, error = topology.nodes, topology.noted[RADIUS]
     proofs = radius.shape[0] > 0
     if all_stand:
         for j in range(table.unknowns):
             source = place[-turn % ROLES, j]
+            if target.strides[2] == w.itemsize:
+                copied_to(_address(target, j, row, first), w[source].ctypes.data, width)
+                continue
             for i in range(width):
                 target[j, row, first + i] = w[source, i]
         if proofs:
@@ -88,53 +115,70 @@ def _kept(first, width, row, topology, turn, w, standing, all_stand, table, foun
 
 
 @compiled
-def _one_way(  # type: ignore[no-untyped-def]
-    base, way, topology, w, begun, node, table, tasks, count, found
-):
-    """64 mechanisms in one direction; how many tasks there are now."""
-    rows, nodes = table.rows, topology.nodes
-    size = nodes.shape[1]
-    width = min(LANES, node.shape[1] - base)
-    standing = np.zeros(LANES)
-    ahead, there = -1, False  # the first row, and whether the start lies on it: the same for all
+def _set_out(base, way, topology, w, begun, node, rows, standing, tasks, count):  # type: ignore[no-untyped-def]
+    """Who goes in this direction, and who has to go alone.
+
+    Returns
+    -------
+    ahead, together, count : int, bool, int
+        The first row, -1 if nobody goes; whether all lanes start at the same t; how many tasks.
+    """
+    size, width = topology.nodes.shape[1], min(LANES, node.shape[1] - base)
+    for role in range(1, ROLES):
+        all_loaded(w, topology.nodes[role], node, base, width)
+    t = topology.nodes[1, size - 1]
+    ahead, there, together = -1, False, True
+    standing[:] = 0.0
     for i in range(LANES):
-        member = base + min(i, width - 1)
-        for role in range(1, ROLES):
-            loaded(w, i, nodes[role], node, member)
-        if i >= width or not begun[member]:
+        together &= w[t, i] == w[t, 0]
+    for i in range(width):
+        if not begun[base + i]:
             continue
-        t = node[size - 1, member]
-        above = np.searchsorted(rows, t)
+        above = np.searchsorted(rows, w[t, i])
         own = above if way == 1 else above - 1
         if own < 0 or own >= len(rows):
             continue
         if ahead < 0:
-            ahead, there = own, rows[own] == t
-        if own == ahead and (rows[own] == t) == there:
+            ahead, there = own, rows[own] == w[t, i]
+        if own == ahead and (rows[own] == w[t, i]) == there:
             standing[i] = 1.0
         else:
-            count = _left(i, member, way, topology, 0, w, tasks, count)
-    turn, steps, spacing = 0, 0, np.full(NODES, np.inf)
-    row = ahead
-    while 0 <= row < len(rows):
-        left = 0
-        for i in range(LANES):
-            left += standing[i] > 0.5
-        if left < min(_WORTH, (width + 1) // 2):
-            break
-        last, trial = nodes[(1 - turn) % ROLES, size - 1], nodes[-turn % ROLES, size - 1]
-        lead = 0
-        while standing[lead] == 0.0:
-            lead += 1
-        away = rows[row] - w[last, lead]
-        parts = math.ceil(abs(away) / (_LARGEST * table.steps[1]))
-        goal = rows[row] if parts <= 1 else w[last, lead] + away / parts
-        for i in range(LANES):
-            w[trial, i] = goal
+            count = _left(i, base + i, way, topology, 0, w, tasks, count)
+    return ahead, together, count
+
+
+@compiled
+def _aimed(base, width, row, topology, turn, w, standing, table, found):  # type: ignore[no-untyped-def]
+    """The trial's t: of the row, or on the way to it. How far the row is; in how many steps."""
+    last = topology.nodes.shape[1] - 1
+    t0, t1 = topology.nodes[-turn % ROLES, last], topology.nodes[(1 - turn) % ROLES, last]
+    lead = 0
+    while standing[lead] == 0.0:
+        lead += 1
+    away = table.rows[row] - w[t1, lead]
+    parts = math.ceil(abs(away) / (_LARGEST * table.steps[1]))
+    w[t0, :] = table.rows[row] if parts <= 1 else w[t1, lead] + away / parts
+    if parts <= 1:
+        _fetched(found.first + base, width, row, table, found)
+    return away, parts
+
+
+@compiled
+def _one_way(base, way, topology, w, begun, node, table, tasks, count, found):  # type: ignore[no-untyped-def]
+    """64 mechanisms in one direction; how many tasks there are now."""
+    width, standing = min(LANES, node.shape[1] - base), np.zeros(LANES)
+    spacing, times = np.full(NODES, np.inf), np.zeros(NODES)
+    row, together, count = _set_out(
+        base, way, topology, w, begun, node, table.rows, standing, tasks, count
+    )
+    turn, steps, good = 0, 0, topology.noted[GOOD]
+    left = int(standing.sum())
+    while 0 <= row < len(table.rows) and left >= min(_WORTH, (width + 1) // 2):
+        away, parts = _aimed(base, width, row, topology, turn, w, standing, table, found)
         steps += 1
-        _weighted(w, topology, turn, steps, spacing)
-        settled(topology, turn, w, standing, LANES)
-        bad, good = 0, topology.noted[-turn % ROLES, GOOD]
+        _weighted(w, topology, turn, steps, together, spacing, times)
+        settled(topology, turn, w, standing, True, LANES)
+        bad = 0
         for i in range(LANES):
             bad += standing[i] > w[good, i]
         if bad:
@@ -144,24 +188,14 @@ def _one_way(  # type: ignore[no-untyped-def]
                     left -= 1
                     count = _left(i, base + i, way, topology, turn, w, tasks, count)
         if parts <= 1:
-            _kept(
-                found.first + base,
-                width,
-                row,
-                topology,
-                turn,
-                w,
-                standing,
-                left == width,
-                table,
-                found,
-            )
+            first, all_stand = found.first + base, left == width
+            _kept(first, width, row, topology, turn, w, standing, all_stand, table, found)
             row += 2 * way - 1
         if away != 0.0:
             turn = (turn + 1) % ROLES
         else:
             steps = 0
-    if 0 <= row < len(rows):
+    if 0 <= row < len(table.rows):
         for i in range(width):
             if standing[i] > 0.5:
                 count = _left(i, base + i, way, topology, turn, w, tasks, count)
@@ -197,19 +231,7 @@ def in_step(topology, w, design, node, begun, table, tasks, found):  # type: ign
     count = 0
     for base in range(0, node.shape[1], LANES):
         width = min(LANES, node.shape[1] - base)
-        for lane in range(LANES):
-            loaded(w, lane, topology.coefficients, design, base + min(lane, width - 1))
+        all_loaded(w, topology.coefficients, design, base, width)
         for way in (1, 0):
-            count = _one_way(
-                base,
-                way,
-                topology,
-                w,
-                begun,
-                node,
-                table,
-                tasks,
-                count,
-                found,
-            )
+            count = _one_way(base, way, topology, w, begun, node, table, tasks, count, found)
     return count

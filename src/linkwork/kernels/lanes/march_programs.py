@@ -12,7 +12,7 @@ by name, one number per lane each; ``.s`` is a role:
 ``a1`` … ``b4``           weights of the nodes' unknowns and derivatives in the prediction
 ``scale<k>``              weights of variables that are lengths
 
-and what is noted of the trial on the way (role 0):
+and what is noted of the trial on the way, which has one place whatever the roles are:
 
 ``u<j>.0``                inputs; phasors of phases that only inputs turn
 ``live<b>.0``             1.0 where block b still iterates
@@ -22,8 +22,7 @@ and what is noted of the trial on the way (role 0):
 ``good.0``                1.0 where the step may be taken
 
 When the trial has become the last node, roles move on by one: nothing is copied, the same program
-is run with its registers renamed (:meth:`MarchPrograms.turned`). Nothing is written to registers
-without a role.
+is run with its registers renamed (:meth:`MarchPrograms.turned`).
 """
 
 from __future__ import annotations
@@ -59,34 +58,45 @@ _UNIT = float(np.finfo(float).eps) / 2.0
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MarchPrograms:
-    """``predict`` the trial; ``begin`` and ``iterate`` every block, ``damped`` at the start;
-    ``prove`` every block, if asked; ``judge``.
+    """``predict`` the trial; what is ``given`` there; ``begin`` and ``iterate`` every block,
+    ``damped`` at the start; ``prove`` every block, if asked; ``judge``.
 
-    ``places`` (5, P): registers by role, the first ones of all; ``nodes`` (5, S): those of them
-    that make up a position.
+    ``nodes`` (5, S): registers of positions by role, the first ones of all. ``noted``: names of
+    what programs leave of a trial beside it; ``shared``: those of what is given that depend on t
+    alone, none where they depend on the design as well.
     """
 
     registers: Registers
     height: int
     predict: Program
+    given: Program
     judge: Program
     begin: tuple[Program, ...]
     damped: tuple[Program, ...]
     iterate: tuple[Program, ...]
     prove: tuple[Program, ...]
     nodes: IndexArray
-    places: IndexArray
+    noted: tuple[str, ...]
+    shared: tuple[str, ...]
 
     @property
     def sections(self) -> tuple[Program, ...]:
         """All programs in the order in which the march counts them."""
-        return (self.predict, self.judge, *self.begin, *self.damped, *self.iterate, *self.prove)
+        return (
+            self.predict,
+            self.given,
+            self.judge,
+            *self.begin,
+            *self.damped,
+            *self.iterate,
+            *self.prove,
+        )
 
     def turned(self, moves: int) -> tuple[Program, ...]:
         """The sections when roles have moved on so many times: the trial is one further down."""
         place = np.arange(self.height, dtype=np.uint32)
         for role in range(ROLES):
-            place[self.places[role]] = self.places[(role - moves) % ROLES]
+            place[self.nodes[role]] = self.nodes[(role - moves) % ROLES]
         return tuple(
             replace(program, code=np.hstack([program.code[:, :1], place[program.code[:, 1:]]]))
             for program in self.sections
@@ -130,7 +140,7 @@ class _Writer:
         return Closure(self.table, part, rec, self._variables(rec), self.zeros, shared=True)
 
     def predict(self) -> Recorder:
-        """The polynomial through the last nodes with their derivatives; the inputs at t."""
+        """The polynomial through the last nodes with their derivatives."""
         rec = Recorder()
         for k in range(self.n):
             value: Value = rec.constant(0.0)
@@ -138,6 +148,11 @@ class _Writer:
                 value = value + rec.input(f"a{role}") * rec.input(f"x{k}.{role}")
                 value = value + rec.input(f"b{role}") * rec.input(f"d{k}.{role}")
             rec.write(f"x{k}.0", value)
+        return rec
+
+    def given(self) -> Recorder:
+        """The inputs at t, and the phasors that only they turn."""
+        rec = Recorder()
         t = rec.input("t.0")
         inputs = [t]
         if not self.alone:
@@ -307,40 +322,34 @@ def march_programs(
     writer, blocks = _Writer(table, parts, zeros, certified), range(len(parts))
     recorded = [
         writer.predict(),
+        writer.given(),
         writer.judge_proof() if certified else writer.judge(),
         *[writer.iterate(b, first=True, damped=False) for b in blocks],
         *[writer.iterate(b, first=False, damped=True) for b in blocks],
         *[writer.iterate(b, first=False, damped=False) for b in blocks],
         *[writer.prove(b) for b in blocks if certified],
     ]
+    registers = Registers()
+    nodes = np.stack([registers.all_of(writer.node_names(role)) for role in range(ROLES)])
     noted = {name for rec in recorded for name in rec.writes} | {"good.0", "radius.0"}
     noted -= set(writer.node_names(0))
-    registers = Registers()
-    places = np.stack(
-        [
-            registers.all_of(
-                [
-                    *writer.node_names(role),
-                    *[f"{name.removesuffix('.0')}.{role}" for name in sorted(noted)],
-                ]
-            )
-            for role in range(ROLES)
-        ]
-    )
+    registers.all_of(sorted(noted))
     for rec in recorded:
         reserve(rec, registers)
     programs = [lowered(rec, registers, registers.count) for rec in recorded]
     count = len(parts)
-    predict, judge, *rest = programs
+    predict, given, judge, *rest = programs
     return MarchPrograms(
         registers=registers,
         height=max(registers.count, *(program.height for program in programs)),
         predict=predict,
+        given=given,
         judge=judge,
         begin=tuple(rest[:count]),
         damped=tuple(rest[count : 2 * count]),
         iterate=tuple(rest[2 * count : 3 * count]),
         prove=tuple(rest[3 * count :]),
-        nodes=places[:, : len(writer.node_names(0))],
-        places=places,
+        nodes=nodes,
+        noted=tuple(sorted(noted)),
+        shared=tuple(recorded[1].writes) if writer.alone else (),
     )

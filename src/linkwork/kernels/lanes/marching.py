@@ -39,7 +39,7 @@ def _noted(w, lane, topology, turn, row, member, unknowns, found):  # type: igno
     for j in range(unknowns):
         found.unknowns[j, row, place] = w[topology.nodes[-turn % ROLES, j], lane]
     if found.radius.shape[0]:
-        found.radius[row, place] = w[topology.noted[-turn % ROLES, RADIUS], lane]
+        found.radius[row, place] = w[topology.noted[RADIUS], lane]
 
 
 @compiled
@@ -81,10 +81,12 @@ def march(topology, w, design, table, tasks, count, found):  # type: ignore[no-u
     h, standing = np.zeros(LANES), np.ones(LANES)
     spacing, times = np.zeros((LANES, NODES)), np.zeros(NODES)
     following, busy, turn = 0, LANES, 0
-    w[: ROLES * topology.height] = 0.0
+    w[: nodes.size] = 0.0  # they come first
+    for register in topology.noted:
+        w[register] = 0.0
     while True:
         t0, t1 = nodes[-turn % ROLES, size - 1], nodes[(1 - turn) % ROLES, size - 1]
-        good = topology.noted[-turn % ROLES, GOOD]
+        good = topology.noted[GOOD]
         for i in range(LANES):
             while task[i] == -2 or (task[i] >= 0 and (row[i] < 0 or row[i] >= len(rows))):
                 if following == count:
@@ -114,7 +116,7 @@ def march(topology, w, design, table, tasks, count, found):  # type: ignore[no-u
             chosen(w, i, weights, times, step, known[i], spacing[i])
         if busy == 0:
             break
-        settled(topology, turn, w, standing, LANES)
+        settled(topology, turn, w, standing, False, LANES)
         for i in range(LANES):
             if task[i] < 0:
                 continue

@@ -63,8 +63,8 @@ def _one_way(topology, w, end, steps, coarse):  # type: ignore[no-untyped-def]
         step = math.copysign(min(abs(away), h), away)
         w[nodes[-turn % ROLES, size - 1], 0] = end if step == away else times[0] + step
         chosen(w, 0, topology.weights, times, step, known, spacing)
-        settled(topology, turn, w, alone, 1)
-        if w[topology.noted[-turn % ROLES, GOOD], 0] > 0.5:
+        settled(topology, turn, w, alone, False, 1)
+        if w[topology.noted[GOOD], 0] > 0.5:
             count += 1
             for j in range(size):
                 coarse[count, j] = w[nodes[-turn % ROLES, j], 0]
@@ -143,7 +143,7 @@ def _set_rows(topology, w, rows, first, lanes, coarse, count, interval, unknowns
 
 @compiled
 def _all_good(topology, w, lanes):  # type: ignore[no-untyped-def]
-    good, bad = topology.noted[0, GOOD], 0
+    good, bad = topology.noted[GOOD], 0
     for i in range(lanes):
         bad += not w[good, i] > 0.5
     return bad == 0
@@ -229,7 +229,7 @@ def _refined(topology, w, start, table, step, coarse, count, fine):  # type: ign
     for first in range(0, many, LANES):
         lanes = min(LANES, many - first)
         interval = _set_rows(topology, w, t, first, lanes, coarse, count, interval, n, z, c)
-        settled(topology, 0, w, standing, LANES)
+        settled(topology, 0, w, standing, False, LANES)
         if proved(topology):
             if not _linked(topology, w, first, lanes, start, own - first, n, fine):
                 return 0
@@ -245,7 +245,7 @@ def _refined(topology, w, start, table, step, coarse, count, fine):  # type: ign
 @compiled
 def _kept(topology, w, first, lanes, unknowns, found):  # type: ignore[no-untyped-def]
     """Rows are noted."""
-    radius, m = topology.noted[0, RADIUS], found.first
+    radius, m = topology.noted[RADIUS], found.first
     for j in range(unknowns):
         source = topology.nodes[0, j]
         for i in range(lanes):
@@ -314,7 +314,7 @@ def by_rows(topology, scout, w, own, node, table, room, found):  # type: ignore[
     for first in range(0, len(rows), LANES):
         lanes = min(LANES, len(rows) - first)
         interval = _set_rows(topology, w, rows, first, lanes, fine, count, interval, n, z, c)
-        settled(topology, 0, w, standing, LANES)
+        settled(topology, 0, w, standing, False, LANES)
         if not _all_good(topology, w, lanes):
             return False
         _kept(topology, w, first, lanes, n, found)

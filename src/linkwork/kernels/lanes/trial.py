@@ -26,6 +26,7 @@ __all__ = [
     "RADIUS",
     "TOPOLOGY",
     "Topology",
+    "all_loaded",
     "chosen",
     "copied",
     "extrapolated",
@@ -38,7 +39,7 @@ __all__ = [
 ]
 
 # where a program stands in the packed code; behind BLOCKS: begin, damped, iterate, prove
-PREDICT, JUDGE, BLOCKS = 0, 1, 2
+PREDICT, GIVEN, JUDGE, BLOCKS = 0, 1, 2, 3
 # what is noted of a trial; behind LIVE: block by block
 GOOD, RADIUS, LIVE = 0, 1, 2
 
@@ -53,8 +54,8 @@ class Topology(NamedTuple):
     spans : (Q, 2) where each program begins and ends in the first turn
     weights : registers of a1, b1, …, b4
     nodes : (5, S) registers of positions, t last
-    noted : (5, 2 + B) registers of good, radius, and live of each block
-    height : P, registers of each place; places are the first ones of the workspace
+    noted : (2 + B,) registers of good, radius, and live of each block
+    shared : registers of what is given at t, if that is the same for every design
     coefficients : (C,) registers of a design's coefficients
     trial : address of the trial written out (prediction, one correction, proof, judgement), see
         :func:`linkwork.kernels.lanes.printing.trial_source`; 0 where the machine does it
@@ -66,7 +67,7 @@ class Topology(NamedTuple):
     weights: IndexArray
     nodes: IndexArray
     noted: IndexArray
-    height: int
+    shared: IndexArray
     coefficients: IndexArray
     trial: int
 
@@ -78,8 +79,8 @@ TOPOLOGY = named_tuple(
         types.Array(types.int64, 2, "C"),
         types.Array(types.int64, 1, "C"),
         types.Array(types.int64, 2, "C"),
-        types.Array(types.int64, 2, "C"),
-        types.int64,
+        types.Array(types.int64, 1, "C"),
+        types.Array(types.int64, 1, "C"),
         types.Array(types.int64, 1, "C"),
         types.int64,
     ],
@@ -95,7 +96,7 @@ def _one(topology, turn, w, number, lanes):  # type: ignore[no-untyped-def]
 
 @compiled
 def _blocks(topology):  # type: ignore[no-untyped-def]
-    return topology.noted.shape[1] - LIVE
+    return len(topology.noted) - LIVE
 
 
 @compiled
@@ -132,7 +133,7 @@ def judged(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
 
 @compiled
 def _by_written(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
-    place, first = 8 * LANES * topology.height, w.ctypes.data
+    place, first = 8 * LANES * topology.nodes.shape[1], w.ctypes.data
     call_at(
         topology.trial,
         first + -turn % ROLES * place,
@@ -146,18 +147,33 @@ def _by_written(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def settled(topology, turn, w, standing, lanes):  # type: ignore[no-untyped-def]
+def _given(topology, turn, w, together, lanes):  # type: ignore[no-untyped-def]
+    """What is given at the trial."""
+    shared = topology.shared
+    if together and len(shared):
+        _one(topology, turn, w, GIVEN, 1)
+        for register in shared:
+            w[register, 1:lanes] = w[register, 0]
+    else:
+        _one(topology, turn, w, GIVEN, lanes)
+
+
+@compiled
+def settled(topology, turn, w, standing, together, lanes):  # type: ignore[no-untyped-def]
     """From the prediction to the judgement.
 
     Parameters
     ----------
     standing : (LANES,)
         1.0 in lanes that count, 0.0 in others.
+    together : bool
+        Whether all lanes are at the same t.
     lanes : int
         How many of them are computed.
     """
-    blocks, live = _blocks(topology), topology.noted[-turn % ROLES, LIVE:]
+    blocks, live = _blocks(topology), topology.noted[LIVE:]
     is_written = topology.trial != 0
+    _given(topology, turn, w, together, lanes)
     if is_written:
         _by_written(topology, turn, w, lanes)
         again = False
@@ -186,8 +202,9 @@ def solved_slowly(topology, w):  # type: ignore[no-untyped-def]
     blocks, nodes = _blocks(topology), topology.nodes
     everywhere = np.ones(LANES)
     _one(topology, 0, w, PREDICT, LANES)
+    _one(topology, 0, w, GIVEN, LANES)
     for b in range(blocks):
-        live = topology.noted[0, LIVE + b]
+        live = topology.noted[LIVE + b]
         w[live, :] = 1.0
         _iterate(topology, 0, w, BLOCKS + blocks + b, live, START_STEPS, everywhere, LANES)
     if proved(topology):
@@ -195,6 +212,16 @@ def solved_slowly(topology, w):  # type: ignore[no-untyped-def]
             for lane in range(LANES):
                 copied(w, lane, nodes[1], nodes[0])
             judged(topology, 0, w, LANES)
+
+
+@compiled
+def all_loaded(w, registers, data, base, count):  # type: ignore[no-untyped-def]
+    """Columns of data from ``base`` on into the lanes; behind the last one it stands again."""
+    for j in range(len(registers)):
+        register = registers[j]
+        for lane in range(count):
+            w[register, lane] = data[j, base + lane]
+        w[register, count:] = data[j, base + count - 1]
 
 
 @compiled
