@@ -19,6 +19,7 @@ from functools import cached_property
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
+from linkwork.foundation.tall_product import tall_product
 from linkwork.kernels.phasor_rows import PhasorRows
 
 __all__ = ["Curvature", "PhaseGroups"]
@@ -113,8 +114,8 @@ class PhaseGroups:
         s = np.ones((len(v), len(rows.row)))
         sliding = np.flatnonzero(rows.length >= 0)
         s[:, sliding] = v[:, rows.length[sliding]]
-        c = (s @ self._sorted_in).reshape(len(v), rows.rows, self.weights.shape[1])
-        size = (np.abs(s) @ np.abs(self._sorted_in)).reshape(c.shape)
+        c = tall_product(s, self._sorted_in).reshape(len(v), rows.rows, self.weights.shape[1])
+        size = tall_product(np.abs(s), np.abs(self._sorted_in)).reshape(c.shape)
         slip = _UNIT * (len(rows.row) + rows.rows + 8) * np.abs(alpha)
         d = self.pairs[2]
         phase = np.abs(alpha @ c) + slip @ size
@@ -138,13 +139,13 @@ class PhaseGroups:
         """
         rows = self.rows
         _, group, roundings = self._grouped
-        parts = np.abs(v) @ self.weights  # (B, G)
+        parts = tall_product(np.abs(v), self.weights)  # (B, G)
         terms_in_row = np.bincount(rows.row, minlength=rows.rows)[rows.row]
         factor = terms_in_row + 8.0 + (roundings * parts)[:, group]
         modulus, slopes = rows.moduli(v, factor + products + 2.0)
         gather = np.zeros((len(rows.row), rows.rows))
         gather[np.arange(len(rows.row)), rows.row] = 1.0
-        return _UNIT * ((modulus * factor) @ gather), _UNIT * slopes
+        return _UNIT * tall_product(modulus * factor, gather), _UNIT * slopes
 
 
 def _doubles(weight: float) -> bool:

@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
+from linkwork.foundation.tall_product import tall_product
 
 __all__ = ["PhasorRows"]
 
@@ -76,7 +77,7 @@ class PhasorRows:
         return m.reshape(terms + len(sliding), self.rows * self.variables)
 
     def _phasors(self, v: Array) -> ComplexArray:
-        phasors: ComplexArray = self.coefficient * np.exp(1j * (v @ self._weights))
+        phasors: ComplexArray = self.coefficient * np.exp(1j * tall_product(v, self._weights))
         return phasors
 
     def _terms(self, v: Array, phasors: ComplexArray) -> ComplexArray:
@@ -89,7 +90,7 @@ class PhasorRows:
 
     def value(self, v: Array) -> ComplexArray:
         """F, (B, R)."""
-        return self._terms(v, self._phasors(v)) @ self._gather
+        return tall_product(self._terms(v, self._phasors(v)), self._gather)
 
     def value_and_jacobian(self, v: Array) -> tuple[ComplexArray, ComplexArray]:
         """F, (B, R), and dF/dv, (B, R, N)."""
@@ -97,8 +98,8 @@ class PhasorRows:
         terms = self._terms(v, phasors)
         sliding = self._sliding
         both = np.concatenate([terms, phasors[:, sliding]], axis=1) if len(sliding) else terms
-        jacobian = (both @ self._slopes).reshape(len(v), self.rows, self.variables)
-        return terms @ self._gather, jacobian
+        jacobian = tall_product(both, self._slopes).reshape(len(v), self.rows, self.variables)
+        return tall_product(terms, self._gather), jacobian
 
     def jet(self, v: Array, d1: Array, d2: Array) -> tuple[ComplexArray, ...]:
         """F with first and second derivative along a path with v' = d1, v'' = d2; each (B, R).
@@ -106,7 +107,7 @@ class PhasorRows:
         For d2 = 0 the last one is the directional second derivative D²F[d1, d1].
         """
         e = self._phasors(v)
-        psi1, psi2 = d1 @ self._weights, d2 @ self._weights
+        psi1, psi2 = tall_product(d1, self._weights), tall_product(d2, self._weights)
         s, s1, s2 = np.ones_like(psi1), np.zeros_like(psi1), np.zeros_like(psi1)
         sliding = self._sliding
         index = self.length[sliding]
@@ -115,7 +116,7 @@ class PhasorRows:
         first = e * (s1 + 1j * s * psi1)
         second = e * (s2 - s * psi1**2 + 1j * (2.0 * s1 * psi1 + s * psi2))
         g = self._gather
-        return value @ g, first @ g, second @ g
+        return tall_product(value, g), tall_product(first, g), tall_product(second, g)
 
     def moduli(self, v: Array, factor: Array) -> tuple[Array, Array]:
         """|terms|, (B, T), and in dF/dv sums of moduli times each term's factor, (B, R, N)."""
@@ -123,5 +124,5 @@ class PhasorRows:
         terms = np.abs(self._terms(v, modulus.astype(complex)))
         sliding = self._sliding
         both = np.concatenate([terms * factor, (modulus * factor)[:, sliding]], axis=1)
-        slopes = both @ np.abs(self._slopes)
+        slopes = tall_product(both, np.abs(self._slopes))
         return terms, slopes.reshape(len(v), self.rows, self.variables)
