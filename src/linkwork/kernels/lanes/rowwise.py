@@ -33,6 +33,7 @@ __all__ = ["by_rows", "most_nodes"]
 #: Of the largest step: how far finer nodes are apart; half of it and a quarter where that fails.
 COARSE = 1.0 / 6.0
 _ORDER = 2 * NODES
+_FEW = 60  # rows for each of the scout's nodes, below which finer nodes do not pay
 _FAR = 1e-7  # of an unknown: as much as a node may be off
 
 
@@ -78,22 +79,30 @@ def _one_way(topology, w, end, steps, coarse):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _differences(coarse, first, used, unknown, rate, z, c):  # type: ignore[no-untyped-def]
-    """Newton's divided differences through nodes with their derivatives.
+def _spaced(coarse, first, used, z, apart):  # type: ignore[no-untyped-def]
+    """Nodes, each twice, and one over their distances, which all unknowns share.
 
-    ``z``, ``c`` (8,): where, and the coefficients.
+    ``z`` (8,); ``apart`` (8, 8): by order and number.
     """
     t = coarse.shape[1] - 1
     for k in range(used):
-        for j in range(2):
-            z[2 * k + j] = coarse[first + k, t]
-            c[2 * k + j] = coarse[first + k, unknown]
+        z[2 * k] = z[2 * k + 1] = coarse[first + k, t]
+    for order in range(1, 2 * used):
+        for j in range(order, 2 * used):
+            apart[order, j] = 1.0 / (z[j] - z[j - order])
+
+
+@compiled
+def _differences(coarse, first, used, unknown, rate, apart, c):  # type: ignore[no-untyped-def]
+    """Newton's divided differences through nodes with their derivatives, (8,)."""
+    for k in range(used):
+        c[2 * k] = c[2 * k + 1] = coarse[first + k, unknown]
     for order in range(1, 2 * used):
         for j in range(2 * used - 1, order - 1, -1):
             if order == 1 and j % 2 == 1:
                 c[j] = coarse[first + j // 2, rate]
             else:
-                c[j] = (c[j] - c[j - 1]) / (z[j] - z[j - order])
+                c[j] = (c[j] - c[j - 1]) * apart[order, j]
 
 
 @compiled
@@ -109,15 +118,16 @@ def _polynomial(w, target, t, begin, end, order, z, c):  # type: ignore[no-untyp
 
 
 @compiled
-def _set_rows(topology, w, rows, first, lanes, coarse, count, interval, unknowns, z, c):  # type: ignore[no-untyped-def]
+def _set_rows(topology, w, rows, first, lanes, coarse, count, interval, unknowns, room):  # type: ignore[no-untyped-def]
     """Predict rows in the lanes; the interval of the last one.
 
     ``coarse`` is in the order of rising t. The prediction goes to role 2, which has all the weight;
-    role 1 is the nearest node.
+    role 1 is the nearest node. ``room`` (10, 8).
     """
     nodes = topology.nodes
     size = nodes.shape[1]
     t, used = nodes[0, size - 1], min(NODES, count)
+    z, c, apart = room[0], room[1], room[2:]
     begin = 0
     while begin < lanes:
         while interval < count - 2 and rows[first + begin] > coarse[interval + 1, size - 1]:
@@ -134,8 +144,9 @@ def _set_rows(topology, w, rows, first, lanes, coarse, count, interval, unknowns
             for i in range(begin, last):
                 w[target, i] = low if w[t, i] <= middle else high
         base = min(max(interval - 1, 0), count - used)
+        _spaced(coarse, base, used, z, apart)
         for k in range(unknowns):
-            _differences(coarse, base, used, k, unknowns + k, z, c)
+            _differences(coarse, base, used, k, unknowns + k, apart, c)
             _polynomial(w, nodes[2, k], t, begin, last, 2 * used, z, c)
         begin = end
     return interval
@@ -184,11 +195,12 @@ def _grid(first, start, last, step, t):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _linked(topology, w, first, lanes, start, place, n, fine):  # type: ignore[no-untyped-def]
+def _linked(topology, w, first, lanes, start, place, n, before):  # type: ignore[no-untyped-def]
     """Prove every node from the one before it; whether that is done.
 
     While that one's error is not known it is taken to be ``_FAR``, and looked at afterwards.
-    ``place``: the lane of the start, whose position is known.
+    ``place``: the lane of the start, whose position is known. ``before`` (S,): the node before the
+    first lane, unless that is the ``first`` one of all.
     """
     nodes = topology.nodes
     size = nodes.shape[1]
@@ -197,16 +209,16 @@ def _linked(topology, w, first, lanes, start, place, n, fine):  # type: ignore[n
             w[nodes[0, k], place] = start[k]
     for k in range(n + 1):
         j = k if k < n else size - 1
-        own, before = nodes[0, j], nodes[1, j]
-        w[before, 0] = fine[first - 1, j] if first else w[own, 0]
+        own, last = nodes[0, j], nodes[1, j]
+        w[last, 0] = before[j] if first else w[own, 0]
         for i in range(1, LANES):
-            w[before, i] = w[own, i - 1]
+            w[last, i] = w[own, i - 1]
     for k in range(n):
         error, size_k = nodes[1, 2 * n + k], 0.0
         for i in range(lanes):
             size_k = max(size_k, abs(w[nodes[0, k], i]))
         w[error, :] = _FAR * max(size_k, 1e-300)
-        if first and not fine[first - 1, 2 * n + k] <= w[error, 0]:
+        if first and not before[2 * n + k] <= w[error, 0]:
             return False
     judged(topology, 0, w, LANES)
     for k in range(n):
@@ -225,13 +237,14 @@ def _refined(topology, w, start, table, step, coarse, count, fine):  # type: ign
     if not (high - low) / step < len(fine) - 4:
         return 0
     many, own = _grid(low, begin, high, step, t)
-    standing, z, c, interval = np.ones(LANES), np.empty(_ORDER), np.empty(_ORDER), 0
+    standing, work, interval = np.ones(LANES), np.empty((2 + _ORDER, _ORDER)), 0
     for first in range(0, many, LANES):
         lanes = min(LANES, many - first)
-        interval = _set_rows(topology, w, t, first, lanes, coarse, count, interval, n, z, c)
+        interval = _set_rows(topology, w, t, first, lanes, coarse, count, interval, n, work)
         settled(topology, 0, w, standing, False, LANES)
+        before = fine[max(first - 1, 0)]
         if proved(topology):
-            if not _linked(topology, w, first, lanes, start, own - first, n, fine):
+            if not _linked(topology, w, first, lanes, start, own - first, n, before):
                 return 0
         elif not _all_good(topology, w, lanes):
             return 0
@@ -243,18 +256,70 @@ def _refined(topology, w, start, table, step, coarse, count, fine):  # type: ign
 
 
 @compiled
-def _kept(topology, w, first, lanes, unknowns, found):  # type: ignore[no-untyped-def]
-    """Rows are noted."""
+def _kept(topology, w, begin, end, row, unknowns, found):  # type: ignore[no-untyped-def]
+    """Some lanes are rows, the first of them that one."""
     radius, m = topology.noted[RADIUS], found.first
     for j in range(unknowns):
         source = topology.nodes[0, j]
-        for i in range(lanes):
-            found.unknowns[j, first + i, m] = w[source, i]
+        for i in range(begin, end):
+            found.unknowns[j, row + i - begin, m] = w[source, i]
     if found.radius.shape[0]:
-        for i in range(lanes):
-            found.radius[first + i, m] = w[radius, i]
-    for i in range(lanes):
-        found.reached[first + i, m] = True
+        for i in range(begin, end):
+            found.radius[row + i - begin, m] = w[radius, i]
+    for i in range(begin, end):
+        found.reached[row + i - begin, m] = True
+
+
+@compiled
+def _near_each_other(rows, gap):  # type: ignore[no-untyped-def]
+    widest = 0.0
+    for k in range(len(rows) - 1):
+        widest = max(widest, rows[k + 1] - rows[k])
+    return widest <= gap
+
+
+@compiled
+def _chained(topology, w, start, table, coarse, count, found):  # type: ignore[no-untyped-def]
+    """Rows predicted between coarse nodes, each proved from its neighbour; whether all are.
+
+    The start is a link of the chain: a row, or one more.
+    """
+    rows, n, size = table.rows, table.unknowns, topology.nodes.shape[1]
+    own = np.searchsorted(rows, start[size - 1])
+    more = own == len(rows) or rows[own] != start[size - 1]
+    t = np.empty(len(rows) + more)
+    t[:own], t[own + more :], t[own] = rows[:own], rows[own:], start[size - 1]
+    standing, work, interval = np.ones(LANES), np.empty((2 + _ORDER, _ORDER)), 0
+    before = start.copy()
+    for first in range(0, len(t), LANES):
+        lanes, place = min(LANES, len(t) - first), own - first
+        interval = _set_rows(topology, w, t, first, lanes, coarse, count, interval, n, work)
+        settled(topology, 0, w, standing, False, LANES)
+        if not _linked(topology, w, first, lanes, start, place, n, before):
+            return False
+        for j in range(size):
+            before[j] = w[topology.nodes[0, j], lanes - 1]
+        if more and 0 <= place < lanes:
+            _kept(topology, w, 0, place, first, n, found)
+            _kept(topology, w, place + 1, lanes, own, n, found)
+        else:
+            _kept(topology, w, 0, lanes, first - (more and place < 0), n, found)
+    return True
+
+
+@compiled
+def _between(topology, w, table, nodes, count, found):  # type: ignore[no-untyped-def]
+    """Rows predicted between nodes, each judged from the nearest; whether all are good."""
+    rows, n = table.rows, table.unknowns
+    standing, work, interval = np.ones(LANES), np.empty((2 + _ORDER, _ORDER)), 0
+    for first in range(0, len(rows), LANES):
+        lanes = min(LANES, len(rows) - first)
+        interval = _set_rows(topology, w, rows, first, lanes, nodes, count, interval, n, work)
+        settled(topology, 0, w, standing, False, LANES)
+        if not _all_good(topology, w, lanes):
+            return False
+        _kept(topology, w, 0, lanes, first, n, found)
+    return True
 
 
 @compiled_for(
@@ -303,19 +368,16 @@ def by_rows(topology, scout, w, own, node, table, room, found):  # type: ignore[
             coarse[k, 2 * n : size - 1] = seen[k, 2 * n : size - 1]  # the sign of det J
     for j in range(len(topology.weights)):
         w[topology.weights[j], :] = 1.0 if j == 2 else 0.0  # role 2 is the prediction
-    known, count, step = count, 0, COARSE * table.steps[1]
+    step = COARSE * table.steps[1]
+    if len(rows) < _FEW * count:  # another correction costs less than finer nodes
+        if not proved(topology):
+            return _between(topology, w, table, coarse, count, found)
+        near = _near_each_other(rows, 0.5 * step)
+        if near and _chained(topology, w, node, table, coarse, count, found):
+            return True
     for _ in range(3):
-        if count < 2:
-            count = _refined(topology, w, node, table, step, coarse, known, fine)
-            step *= 0.5
-    if count < 2:
-        return False
-    standing, z, c, interval = np.ones(LANES), np.empty(_ORDER), np.empty(_ORDER), 0
-    for first in range(0, len(rows), LANES):
-        lanes = min(LANES, len(rows) - first)
-        interval = _set_rows(topology, w, rows, first, lanes, fine, count, interval, n, z, c)
-        settled(topology, 0, w, standing, False, LANES)
-        if not _all_good(topology, w, lanes):
-            return False
-        _kept(topology, w, first, lanes, n, found)
-    return True
+        many = _refined(topology, w, node, table, step, coarse, count, fine)
+        if many >= 2:
+            return _between(topology, w, table, fine, many, found)
+        step *= 0.5
+    return False
