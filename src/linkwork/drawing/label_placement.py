@@ -21,7 +21,14 @@ from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Primitive, Role, Text, text_width, xy
 
-__all__ = ["Choice", "link_names", "placed", "places_beside", "point_names"]
+__all__ = [
+    "Choice",
+    "link_names",
+    "placed",
+    "places_along",
+    "places_beside",
+    "point_names",
+]
 
 _NAME_ON_NAME = 100.0
 _FURTHER = 2.0
@@ -48,7 +55,13 @@ def point_names(pose: Pose, measures: Measures) -> list[Choice]:
 
 
 def places_beside(
-    role: Role, of: str, text: str, place: complex, height: float, measures: Measures
+    role: Role,
+    of: str,
+    text: str,
+    place: complex,
+    height: float,
+    measures: Measures,
+    tone: int = 0,
 ) -> Choice:
     """Places for a text beside a point: just outside circles around it."""
     places, cost = [], []
@@ -63,6 +76,7 @@ def places_beside(
                 Text(
                     role=role,
                     of=of,
+                    tone=tone,
                     text=text,
                     anchor=xy(place),
                     offset=(gap * cos, gap * sin + rise),
@@ -95,20 +109,42 @@ def link_names(pose: Pose, measures: Measures) -> list[Choice]:
         if not rounds and not in_line(outline):
             centre = sum(outline) / len(outline)
             spots = [(centre, 0.0), *((spot, cost + 2.0) for spot, cost in spots)]
-        places = tuple(
-            Text(
-                role=Role.LINK_NAME,
-                of=name,
-                tone=tone.get(name, 1),
-                text=printed_name(name),
-                anchor=xy(spot),
-                offset=(0.0, -0.3 * height),
-                height=height,
-            )
-            for spot, _ in spots
-        )
-        found.append(Choice(places, tuple(cost for _, cost in spots)))
+        text = printed_name(name)
+        found.append(_centred(Role.LINK_NAME, name, text, tone.get(name, 1), height, spots))
     return found
+
+
+def places_along(
+    role: Role,
+    of: str,
+    text: str,
+    line: tuple[complex, complex],
+    tone: int,
+    measures: Measures,
+) -> Choice:
+    """Places for a text beside a line."""
+    height = 0.85 * measures.text
+    spots = _beside_line(*line, text, height, measures)
+    return _centred(role, of, text, tone, height, spots)
+
+
+def _centred(
+    role: Role, of: str, text: str, tone: int, height: float, spots: list[tuple[complex, float]]
+) -> Choice:
+    """Places for a text whose middle lies at one of some spots, each with its penalty."""
+    places = tuple(
+        Text(
+            role=role,
+            of=of,
+            tone=tone,
+            text=text,
+            anchor=xy(spot),
+            offset=(0.0, -0.3 * height),
+            height=height,
+        )
+        for spot, _ in spots
+    )
+    return Choice(places, tuple(cost for _, cost in spots))
 
 
 def _rounds(pose: Pose, link: str) -> list[tuple[complex, float]]:
@@ -144,8 +180,15 @@ def _beside_bar(
     """Middles of the name beside the longest side of an outline, with their penalties."""
     sides = list(zip(outline, outline[1:] + outline[:1], strict=True))
     start, end = max(sides, key=lambda side: abs(side[1] - side[0]))
+    return _beside_line(start, end, printed_name(name), height, measures)
+
+
+def _beside_line(
+    start: complex, end: complex, text: str, height: float, measures: Measures
+) -> list[tuple[complex, float]]:
+    """Middles of a text beside a line from start to end, with their penalties."""
     left = (end - start) / abs(end - start) * 1j
-    half_width = text_width(printed_name(name), height) / 2
+    half_width = text_width(text, height) / 2
     clear = abs(left.real) * half_width + abs(left.imag) * 0.5 * height + 0.8 * measures.pin
     return [
         (

@@ -1,0 +1,136 @@
+"""The vector diagram: every loop equation's vectors head to tail, in a colour of its own.
+
+An arrow points the way its vector does, whether the equation adds it or takes it off. Where several
+loops use one vector, their arrows lie side by side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from linkwork.drawing.captions import printed_formula
+from linkwork.drawing.label_placement import Choice, places_along, places_beside
+from linkwork.drawing.measures import Measures
+from linkwork.drawing.pose import Pose
+from linkwork.drawing.scene import Polyline, Primitive, Role, xy
+from linkwork.results.vector_loop import LoopVector, VectorLoop
+
+__all__ = ["vector_places", "vector_symbols"]
+
+_SAME = 1e-6  # of the drawn size: places as near as this are one
+_BESIDE = 1.3  # radii of a pin between arrows side by side
+_LONGEST_HEAD = 0.4  # of an arrow
+
+
+@dataclass(frozen=True)
+class _Arrow:
+    """A vector in its place: where it begins and ends as drawn, and the number of its loop."""
+
+    vector: LoopVector
+    tail: complex
+    tip: complex
+    loop: int
+
+
+def vector_places(loops: Sequence[VectorLoop], pose: Pose) -> list[complex]:
+    """Every place a vector begins or ends at: what a picture has to hold."""
+    starts = [_start(loop, pose) for loop in loops]
+    joints = [z for loop, start in zip(loops, starts, strict=True) for z in loop.joints(start)]
+    return starts + joints
+
+
+def vector_symbols(
+    loops: Sequence[VectorLoop], pose: Pose, measures: Measures
+) -> tuple[list[Primitive], list[Choice]]:
+    """The arrows of every loop, and places for their names and the loops' own."""
+    arrows = [
+        arrow
+        for number, loop in enumerate(loops, 1)
+        for arrow in _arrows(loop, number, _start(loop, pose))
+        if abs(arrow.tip - arrow.tail) > _SAME * measures.size
+    ]
+    drawn: list[Primitive] = []
+    names: list[Choice] = []
+    for k, arrow in enumerate(arrows):
+        twins = [other for other in arrows[:k] if _same_line(arrow, other, measures)]
+        tail, tip = _moved(arrow, len(twins), measures)
+        head = min(measures.head, _LONGEST_HEAD * abs(tip - tail))
+        drawn.append(
+            Polyline(
+                role=Role.VECTOR,
+                of=arrow.vector.name,
+                tone=arrow.loop,
+                points=(xy(tail), xy(tip)),
+                head=head,
+            )
+        )
+        if not any(other.vector.name == arrow.vector.name for other in twins):
+            text = printed_formula(arrow.vector.name)
+            line = (tail, tip)
+            names.append(
+                places_along(
+                    Role.VECTOR_NAME, arrow.vector.name, text, line, arrow.loop, measures
+                )
+            )
+    return drawn, names + [
+        _loop_name(loop, [a for a in arrows if a.loop == k], k, measures)
+        for k, loop in enumerate(loops, 1)
+        if any(a.loop == k for a in arrows)
+    ]
+
+
+def _arrows(loop: VectorLoop, number: int, start: complex) -> list[_Arrow]:
+    found = []
+    for side in (loop.left, loop.right):
+        place = start
+        for vector in side:
+            after = place + vector.value
+            ends = (after, place) if vector.backwards else (place, after)
+            found.append(_Arrow(vector, *ends, number))
+            place = after
+    return found
+
+
+def _start(loop: VectorLoop, pose: Pose) -> complex:
+    """The point from which most of its vectors end at points; its first one, or the origin."""
+    named = [pose.points[word] for word in loop.label.split() if word in pose.points]
+    fixed = [pose.points[name] for name in pose.skeleton.fixed]
+    places = list(pose.points.values())
+    size = max((abs(vector.value) for vector in (*loop.left, *loop.right)), default=1.0)
+
+    def fitting(start: complex) -> int:
+        joints = loop.joints(start)
+        return sum(any(abs(z - place) <= _SAME * size for place in places) for z in joints)
+
+    return max([*named[:1], *fixed, 0j, *places], key=fitting)
+
+
+def _same_line(one: _Arrow, other: _Arrow, measures: Measures) -> bool:
+    """Whether two arrows join the same places, either way."""
+    near = _SAME * measures.size
+    ends = ((other.tail, other.tip), (other.tip, other.tail))
+    return any(abs(one.tail - a) <= near and abs(one.tip - b) <= near for a, b in ends)
+
+
+def _moved(arrow: _Arrow, before: int, measures: Measures) -> tuple[complex, complex]:
+    """Where an arrow is drawn with so many others on its line: on this side or that of them."""
+    along = (arrow.tip - arrow.tail) / abs(arrow.tip - arrow.tail)
+    if (along.real, along.imag) < (0.0, 0.0):
+        along = -along
+    steps = (before + 1) // 2 * (1 if before % 2 else -1)
+    across = steps * _BESIDE * measures.pin * along * 1j
+    return arrow.tail + across, arrow.tip + across
+
+
+def _loop_name(
+    loop: VectorLoop, arrows: list[_Arrow], number: int, measures: Measures
+) -> Choice:
+    """Places for a loop's name about its middle."""
+    ends = [end for arrow in arrows for end in (arrow.tail, arrow.tip)]
+    text = f"loop {printed_formula(loop.label)}"
+    middle = sum(ends) / len(ends)
+    height = 0.85 * measures.text
+    return places_beside(
+        Role.LOOP_NAME, loop.label, text, middle, height, measures, tone=number
+    )
