@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 from linkwork.drawing.label_placement import Choice
 from linkwork.drawing.scene import Primitive
 
-__all__ = ["Annotation", "round_number"]
+__all__ = ["Annotation", "round_up"]
+
+_SHORT = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +41,9 @@ class Annotation:
         )
 
 
-def round_number(wanted: float) -> float:
-    """The largest of 1, 2, 5 times a power of ten that is not above a positive number."""
+def round_up(wanted: float) -> float:
+    """The smallest short number that is not below a positive one: 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8
+    times a power of ten.
+    """
     power: float = 10.0 ** int(f"{wanted:e}".partition("e")[2])
-    return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted)
+    return min(step * power for step in _SHORT if step * power >= wanted * (1.0 - 1e-12))

@@ -15,6 +15,7 @@ from linkwork.drawing.rate_arrows import rate_arrows
 from linkwork.drawing.scene import Primitive
 from linkwork.drawing.scene_options import SceneOptions
 from linkwork.drawing.speed_trace import colour_scale, speed_traces
+from linkwork.drawing.vector_polygon import Edge
 from linkwork.drawing.vector_symbols import vector_symbols
 from linkwork.results.instant_centres import centrodes, instant_centres
 from linkwork.results.motion import Motion
@@ -25,26 +26,26 @@ __all__ = ["Subject", "annotation_of"]
 
 @dataclass(frozen=True)
 class Subject:
-    """What a picture is of: a position in its motion, the paths shown, its frame and sizes."""
+    """What a picture is of: a position in its motion, the paths shown, its frame and sizes.
+
+    ``polygons`` are those of the loops' vectors, if they are shown.
+    """
 
     position: Position
     motion: Motion | None
     pose: Pose
     traced: tuple[str, ...]
+    polygons: tuple[tuple[Edge, ...], ...]
     within: Box
     measures: Measures
 
 
-def annotation_of(
-    subject: Subject, chosen: SceneOptions, drawn: Sequence[Primitive]
-) -> Annotation:
+def annotation_of(subject: Subject, chosen: SceneOptions, drawn: Sequence[Primitive]) -> Annotation:
     """All explanations as one; ``drawn`` is the mechanism, which they should not cover."""
     found = list(_of_motion(subject, chosen))
     if chosen.dimensions:
         before = [*drawn, *Annotation.joined(found).drawn]
-        found.append(
-            dimension_symbols(subject.position, subject.pose, subject.measures, before)
-        )
+        found.append(dimension_symbols(subject.position, subject.pose, subject.measures, before))
     if chosen.speed and subject.motion is not None:
         traces, most, more = speed_traces(
             subject.pose, subject.motion, subject.traced, subject.measures
@@ -64,7 +65,7 @@ def _of_motion(subject: Subject, chosen: SceneOptions) -> Iterator[Annotation]:
         subject.position, subject.motion, subject.pose, subject.measures
     )  # fmt: skip
     if chosen.vectors:
-        drawn, names = vector_symbols(chosen.vectors, pose, measures)
+        drawn, names = vector_symbols(chosen.vectors, subject.polygons, measures)
         yield Annotation(drawn=drawn, names=names)
     for order, wanted in ((1, chosen.velocities), (2, chosen.accelerations)):
         if wanted:

@@ -21,7 +21,8 @@ from linkwork.results.instant_centres import Centrodes, InstantCentre
 __all__ = ["centre_symbols", "centrode_symbols", "numbered"]
 
 _SUBSCRIPT = str.maketrans("0123456789,", "₀₁₂₃₄₅₆₇₈₉‚")
-_FAR = 0.6  # of the drawn size: centres further outside are told, not drawn
+_FAR = 0.35  # of the drawn size: centres further outside are told, not drawn
+_OUTSIDE = 0.15  # of the drawn size: so far curves go on outside
 _SAME = 1e-6  # of the drawn size: centres as near as this share a name
 
 
@@ -31,9 +32,7 @@ def numbered(centres: Sequence[InstantCentre]) -> dict[str, int]:
     return {link: number for number, link in enumerate(links, 1)}
 
 
-def centre_symbols(
-    centres: Sequence[InstantCentre], within: Box, measures: Measures
-) -> Annotation:
+def centre_symbols(centres: Sequence[InstantCentre], within: Box, measures: Measures) -> Annotation:
     """A cross at every centre in or near the picture, and which links the numbers mean."""
     number = numbered(centres)
     near = within.grown(_FAR * measures.size)
@@ -52,7 +51,7 @@ def centre_symbols(
     for place, together in groups:
         text = " ".join(together)
         drawn.append(_cross(place, text, measures))
-        height = 0.8 * measures.text
+        height = measures.text  # indices are smaller still
         names.append(places_beside(Role.CENTRE_NAME, text, text, place, height, measures))
     links = ", ".join(f"{k} {printed_name(link)}" for link, k in number.items())
     left = [f"{far} further away"] * bool(far) + [f"{endless} at infinity"] * bool(endless)
@@ -88,7 +87,7 @@ def centrode_symbols(
 ) -> Annotation:
     """The fixed centrode of every link, and the moving one where the link is now."""
     drawn: list[Primitive] = []
-    near = within.grown(_FAR * measures.size)
+    near = within.grown(_OUTSIDE * measures.size)
     for path in paths:
         moving = _placed(path, pose)
         for role, curve in ((Role.FIXED_CENTRODE, path.fixed), (Role.MOVING_CENTRODE, moving)):

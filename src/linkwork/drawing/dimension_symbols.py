@@ -48,19 +48,21 @@ def dimension_symbols(
     found: list[Primitive] = []
     names: list[Choice] = []
     for part, (name, value) in zip(pose.skeleton.driven, position.input.items(), strict=False):
-        shown = printed_value(value, position.input_units.get(name, ""), position.units)
+        unit = position.input_units.get(name, "")
+        shown = printed_value(float(f"{value:.5g}"), unit, position.units)
         if part.kind == "link":
-            lines, text = _angle(part, value * position.units.angle.radians, shown, pose, measures)
+            radians = value * position.units.angle.radians
+            lines, place = _angle(part, radians, shown, pose, measures)
             found += lines
-            names.append(text)
+            names.append(place)
     for span in (*_inputs(position, pose), *_lengths(pose), *_ground(pose)):
         lines, texts = _freest(span, measures, Obstacles.of([*drawn, *found]))
         found += lines
         names += texts
     for radius in _radii(pose, measures):
         found.append(radius)
-        text = f"R {abs(complex(*radius.points[1]) - complex(*radius.points[0])):.5g}"
         ends = complex(*radius.points[0]), complex(*radius.points[1])
+        text = f"R {abs(ends[1] - ends[0]):.5g}"
         names.append(places_along(Role.DIMENSION_NAME, radius.of, text, ends, 0, measures))
     return Annotation(drawn=found, names=names)
 
@@ -209,9 +211,7 @@ def _line(
     for tail, tip in ((middle - room * along, start), (middle + room * along, end)):
         inner = tail if fits else middle
         drawn.append(
-            Polyline(
-                role=Role.DIMENSION, of=span.of, points=(xy(inner), xy(tip)), head=head
-            )
+            Polyline(role=Role.DIMENSION, of=span.of, points=(xy(inner), xy(tip)), head=head)
         )
     boxes = _boxes(start, end, measures)
     if not fits:

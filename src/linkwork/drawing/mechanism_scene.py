@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from linkwork.drawing.annotations import Subject, annotation_of
 from linkwork.drawing.belt_symbols import belt_symbols
+from linkwork.drawing.box import Box
 from linkwork.drawing.captions import inputs_caption, reached_caption
 from linkwork.drawing.contour_symbols import cam_symbols, curve_symbols
 from linkwork.drawing.cylinder_symbol import cylinder_symbols
@@ -27,10 +28,10 @@ from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.rack_symbols import rack_symbols, rolling_symbols
 from linkwork.drawing.scene import Primitive, Role, Scene, xy
-from linkwork.drawing.box import Box
 from linkwork.drawing.scene_options import SceneOptions
 from linkwork.drawing.trace_path import trace_symbols
-from linkwork.drawing.vector_symbols import vector_places
+from linkwork.drawing.vector_polygon import Edge
+from linkwork.drawing.vector_symbols import vector_edges
 from linkwork.drawing.wheel_symbols import wheel_symbols
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.results.motion import Motion
@@ -85,7 +86,8 @@ def scene_of(
     further: list[Further] = []
     if motion is not None and chosen.further:
         further = further_positions(pose, motion, chosen.further)
-    within = chosen.within or _within(pose, names, further, chosen)
+    polygons = tuple(map(tuple, vector_edges(chosen.vectors, pose)))
+    within = chosen.within or _within(pose, names, further, polygons)
     measures = Measures.of(within, pose.gaps, chosen.larger)
     found = tracks(pose, measures, tones(pose))
     sense = -1.0 if motion is not None and (motion.speed or 0.0) < 0 else 1.0
@@ -99,7 +101,7 @@ def scene_of(
     if chosen.arrows:
         primitives += input_arrows(pose, found, measures, sense, primitives)
     told = annotation_of(
-        Subject(position, motion, pose, names, within, measures), chosen, primitives
+        Subject(position, motion, pose, names, polygons, within, measures), chosen, primitives
     )
     primitives += told.drawn
     wanted = [
@@ -121,10 +123,13 @@ def scene_of(
 
 
 def _within(
-    pose: Pose, names: tuple[str, ...], further: Sequence[Further], chosen: SceneOptions
+    pose: Pose,
+    names: tuple[str, ...],
+    further: Sequence[Further],
+    polygons: Iterable[Iterable[Edge]],
 ) -> Box:
     """What the picture has to show: the mechanism in all its positions, and vectors."""
-    vectors = list(map(xy, vector_places(chosen.vectors, pose)))
+    vectors = [xy(end) for edges in polygons for edge in edges for end in (edge.tail, edge.tip)]
     if not pose.points:
         return Box.around(vectors)
     box = drawn_box(pose, names, [other.pose for other in further])

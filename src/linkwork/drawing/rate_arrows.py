@@ -8,11 +8,11 @@ is that of all but the fastest rows, unless the position itself is one of these.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
 
 import numpy as np
 
-from linkwork.drawing.annotation import Annotation, round_number
+from linkwork.drawing.annotation import Annotation, round_up
 from linkwork.drawing.captions import printed_name
 from linkwork.drawing.label_placement import Choice, places_beside
 from linkwork.drawing.measures import Measures
@@ -26,12 +26,12 @@ from linkwork.results.quantity import Kind, Rate
 __all__ = ["LONGEST", "rate_arrows", "rate_of", "usual_most"]
 
 #: The longest arrow of a motion over the drawn size.
-LONGEST = 0.25
+LONGEST = 0.3
 
 _LETTER = {1: "v", 2: "a"}
 _WORD = {1: "velocity", 2: "acceleration"}
 _ROLE = {1: Role.VELOCITY, 2: Role.ACCELERATION}
-_SHORTEST = 0.02  # of the longest: shorter arrows would be all head
+_SHORTEST = 1.5  # radii of a pin: shorter arrows would be hidden by it
 _FAST = 0.95  # of the rows are slower than the fastest ones
 _BEYOND = 3.0  # times as fast as the others are rows beside a dead point
 
@@ -62,11 +62,13 @@ def rate_arrows(
     scale = 1.0 / round_up(most / (LONGEST * measures.size))
     drawn: list[Primitive] = []
     names: list[Choice] = []
+    short: list[str] = []
     for name, rate in rates.items():
-        if abs(rate) < _SHORTEST * most:
-            continue
         tail = pose.points[name]
         tip = tail + scale * rate
+        if abs(tip - tail) < _SHORTEST * measures.pin:
+            short.append(printed_name(name))
+            continue
         drawn.append(
             Polyline(
                 role=_ROLE[order],
@@ -79,7 +81,10 @@ def rate_arrows(
         height = 0.8 * measures.text
         role = Role.VELOCITY_NAME if order == 1 else Role.ACCELERATION_NAME
         names.append(places_beside(role, name, text, tip, height, measures))
-    return Annotation(drawn=drawn, names=names, caption=_caption(position, order, scale, measures))
+    caption = _caption(position, order, scale, measures)
+    if short:
+        caption += f" (too short to draw: {', '.join(short)})"
+    return Annotation(drawn=drawn, names=names, caption=caption)
 
 
 def rate_of(order: int, by_time: bool) -> Rate:
@@ -99,11 +104,6 @@ def usual_most(sizes: np.ndarray) -> float:
     return usual if usual and most > _BEYOND * usual else most
 
 
-def round_up(wanted: float) -> float:
-    """The smallest of 1, 2, 5 times a power of ten that is not below a positive number."""
-    return 1.0 / round_number((1.0 + 1e-12) / wanted)
-
-
 def _rates(position: Position, pose: Pose, order: int) -> dict[str, complex]:
     """The rates of all points that are drawn and do not stand still."""
     by_time, by_input = (
@@ -119,7 +119,9 @@ def _rates(position: Position, pose: Pose, order: int) -> dict[str, complex]:
     }  # fmt: skip
     bad = [name for name, rate in found.items() if not np.isfinite(rate)]
     if bad or not found:
-        why = f"not that of {', '.join(bad)}: the input is at a dead point" if bad else "of no point"
+        why = (
+            f"not that of {', '.join(bad)}: the input is at a dead point" if bad else "of no point"
+        )
         raise InputError(
             f'"{position.mechanism}" has no {_WORD[order]} to draw at this input value ({why})'
         )
@@ -130,7 +132,8 @@ def _caption(position: Position, order: int, scale: float, measures: Measures) -
     """What an arrow's length means: ``velocity: 20 mm shows 500 mm/s``."""
     units = position.units
     rate = rate_of(order, bool(position.velocity))
-    unit = rate.unit(Kind.LENGTH, units, position.derivative_unit)
-    length = round_number(0.1 * measures.size)
+    unit = rate.unit(Kind.LENGTH, units, position.derivative_unit).replace("^2", "²")
+    # Both numbers are short: the scale is a short number, the length a power of ten.
+    length = 10.0 ** math.floor(math.log10(0.3 * measures.size))
     shown = f"{length:g} {units.length}".rstrip()
-    return f"{_WORD[order]}: {shown} shows {length / scale:g} {unit}"
+    return f"{_WORD[order]}: {shown} shows {length / scale:.4g} {unit}"

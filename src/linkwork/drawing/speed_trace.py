@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -54,7 +55,7 @@ def _pieces(name: str, path: np.ndarray, share: Array) -> list[Primitive]:
             level=(int(key[a]) + 0.5) / _CLASSES,
             points=tuple(map(xy, path[a : b + 1])),
         )
-        for a, b in zip(edges, edges[1:], strict=False)
+        for a, b in pairwise(edges)
         if b > a and key[a] >= 0
     ]
 

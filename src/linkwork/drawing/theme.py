@@ -1,7 +1,7 @@
 """Colours and line widths of roles, shared by all writers.
 
-Colours are those of Okabe and Ito on a light page, and chosen likewise on a dark one: told apart with
-every kind of colour blindness.
+Colours are those of Okabe and Ito on a light page, and chosen likewise on a dark one: told apart
+with every kind of colour blindness.
 
 References
 ----------
@@ -15,9 +15,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from linkwork.drawing.scene import Primitive, Role
+from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
 
-__all__ = ["DARK", "LIGHT", "THEMES", "Style", "Theme"]
+__all__ = ["DARK", "LIGHT", "THEMES", "Style", "Theme", "theme_named"]
 
 _BLUE, _GREEN, _ORANGE = "#0072B2", "#009E73", "#E69F00"
 _VERMILLION, _PURPLE, _SKY = "#D55E00", "#CC79A7", "#56B4E9"
@@ -198,3 +199,16 @@ DARK = Theme(
 
 #: Every theme by the name it is asked for.
 THEMES: Mapping[str, Theme] = FrozenDict.of({"light": LIGHT, "dark": DARK})
+
+
+def theme_named(name: str) -> Theme:
+    """The theme of a name.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is none.
+    """
+    if name not in THEMES:
+        raise UnknownNameError(f'there is no theme "{name}" {choices("themes", THEMES, name)}')
+    return THEMES[name]

@@ -14,9 +14,10 @@ from linkwork.drawing.label_placement import Choice, places_along, places_beside
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Polyline, Primitive, Role, xy
+from linkwork.drawing.vector_polygon import Edge, polygon
 from linkwork.results.vector_loop import LoopVector, VectorLoop
 
-__all__ = ["vector_places", "vector_symbols"]
+__all__ = ["vector_edges", "vector_symbols"]
 
 _SAME = 1e-6  # of the drawn size: places as near as this are one
 _BESIDE = 1.3  # radii of a pin between arrows side by side
@@ -33,22 +34,21 @@ class _Arrow:
     loop: int
 
 
-def vector_places(loops: Sequence[VectorLoop], pose: Pose) -> list[complex]:
-    """Every place a vector begins or ends at: what a picture has to hold."""
-    starts = [_start(loop, pose) for loop in loops]
-    joints = [z for loop, start in zip(loops, starts, strict=True) for z in loop.joints(start)]
-    return starts + joints
+def vector_edges(loops: Sequence[VectorLoop], pose: Pose) -> list[list[Edge]]:
+    """Every loop's polygon; vectors of no length, which nothing shows, left out."""
+    found = [polygon(loop, pose) for loop in loops]
+    longest = max((abs(e.tip - e.tail) for edges in found for e in edges), default=0.0)
+    return [[e for e in edges if abs(e.tip - e.tail) > _SAME * longest] for edges in found]
 
 
 def vector_symbols(
-    loops: Sequence[VectorLoop], pose: Pose, measures: Measures
+    loops: Sequence[VectorLoop], polygons: Sequence[Sequence[Edge]], measures: Measures
 ) -> tuple[list[Primitive], list[Choice]]:
     """The arrows of every loop, and places for their names and the loops' own."""
     arrows = [
-        arrow
-        for number, loop in enumerate(loops, 1)
-        for arrow in _arrows(loop, number, _start(loop, pose))
-        if abs(arrow.tip - arrow.tail) > _SAME * measures.size
+        _Arrow(edge.vector, edge.tail, edge.tip, number)
+        for number, edges in enumerate(polygons, 1)
+        for edge in edges
     ]
     drawn: list[Primitive] = []
     names: list[Choice] = []
@@ -69,41 +69,13 @@ def vector_symbols(
             text = printed_formula(arrow.vector.name)
             line = (tail, tip)
             names.append(
-                places_along(
-                    Role.VECTOR_NAME, arrow.vector.name, text, line, arrow.loop, measures
-                )
+                places_along(Role.VECTOR_NAME, arrow.vector.name, text, line, arrow.loop, measures)
             )
     return drawn, names + [
         _loop_name(loop, [a for a in arrows if a.loop == k], k, measures)
         for k, loop in enumerate(loops, 1)
         if any(a.loop == k for a in arrows)
     ]
-
-
-def _arrows(loop: VectorLoop, number: int, start: complex) -> list[_Arrow]:
-    found = []
-    for side in (loop.left, loop.right):
-        place = start
-        for vector in side:
-            after = place + vector.value
-            ends = (after, place) if vector.backwards else (place, after)
-            found.append(_Arrow(vector, *ends, number))
-            place = after
-    return found
-
-
-def _start(loop: VectorLoop, pose: Pose) -> complex:
-    """The point from which most of its vectors end at points; its first one, or the origin."""
-    named = [pose.points[word] for word in loop.label.split() if word in pose.points]
-    fixed = [pose.points[name] for name in pose.skeleton.fixed]
-    places = list(pose.points.values())
-    size = max((abs(vector.value) for vector in (*loop.left, *loop.right)), default=1.0)
-
-    def fitting(start: complex) -> int:
-        joints = loop.joints(start)
-        return sum(any(abs(z - place) <= _SAME * size for place in places) for z in joints)
-
-    return max([*named[:1], *fixed, 0j, *places], key=fitting)
 
 
 def _same_line(one: _Arrow, other: _Arrow, measures: Measures) -> bool:
@@ -123,14 +95,10 @@ def _moved(arrow: _Arrow, before: int, measures: Measures) -> tuple[complex, com
     return arrow.tail + across, arrow.tip + across
 
 
-def _loop_name(
-    loop: VectorLoop, arrows: list[_Arrow], number: int, measures: Measures
-) -> Choice:
+def _loop_name(loop: VectorLoop, arrows: list[_Arrow], number: int, measures: Measures) -> Choice:
     """Places for a loop's name about its middle."""
     ends = [end for arrow in arrows for end in (arrow.tail, arrow.tip)]
     text = f"loop {printed_formula(loop.label)}"
     middle = sum(ends) / len(ends)
     height = 0.85 * measures.text
-    return places_beside(
-        Role.LOOP_NAME, loop.label, text, middle, height, measures, tone=number
-    )
+    return places_beside(Role.LOOP_NAME, loop.label, text, middle, height, measures, tone=number)

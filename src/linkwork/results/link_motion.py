@@ -64,9 +64,12 @@ def link_motion(of: Position | Motion, link: str) -> LinkMotion:
         raise UnknownNameError(f'there is no link "{link}" {choices("links", links, link)}')
     points = links[link]
     if link == GROUND:
-        still = np.zeros(len(of) if isinstance(of, Motion) else 1, dtype=complex)
+        count = len(of) if isinstance(of, Motion) else 1
+        still: ComplexArray = np.zeros(count, dtype=complex)
+        turn: ComplexArray = np.ones(count, dtype=complex)
+        spin: Array = np.zeros(count)
         return LinkMotion(
-            link=link, points=points, origin=still, turn=still + 1.0, shift=still, spin=still.real
+            link=link, points=points, origin=still, turn=turn, shift=still, spin=spin
         )
     origin, rate = _point(of, points[0])
     if link in of.links:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 __all__ = ["LoopVector", "VectorLoop"]
@@ -17,7 +16,7 @@ class LoopVector:
     name : str
         What the equation calls it, in polar form: ``a2∠θ12``.
     value : complex
-        x + iy as the loop runs through it, in the mechanism's length unit.
+        What the term adds to its side: x + iy, in the mechanism's length unit.
     backwards : bool
         Whether the equation takes the named vector off: the arrow then points against ``value``.
     """
@@ -37,11 +36,3 @@ class VectorLoop:
     label: str
     left: tuple[LoopVector, ...]
     right: tuple[LoopVector, ...]
-
-    def joints(self, start: complex) -> Iterator[complex]:
-        """Where its vectors end, head to tail from ``start``: the left side, then the right."""
-        for side in (self.left, self.right):
-            place = start
-            for vector in side:
-                place += vector.value
-                yield place
