@@ -68,9 +68,7 @@ def link_motion(of: Position | Motion, link: str) -> LinkMotion:
         still: ComplexArray = np.zeros(count, dtype=complex)
         turn: ComplexArray = np.ones(count, dtype=complex)
         spin: Array = np.zeros(count)
-        return LinkMotion(
-            link=link, points=points, origin=still, turn=turn, shift=still, spin=spin
-        )
+        return LinkMotion(link=link, points=points, origin=still, turn=turn, shift=still, spin=spin)
     origin, rate = _point(of, points[0])
     if link in of.links:
         turn, spin = _angle(of, link)
