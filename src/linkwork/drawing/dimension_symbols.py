@@ -15,7 +15,7 @@ from itertools import pairwise, product
 from linkwork.drawing.annotation import Annotation
 from linkwork.drawing.box import Box
 from linkwork.drawing.captions import printed_name, printed_value
-from linkwork.drawing.label_placement import Choice, places_along, places_beside
+from linkwork.drawing.label_placement import Choice, places_along, places_at
 from linkwork.drawing.link_symbols import convex_outline, in_line
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.obstacles import Obstacles
@@ -28,7 +28,11 @@ __all__ = ["dimension_symbols"]
 
 _HEAD = 0.7  # of the head of an input arrow
 _FURTHER = 1.5  # what it costs to stand further away
+_SHARES = (0.5, 0.35, 0.65, 0.22, 0.78)  # of the line: where its number may stand
 _ARC = 8.0  # radii of a pin is that of an angle's arc, at most
+
+
+_NARROW = 1.0  # rad: beside the arcs of smaller angles there is no less room for a number
 
 
 @dataclass(frozen=True)
@@ -160,9 +164,17 @@ def _angle(
                 head=_HEAD * measures.head,
             )
         )
-    middle = centre + radius * cmath.exp(1j * (here - sweep / 2))
+    wide = math.copysign(max(abs(sweep), _NARROW), sweep)
+    spots = [
+        (
+            centre + far * radius * cmath.exp(1j * (here - share * wide)),
+            4.0 * abs(share - 0.5) + abs(far - 1.4),
+        )
+        for far in (0.7, 1.2, 1.4, 1.7, 2.0, 2.4)
+        for share in (0.5, 0.4, 0.6, 0.3, 0.7, 0.1, 0.9, -0.3, 1.3)
+    ]
     height = 0.8 * measures.text
-    return drawn, places_beside(Role.DIMENSION_NAME, part.name, shown, middle, height, measures)
+    return drawn, places_at(Role.DIMENSION_NAME, part.name, shown, 0, height, spots)
 
 
 def _freest(
@@ -176,10 +188,10 @@ def _freest(
     across = (span.end - span.start) / length * 1j
     first = 2.2 * measures.pin + 0.5 * height
     best: tuple[float, list[Primitive], list[Choice]] | None = None
-    for further, side in product(range(4), (1, -1)):
+    for further, side, share in product(range(6), (1, -1), _SHARES):
         away = side * (first + further * 1.1 * height) * across
-        lines, texts, boxes = _line(span, away, measures, height)
-        cost = _FURTHER * further + obstacles.cost(boxes)
+        lines, texts, boxes = _line(span, away, share, measures)
+        cost = _FURTHER * further + abs(share - 0.5) + obstacles.cost(boxes)
         if best is None or cost < best[0]:
             best = cost, lines, texts
     assert best is not None
@@ -187,9 +199,12 @@ def _freest(
 
 
 def _line(
-    span: _Span, away: complex, measures: Measures, height: float
+    span: _Span, away: complex, share: float, measures: Measures
 ) -> tuple[list[Primitive], list[Choice], list[Box]]:
-    """A dimension line at a distance from what it measures; the boxes that it fills."""
+    """A dimension line at a distance from what it measures, its number at a share of its length;
+    the boxes that it fills.
+    """
+    height = 0.8 * measures.text
     start, end = span.start + away, span.end + away
     along = (end - start) / abs(end - start)
     length = abs(end - start)
@@ -206,8 +221,8 @@ def _line(
         )
         for z in (span.start, span.end)
     ]
-    middle = (start + end) / 2
-    fits = length > 2 * room + 3 * head
+    middle = start + share * (end - start)
+    fits = min(share, 1.0 - share) * length > room + 1.5 * head
     for tail, tip in ((middle - room * along, start), (middle + room * along, end)):
         inner = tail if fits else middle
         drawn.append(

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linkwork.drawing.box import Box
 from linkwork.drawing.captions import printed_name
 from linkwork.drawing.link_symbols import convex_outline, in_line, tones
 from linkwork.drawing.measures import Measures
@@ -26,12 +27,15 @@ __all__ = [
     "link_names",
     "placed",
     "places_along",
+    "places_at",
     "places_beside",
+    "places_within",
     "point_names",
 ]
 
 _NAME_ON_NAME = 100.0
 _FURTHER = 2.0
+_ACROSS = 13  # places for a text across an area, and as many up
 _CLEAR = 0.12  # left free around every name [em]: half a thick line and some air
 #: Right and above is where a name is looked for first.
 _PREFERENCE = {45: 0.0, 135: 0.3, 90: 0.5, 0: 0.6, 180: 0.7, 315: 0.8, 225: 0.9, 270: 1.0}
@@ -110,7 +114,7 @@ def link_names(pose: Pose, measures: Measures) -> list[Choice]:
             centre = sum(outline) / len(outline)
             spots = [(centre, 0.0), *((spot, cost + 2.0) for spot, cost in spots)]
         text = printed_name(name)
-        found.append(_centred(Role.LINK_NAME, name, text, tone.get(name, 1), height, spots))
+        found.append(places_at(Role.LINK_NAME, name, text, tone.get(name, 1), height, spots))
     return found
 
 
@@ -125,11 +129,29 @@ def places_along(
     """Places for a text beside a line."""
     height = 0.85 * measures.text
     spots = _beside_line(*line, text, height, measures)
-    return _centred(role, of, text, tone, height, spots)
+    return places_at(role, of, text, tone, height, spots)
 
 
-def _centred(
-    role: Role, of: str, text: str, tone: int, height: float, spots: list[tuple[complex, float]]
+def places_within(
+    role: Role, of: str, text: str, corners: Sequence[complex], tone: int, measures: Measures
+) -> Choice:
+    """Places for a text over an area and around it; best in the middle of the points given."""
+    height = 0.85 * measures.text
+    middle = sum(corners) / len(corners)
+    box = Box.around(map(xy, corners))
+    shares = [1.5 * k / (_ACROSS - 1) - 0.25 for k in range(_ACROSS)]
+    spots = [middle] + [
+        complex(box.left + x * box.width, box.bottom + y * box.height)
+        for x in shares
+        for y in shares
+    ]
+    reach = max(box.width, box.height) or 1.0
+    costs = [2.0 * _FURTHER * abs(spot - middle) / reach for spot in spots]
+    return places_at(role, of, text, tone, height, list(zip(spots, costs, strict=True)))
+
+
+def places_at(
+    role: Role, of: str, text: str, tone: int, height: float, spots: Sequence[tuple[complex, float]]
 ) -> Choice:
     """Places for a text whose middle lies at one of some spots, each with its penalty."""
     places = tuple(
@@ -195,8 +217,8 @@ def _beside_line(
             start + share * (end - start) + side * (clear + further * 0.6 * height) * left,
             2 * abs(share - 0.5) + further * _FURTHER,
         )
-        for further in range(4)
-        for share in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
+        for further in range(5)
+        for share in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9)
         for side in (1, -1)
     ]
 

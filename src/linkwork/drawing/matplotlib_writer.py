@@ -199,6 +199,8 @@ def _house_settings() -> Iterator[None]:
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams["svg.hashsalt"] = "linkwork"
+        matplotlib.rcParams["path.simplify"] = False  # files show the scene's own coordinates
+        matplotlib.rcParams["pdf.fonttype"] = 42  # journals refuse PDF files with fonts of type 3
         yield
 
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from linkwork.drawing.captions import printed_formula
-from linkwork.drawing.label_placement import Choice, places_along, places_beside
+from linkwork.drawing.label_placement import Choice, places_along, places_within
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Polyline, Primitive, Role, xy
@@ -99,6 +99,4 @@ def _loop_name(loop: VectorLoop, arrows: list[_Arrow], number: int, measures: Me
     """Places for a loop's name about its middle."""
     ends = [end for arrow in arrows for end in (arrow.tail, arrow.tip)]
     text = f"loop {printed_formula(loop.label)}"
-    middle = sum(ends) / len(ends)
-    height = 0.85 * measures.text
-    return places_beside(Role.LOOP_NAME, loop.label, text, middle, height, measures, tone=number)
+    return places_within(Role.LOOP_NAME, loop.label, text, ends, number, measures)
