@@ -56,7 +56,9 @@ def drawn(name: str) -> str:
 
 def written(shapes: list[Shape]) -> str:
     """Shapes as a plain SVG file that a browser shows."""
-    lines = ['<svg xmlns="http://www.w3.org/2000/svg" width="540" height="540">']
+    ends = [point for shape in shapes for point in shape.points]
+    width, height = (max(values) + 20 for values in zip(*ends, strict=True))
+    lines = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}">']
     for shape in shapes:
         own = f"id={quoteattr(shape.name)}"
         places = [f"{x:.2f} {y:.2f}" for x, y in shape.points]

@@ -22,7 +22,7 @@ __all__ = ["centre_symbols", "centrode_symbols", "numbered"]
 
 _SUBSCRIPT = str.maketrans("0123456789,", "₀₁₂₃₄₅₆₇₈₉‚")
 _FAR = 0.35  # of the drawn size: centres further outside are told, not drawn
-_OUTSIDE = 0.15  # of the drawn size: so far curves go on outside
+_OUTSIDE = 0.3  # of the drawn size: so far curves go on outside
 _SAME = 1e-6  # of the drawn size: centres as near as this share a name
 
 

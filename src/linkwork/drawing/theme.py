@@ -160,7 +160,7 @@ LIGHT = Theme(
     faint="#8A8A8A",
     driven=_VERMILLION,
     tones=(_BLUE, _GREEN, _PURPLE, _ORANGE, _SKY),
-    scale=("#1B0C8C", "#7A02A8", "#BD3786", "#E66C5C", "#FBA238"),
+    scale=("#0D0660", "#5B1A8C", "#A63A86", "#E3685F", "#FBA63A"),
     styles=_styles(
         _Inks(
             ink="#1A1A1A",
@@ -182,7 +182,7 @@ DARK = Theme(
     faint="#8B95A1",
     driven="#FF803D",
     tones=("#607AEA", "#1FCB8E", "#BE6BA0", "#E4F02D", "#B2AEF9"),
-    scale=("#6A3FD0", "#B13FB0", "#E85A83", "#FB9A52", "#FBE723"),
+    scale=("#5A3FB5", "#3F76C0", "#2FA0A0", "#6CC96A", "#F2E63C"),
     styles=_styles(
         _Inks(
             ink="#ECEFF3",
