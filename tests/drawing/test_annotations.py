@@ -153,7 +153,7 @@ def test_speeds_need_a_motion_and_a_path():
 def test_instant_centres_are_numbered_and_the_caption_says_which_links():
     position, _ = moved("slider-crank")
     scene = drawn("slider-crank", centres=True)
-    assert "instant centres of links 1 ground, 2 crank, 3 rod, 4 block" in scene.caption
+    assert "instant centres of links 1:ground, 2:crank, 3:rod, 4:block" in scene.caption
     assert scene.caption.endswith("1 further away; 1 at infinity")
     crosses = {p.of: sum(complex(*z) for z in p.strokes[0]) / 2
                for p in scene.select(Hatch, Role.CENTRE)}  # fmt: skip

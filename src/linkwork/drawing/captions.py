@@ -38,8 +38,8 @@ def printed_name(name: str) -> str:
 
 
 def printed_formula(text: str) -> str:
-    """A formula as printed in a figure: ``(a4 - b4)∠θ14`` → ``(a₄ - b₄)∠θ₁₄``."""
-    return _INDEX.sub(lambda found: found[0].translate(_SUBSCRIPT), text)
+    """A formula as printed in a figure: ``(a4 - b4)∠θ14`` → ``(a₄ − b₄)∠θ₁₄``."""
+    return _INDEX.sub(lambda found: found[0].translate(_SUBSCRIPT), text).replace("-", "\u2212")
 
 
 def printed_value(value: float, unit: str, units: Units) -> str:

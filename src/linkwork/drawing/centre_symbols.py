@@ -53,7 +53,7 @@ def centre_symbols(centres: Sequence[InstantCentre], within: Box, measures: Meas
         drawn.append(_cross(place, text, measures))
         height = measures.text  # indices are smaller still
         names.append(places_beside(Role.CENTRE_NAME, text, text, place, height, measures))
-    links = ", ".join(f"{k} {printed_name(link)}" for link, k in number.items())
+    links = ", ".join(f"{k}:{printed_name(link)}" for link, k in number.items())
     left = [f"{far} further away"] * bool(far) + [f"{endless} at infinity"] * bool(endless)
     caption = "; ".join([f"instant centres of links {links}", *left])
     return Annotation(drawn=drawn, names=names, caption=caption)

@@ -98,12 +98,12 @@ def scene_of(
         *(map(_faded, own) if chosen.vectors else own),
         *marks,
     ]
-    if chosen.arrows:
-        primitives += input_arrows(pose, found, measures, sense, primitives)
     told = annotation_of(
         Subject(position, motion, pose, names, polygons, within, measures), chosen, primitives
     )
     primitives += told.drawn
+    if chosen.arrows:
+        primitives += input_arrows(pose, found, measures, sense, primitives)
     wanted = [
         *(point_names(pose, measures) if labels else []),
         *(link_names(pose, measures) if chosen.link_names else []),

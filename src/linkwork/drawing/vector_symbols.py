@@ -79,10 +79,15 @@ def vector_symbols(
 
 
 def _same_line(one: _Arrow, other: _Arrow, measures: Measures) -> bool:
-    """Whether two arrows join the same places, either way."""
+    """Whether two arrows would cover each other: both lie in one line and share a stretch of it."""
     near = _SAME * measures.size
-    ends = ((other.tail, other.tip), (other.tip, other.tail))
-    return any(abs(one.tail - a) <= near and abs(one.tip - b) <= near for a, b in ends)
+    length = abs(one.tip - one.tail)
+    along = (one.tip - one.tail) / length
+    tail, tip = ((z - one.tail) * along.conjugate() for z in (other.tail, other.tip))
+    if max(abs(tail.imag), abs(tip.imag)) > near:
+        return False
+    low, high = sorted((tail.real, tip.real))
+    return min(high, length) - max(low, 0.0) > near
 
 
 def _moved(arrow: _Arrow, before: int, measures: Measures) -> tuple[complex, complex]:
