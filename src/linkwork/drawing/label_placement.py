@@ -21,6 +21,7 @@ from linkwork.drawing.measures import Measures
 from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Primitive, Role, Text, text_width, xy
+from linkwork.foundation.arrays import Array
 
 __all__ = [
     "Choice",
@@ -240,18 +241,24 @@ def placed(choices: Sequence[Choice], drawn: Iterable[Primitive]) -> list[Text]:
         np.array(c.cost) + np.array([obstacles.cost([box]) for box in b])
         for c, b in zip(choices, boxes, strict=True)
     ]
+    edges = [np.array([(*box.corners[0], *box.corners[1]) for box in b]) for b in boxes]
     # Most hemmed in first: they have the least choice.
     order = sorted(range(len(choices)), key=lambda k: -float(np.min(fixed[k])))
     taken: dict[int, int] = {}
     for _ in range(4):
         before = dict(taken)
         for k in order:
-            others = [boxes[j][place] for j, place in taken.items() if j != k]
-            cost = [
-                fixed[k][place] + _NAME_ON_NAME * sum(box.overlap(other) > 0 for other in others)
-                for place, box in enumerate(boxes[k])
-            ]
+            others = np.array([edges[j][place] for j, place in taken.items() if j != k])
+            cost = fixed[k] + _NAME_ON_NAME * _overlaps(edges[k], others.reshape(-1, 4))
             taken[k] = int(np.argmin(cost))
         if taken == before:
             break
     return [choices[k].places[taken[k]] for k in range(len(choices))]
+
+
+def _overlaps(boxes: Array, others: Array) -> Array:
+    """With how many others (k, 4) each box (n, 4) shares an area; left, bottom, right, top."""
+    low = np.maximum(boxes[:, None, :2], others[None, :, :2])
+    high = np.minimum(boxes[:, None, 2:], others[None, :, 2:])
+    shared: Array = np.sum(np.all(high > low, axis=2), axis=1, dtype=float)
+    return shared
