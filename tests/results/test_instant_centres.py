@@ -118,3 +118,17 @@ def test_a_link_that_only_slides_has_no_centrodes():
     motion = lw.example("slider-crank").sweep(start=0, stop=10, step=5)
     with pytest.raises(InputError, match='"block" does not turn'):
         centrodes(motion, "block")
+
+
+def test_equations_without_points_have_no_instant_centres():
+    position = position_of("newton-convergence")
+    with pytest.raises(InputError, match="has no links with points: nothing has a centre"):
+        instant_centres(position)
+
+
+def test_rows_that_were_not_found_have_no_centre():
+    motion = lw.example("rapier-drive-limited").sweep(certify=False)
+    found = centrodes(motion, "lever")
+    assert not motion.found.all()
+    assert np.isnan(found.fixed[~motion.found]).all()
+    assert np.isfinite(found.fixed[motion.found]).any()

@@ -84,7 +84,7 @@ def scene_of(
     names = _traced(pose, traces)
     _check_motion(chosen, names, motion)
     further: list[Further] = []
-    if motion is not None and chosen.further:
+    if motion is not None and chosen.further and pose.points:
         further = further_positions(pose, motion, chosen.further)
     polygons = tuple(map(tuple, vector_edges(chosen.vectors, pose)))
     within = chosen.within or _within(pose, names, further, polygons)

@@ -81,6 +81,8 @@ def instant_centres(position: Position) -> tuple[InstantCentre, ...]:
     if not position.status.ok:
         raise InputError(f'"{position.mechanism}" has no position here: {position.message}')
     bodies = link_motions(position)
+    if len(bodies) < 2:
+        raise InputError(f'"{position.mechanism}" has no links with points: nothing has a centre')
     lost = [b.link for b in bodies if not (np.isfinite(b.shift[0]) and np.isfinite(b.spin[0]))]
     if lost:
         raise InputError(
@@ -132,5 +134,5 @@ def centrodes(motion: Motion, link: str) -> Centrodes:
     nowhere = complex(np.nan, np.nan)
     # without a division by zero where the link does not turn
     fixed = np.where(turns, 1j * body.shift / np.where(turns, body.spin, 1.0), nowhere)
-    moving: ComplexArray = (fixed - body.origin) / body.turn
+    moving: ComplexArray = (fixed - body.origin) * body.turn.conj()
     return Centrodes(link=link, fixed=fixed, moving=moving)

@@ -111,7 +111,8 @@ def _direction(
     for place, rate in _places(of, points[1:]):
         along, rates = place - first[0], rate - first[1]
         if np.nanmin(np.abs(along), initial=np.inf) > 0.0:
-            return along / np.abs(along), (rates / along).imag
+            with np.errstate(invalid="ignore"):  # rows that were not found are NaN, and stay so
+                return along / np.abs(along), (rates / along).imag
     raise InputError(
         f'how the link "{link}" turns is not known: give it two points, or its angle a name'
     )
