@@ -1,4 +1,5 @@
-"""Writes docs/gallery.md and one small picture for each mechanism of the library.
+"""Writes docs/gallery.md, one small picture for each mechanism of the library, and the figures of
+docs/pictures.md.
 
 A mechanism's law is the first line of the test that states it.
 """
@@ -9,6 +10,7 @@ import sys
 from importlib import import_module
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote
 
 from PIL import Image  # comes with Matplotlib
@@ -22,9 +24,19 @@ from tests.library.laws import LAWS  # noqa: E402
 
 PICTURES = ROOT / "docs" / "images" / "gallery"
 PAGE = ROOT / "docs" / "gallery.md"
+FIGURES = ROOT / "docs" / "images" / "pictures"
 _DPI = 54.0  # 324 pixels on the long side
 _COLOURS = 96
 _WIDTH = 300  # of a picture on the page, in pixels
+_FIGURE_DPI = 80.0
+#: Figures of docs/pictures.md: mechanism, theme, and the arguments of its scene.
+_SHOWN: dict[str, tuple[str, str, dict[str, Any]]] = {
+    "vectors": ("rapier-drive", "light", {"vectors": True}),
+    "rates": ("slider-crank", "light", {"velocities": True, "accelerations": True}),
+    "speed": ("jansen-leg", "dark", {"speed": True}),
+    "centres": ("elliptic-trammel", "light", {"centres": True, "centrodes": ("rod",)}),
+    "dimensions": ("four-bar", "light", {"dimensions": True}),
+}
 _HEAD = """# Gallery
 
 Every mechanism of the library with its law, which a test checks (`tests/library`); written by
@@ -48,8 +60,20 @@ def main() -> None:
         for name in families[family]:
             lines += _entry(name, laws.get(name, ""))
     PAGE.write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
-    count = len(list(PICTURES.iterdir()))
+    count = len(list(PICTURES.iterdir())) + _figures()
     sys.stdout.write(f"Wrote {PAGE.relative_to(ROOT)} and {count} pictures.\n")
+
+
+def _figures() -> int:
+    """Write the figures that show what a picture can show; how many there are."""
+    FIGURES.mkdir(parents=True, exist_ok=True)
+    for figure, (name, theme, shown) in _SHOWN.items():
+        wanted = dict(shown)
+        vectors = wanted.pop("vectors", False)
+        scene = lw.example(name).scene(vectors=vectors, options=drawing.SceneOptions(**wanted))
+        page = drawing.render(scene, "png", dpi=_FIGURE_DPI, theme=drawing.theme_named(theme))
+        _write_small(page, FIGURES / f"{figure}.png")
+    return len(_SHOWN)
 
 
 def _laws() -> dict[str, list[str]]:

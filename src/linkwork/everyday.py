@@ -242,21 +242,34 @@ class Mechanism:
         at: float | Mapping[str, float] | None = None,
         *,
         configuration: str | None = None,
+        vectors: bool = False,
+        traces: Sequence[str] | None = None,
+        options: drawing.SceneOptions | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> drawing.Scene:
-        """A picture of one position with the traces of the traced points over the cycle.
+        """A picture of one position with the traces of points over the cycle.
 
         Parameters
         ----------
         at, configuration
             Which position, as in :meth:`solve`; the cycle is the one through it.
+        vectors : bool
+            Show the loop equations as vectors over the mechanism.
+        traces : sequence of str, optional
+            The points whose paths are shown; those of the file's ``[trace]`` unless given.
+        options : SceneOptions, optional
+            What else to show; see :class:`linkwork.drawing.SceneOptions`.
         """
         position = self.solve(at, configuration=configuration, throw=True)
+        chosen = options or drawing.SceneOptions()
+        if vectors:
+            chosen = replace(chosen, vectors=motion.vector_loops(self.model, position))
         if not self.description.inputs:
-            return drawing.scene_of(position)
+            return drawing.scene_of(position, traces=traces, options=chosen)
         model = self.model if configuration is None else self.model.from_position(position)
         cycle = motion.sweep(model, progress=progress)
-        return drawing.scene_of(position, cycle if cycle.found.any() else None)
+        found = cycle if cycle.found.any() else None
+        return drawing.scene_of(position, found, traces=traces, options=chosen)
 
     def draw(
         self,
@@ -264,9 +277,23 @@ class Mechanism:
         at: float | Mapping[str, float] | None = None,
         *,
         configuration: str | None = None,
+        vectors: bool = False,
+        traces: Sequence[str] | None = None,
+        options: drawing.SceneOptions | None = None,
+        theme: str = "light",
     ) -> None:
-        """Draw one position to a PNG, SVG or PDF file; see :meth:`scene`."""
-        drawing.write(self.scene(at, configuration=configuration), Path(path))
+        """Draw one position to a PNG, SVG or PDF file; see :meth:`scene`.
+
+        Parameters
+        ----------
+        theme : str
+            Colours of the page: ``light`` or ``dark``.
+        """
+        colours = drawing.theme_named(theme)
+        scene = self.scene(
+            at, configuration=configuration, vectors=vectors, traces=traces, options=options
+        )
+        drawing.write(scene, Path(path), theme=colours)
 
     def to_excel(self, path: str | Path, motion: Motion | None = None) -> tuple[str, ...]:
         """Write a sweep as an Excel workbook whose formulas solve it again.

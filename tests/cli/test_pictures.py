@@ -41,6 +41,63 @@ def test_draw_shows_the_position_that_was_asked(run: Run, folder: Path) -> None:
     assert "<!-- crank = 100° -->" in c
 
 
+@pytest.mark.parametrize(
+    ("option", "role"),
+    [
+        ("--vectors", "vector:O2A∠θ_crank"),
+        ("--velocities", "velocity:A"),
+        ("--accelerations", "acceleration:B"),
+        ("--centres", "centre:I₁₂"),
+        ("--centrodes=coupler", "moving_centrode:coupler"),
+        ("--dimensions", "dimension:rocker"),
+        ("--trace=B", "trace:B"),
+        ("--trace=B --speed", "speed_trace:B"),
+        ("--link-names", "link_name:coupler"),
+    ],
+)
+def test_draw_shows_what_it_is_asked_for(run: Run, folder: Path, option: str, role: str) -> None:
+    name = _library(folder, "four-bar")
+    plain = run("draw", name, "-o", "plain.svg")
+    asked = run("draw", name, "-o", "asked.svg", *option.split())
+    assert (plain.exit_code, asked.exit_code) == (0, 0), asked.stderr
+    assert f'id="{role}"' not in _svg(folder, "plain.svg")
+    assert f'id="{role}"' in _svg(folder, "asked.svg")
+
+
+def test_draw_dresses_the_page_in_a_theme(run: Run, folder: Path) -> None:
+    name = _library(folder, "four-bar")
+    for theme in ("light", "dark"):
+        assert run("draw", name, "-o", f"{theme}.svg", "--theme", theme).exit_code == 0
+    assert "#15191e" in _svg(folder, "dark.svg")
+    assert "#15191e" not in _svg(folder, "light.svg")
+    refused = run("draw", name, "-o", "x.svg", "--theme", "dusk")
+    assert refused.exit_code == 2
+    assert "'light', 'dark'" in refused.stderr
+
+
+def test_draw_refuses_what_the_mechanism_has_not(run: Run, folder: Path) -> None:
+    name = _library(folder, "four-bar")
+    for words, said in (
+        (("--speed",), "there is no path to colour by speed: name the points to trace"),
+        (("--centrodes", "arm"), 'there is no link "arm" (links: ground, crank, coupler, rocker)'),
+        (("--trace", "Q"), 'there is no point "Q" to trace'),
+    ):
+        done = run("draw", name, "-o", "x.svg", *words)
+        assert done.exit_code == 2
+        assert said in " ".join(done.stderr.split())
+        assert not (folder / "x.svg").exists()
+
+
+def test_draw_shows_equations_without_points_as_vectors(run: Run, folder: Path) -> None:
+    text = example_text("rapier-drive")
+    bare = re.sub(r"^\[(points|links|trace)\]\n(?:(?!\[).*\n?)*", "", text, flags=re.MULTILINE)
+    (folder / "bare.toml").write_text(bare, encoding="utf-8")
+    assert run("draw", "bare.toml", "-o", "x.svg").exit_code == 2
+    done = run("draw", "bare.toml", "-o", "x.svg", "--vectors")
+    assert (done.exit_code, done.stdout) == (0, "Wrote x.svg.\n")
+    assert 'id="vector:a2∠θ12"' in _svg(folder, "x.svg")
+
+
 def test_draw_shows_a_configuration_with_its_own_paths(run: Run, folder: Path) -> None:
     """Of the crossed four-bar, P runs below the ground; of the open one, above it."""
     for name in ("open", "crossed"):

@@ -152,3 +152,11 @@ def test_an_arrow_ends_in_a_sharp_tip(four_bar):
     straight = Polyline(role=Role.INPUT, points=((0, 0), (10, 0)), head=2.0)
     assert straight.shaft == ((0, 0), (pytest.approx(8.6), 0))
     assert replace(straight, head=0.0).shaft == straight.points
+
+
+def test_an_arrow_goes_around_a_plate_that_fills_its_usual_place():
+    scene = scene_of(lw.example("double-butterfly").solve())
+    [arrow] = scene.select(Arc, Role.INPUT)
+    [crank] = scene.select(Polygon, Role.PLATE, of="crank")
+    far = max(abs(complex(*z) - complex(*arrow.centre)) for z in crank.points)
+    assert arrow.radius > far

@@ -184,3 +184,9 @@ def test_without_matplotlib_the_message_names_the_command(scene, monkeypatch):
     with pytest.raises(MissingPackageError) as raised:
         render(scene, "svg")
     assert str(raised.value) == "drawing needs Matplotlib: pip install matplotlib"
+
+
+def test_a_pdf_has_fonts_that_journals_accept(scene):
+    page = render(scene, "pdf")
+    assert b"/Subtype /Type3" not in page
+    assert b"/FontFile2" in page or b"/TrueType" in page

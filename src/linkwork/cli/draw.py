@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import click
 
 from linkwork.cli import picture
@@ -16,6 +18,8 @@ from linkwork.cli.options import (
 )
 from linkwork.cli.output_file import check_outputs
 from linkwork.cli.terminal import print_lines, progress
+from linkwork.drawing.scene_options import SceneOptions
+from linkwork.drawing.theme import THEMES
 
 __all__ = ["draw"]
 
@@ -26,6 +30,35 @@ __all__ = ["draw"]
 @at_option
 @configuration_option
 @set_option
+@click.option("--vectors", is_flag=True, help="The loop equations as vectors, head to tail.")
+@click.option("--velocities", is_flag=True, help="Arrows of the points' velocities.")
+@click.option("--accelerations", is_flag=True, help="Arrows of the points' accelerations.")
+@click.option("--centres", is_flag=True, help="The instant centres of all pairs of links.")
+@click.option(
+    "--centrodes",
+    "centrodes",
+    metavar="LINK",
+    multiple=True,
+    help="The fixed and the moving centrode of a link; may be repeated.",
+)
+@click.option(
+    "--dimensions", is_flag=True, help="Lengths, radii and the input, as dimension lines."
+)
+@click.option(
+    "--trace",
+    "traces",
+    metavar="POINT",
+    multiple=True,
+    help="The path of this point instead of those in the file's [trace]; may be repeated.",
+)
+@click.option("--speed", is_flag=True, help="Colour the paths by the points' speed.")
+@click.option("--link-names", is_flag=True, help="Write the names of links beside them.")
+@click.option(
+    "--theme",
+    type=click.Choice(tuple(THEMES)),
+    default="light",
+    help="Colours of the page: light (the default) or dark.",
+)
 @debug_option
 def draw(
     file: str,
@@ -33,20 +66,33 @@ def draw(
     at: tuple[str, ...],
     configuration: str | None,
     changes: tuple[str, ...],
+    vectors: bool,
+    traces: tuple[str, ...],
+    theme: str,
+    **shown: Any,
 ) -> None:
     """Draw one position, with the paths of the traced points.
 
     \b
       linkwork draw rapier.toml -o rapier.png
-      linkwork draw rapier.toml -o rapier.svg --at 120
+      linkwork draw rapier.toml -o rapier.svg --at 120 --vectors
       linkwork draw fourbar.toml -o crossed.png --configuration crossed
+      linkwork draw fourbar.toml -o poles.pdf --centres --centrodes coupler
     """
     picture.check_picture(output)
     check_outputs(file, output)
     mechanism = read_mechanism(file, changes)
-    picture.check_points(mechanism)
+    if not vectors:
+        picture.check_points(mechanism)
     values = input_values(mechanism, at)
     with progress("sweeping") as tell:
-        scene = mechanism.scene(values, configuration=configuration, progress=tell)
-    picture.write(scene, output)
+        scene = mechanism.scene(
+            values,
+            configuration=configuration,
+            vectors=vectors,
+            traces=traces or None,
+            options=SceneOptions(**shown),
+            progress=tell,
+        )
+    picture.write(scene, output, theme=THEMES[theme])
     print_lines([f"Wrote {output}."])

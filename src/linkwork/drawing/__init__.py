@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from linkwork.drawing.mechanism_scene import SceneOptions, scene_of
     from linkwork.drawing.scene import Arc, Box, Disc, Hatch, Polygon, Polyline, Role, Scene, Text
     from linkwork.drawing.sheet import Sheet, configuration_sheet
-    from linkwork.drawing.theme import LIGHT, Style, Theme
+    from linkwork.drawing.theme import DARK, LIGHT, THEMES, Style, Theme, theme_named
 else:
     __getattr__ = loader(
         __name__,
@@ -34,12 +34,14 @@ else:
                 "Text",
             ),
             "sheet": ("Sheet", "configuration_sheet"),
-            "theme": ("LIGHT", "Style", "Theme"),
+            "theme": ("DARK", "LIGHT", "THEMES", "Style", "Theme", "theme_named"),
         },
     )
 
 __all__ = [
+    "DARK",
     "LIGHT",
+    "THEMES",
     "Arc",
     "Box",
     "Chart",
@@ -60,5 +62,6 @@ __all__ = [
     "reach_of",
     "render",
     "scene_of",
+    "theme_named",
     "write",
 ]

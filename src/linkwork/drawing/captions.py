@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -16,11 +17,13 @@ __all__ = [
     "inputs_caption",
     "lead_text",
     "lines_within",
+    "printed_formula",
     "printed_name",
     "printed_value",
     "reached_caption",
 ]
 
+_INDEX = re.compile(r"(?<=[^\W\d_])\d+(?![.\d])")  # behind a letter
 _SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
@@ -32,6 +35,11 @@ def printed_name(name: str) -> str:
     shown = pretty(name)
     stem = shown.rstrip("0123456789'")
     return stem + shown[len(stem) :].translate(_SUBSCRIPT) if stem else shown
+
+
+def printed_formula(text: str) -> str:
+    """A formula as printed in a figure: ``(a4 - b4)∠θ14`` → ``(a₄ − b₄)∠θ₁₄``."""
+    return _INDEX.sub(lambda found: found[0].translate(_SUBSCRIPT), text).replace("-", "\u2212")
 
 
 def printed_value(value: float, unit: str, units: Units) -> str:

@@ -16,6 +16,7 @@ import numpy as np
 
 from linkwork.drawing.box import Box
 from linkwork.drawing.guide_symbols import Track
+from linkwork.drawing.link_symbols import convex_outline, in_line
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
@@ -29,6 +30,9 @@ __all__ = ["input_arrows"]
 _SWEEP = math.radians(110)
 _LONGEST = 15.0  # radii of a pin: an arrow around a large ring
 _TURNED = 0.5  # what it costs to turn an arrow around its pivot away from the usual place [1/rad]
+_WIDER = (1.0, 1.4)  # times its usual radius
+_AROUND_PLATE = (1.0, 1.4, 1.9)  # a plate about the pivot may fill the usual place
+_WIDENED = 9.0  # what that costs [1/times]
 _OTHER_SIDE = 2.0  # what it costs to stand on the other side of a slider or cylinder
 _FURTHER = 2.0  # and further away from it
 _MOVED = 0.3  # and to be moved along it by a pin's radius
@@ -136,18 +140,22 @@ def _around_pivot(
     if discs:
         radius = _around_wheel(discs, measures)
     usual = cmath.phase(reach) + math.radians(75) * turn
-    for away in np.linspace(0.0, math.tau, 24, endpoint=False).tolist():
-        sweep = turn * min(_SWEEP, _LONGEST * measures.pin / radius)
+    plate = len(others) > 1 and not in_line(convex_outline([pivot, *(pivot + z for z in others)]))
+    turns = np.linspace(0.0, math.tau, 24, endpoint=False).tolist()
+    for away, wider in product(turns, _AROUND_PLATE if plate else _WIDER):
+        own = wider * radius
+        sweep = turn * min(_SWEEP, _LONGEST * measures.pin / own)
         arrow = Arc(
             role=Role.INPUT,
             of=part.name,
             centre=xy(pivot),
-            radius=radius,
+            radius=own,
             start=usual + away - sweep / 2,
             sweep=sweep,
             head=measures.head,
         )
-        yield _Place(arrow, _TURNED * abs(math.remainder(away, math.tau)))
+        cost = _TURNED * abs(math.remainder(away, math.tau)) + _WIDENED * (wider - 1.0)
+        yield _Place(arrow, cost)
 
 
 def _around_wheel(discs: Sequence[Disc], measures: Measures) -> float:

@@ -14,17 +14,29 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linkwork.drawing.box import Box
 from linkwork.drawing.captions import printed_name
 from linkwork.drawing.link_symbols import convex_outline, in_line, tones
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Primitive, Role, Text, text_width, xy
+from linkwork.foundation.arrays import Array
 
-__all__ = ["Choice", "link_names", "placed", "places_beside", "point_names"]
+__all__ = [
+    "Choice",
+    "link_names",
+    "placed",
+    "places_along",
+    "places_at",
+    "places_beside",
+    "places_within",
+    "point_names",
+]
 
 _NAME_ON_NAME = 100.0
 _FURTHER = 2.0
+_ACROSS = 13  # places for a text across an area, and as many up
 _CLEAR = 0.12  # left free around every name [em]: half a thick line and some air
 #: Right and above is where a name is looked for first.
 _PREFERENCE = {45: 0.0, 135: 0.3, 90: 0.5, 0: 0.6, 180: 0.7, 315: 0.8, 225: 0.9, 270: 1.0}
@@ -48,7 +60,13 @@ def point_names(pose: Pose, measures: Measures) -> list[Choice]:
 
 
 def places_beside(
-    role: Role, of: str, text: str, place: complex, height: float, measures: Measures
+    role: Role,
+    of: str,
+    text: str,
+    place: complex,
+    height: float,
+    measures: Measures,
+    tone: int = 0,
 ) -> Choice:
     """Places for a text beside a point: just outside circles around it."""
     places, cost = [], []
@@ -63,6 +81,7 @@ def places_beside(
                 Text(
                     role=role,
                     of=of,
+                    tone=tone,
                     text=text,
                     anchor=xy(place),
                     offset=(gap * cos, gap * sin + rise),
@@ -95,20 +114,60 @@ def link_names(pose: Pose, measures: Measures) -> list[Choice]:
         if not rounds and not in_line(outline):
             centre = sum(outline) / len(outline)
             spots = [(centre, 0.0), *((spot, cost + 2.0) for spot, cost in spots)]
-        places = tuple(
-            Text(
-                role=Role.LINK_NAME,
-                of=name,
-                tone=tone.get(name, 1),
-                text=printed_name(name),
-                anchor=xy(spot),
-                offset=(0.0, -0.3 * height),
-                height=height,
-            )
-            for spot, _ in spots
-        )
-        found.append(Choice(places, tuple(cost for _, cost in spots)))
+        text = printed_name(name)
+        found.append(places_at(Role.LINK_NAME, name, text, tone.get(name, 1), height, spots))
     return found
+
+
+def places_along(
+    role: Role,
+    of: str,
+    text: str,
+    line: tuple[complex, complex],
+    tone: int,
+    measures: Measures,
+) -> Choice:
+    """Places for a text beside a line."""
+    height = 0.85 * measures.text
+    spots = _beside_line(*line, text, height, measures)
+    return places_at(role, of, text, tone, height, spots)
+
+
+def places_within(
+    role: Role, of: str, text: str, corners: Sequence[complex], tone: int, measures: Measures
+) -> Choice:
+    """Places for a text over an area and around it; best in the middle of the points given."""
+    height = 0.85 * measures.text
+    middle = sum(corners) / len(corners)
+    box = Box.around(map(xy, corners))
+    shares = [1.5 * k / (_ACROSS - 1) - 0.25 for k in range(_ACROSS)]
+    spots = [middle] + [
+        complex(box.left + x * box.width, box.bottom + y * box.height)
+        for x in shares
+        for y in shares
+    ]
+    reach = max(box.width, box.height) or 1.0
+    costs = [2.0 * _FURTHER * abs(spot - middle) / reach for spot in spots]
+    return places_at(role, of, text, tone, height, list(zip(spots, costs, strict=True)))
+
+
+def places_at(
+    role: Role, of: str, text: str, tone: int, height: float, spots: Sequence[tuple[complex, float]]
+) -> Choice:
+    """Places for a text whose middle lies at one of some spots, each with its penalty."""
+    places = tuple(
+        Text(
+            role=role,
+            of=of,
+            tone=tone,
+            text=text,
+            anchor=xy(spot),
+            offset=(0.0, -0.3 * height),
+            height=height,
+        )
+        for spot, _ in spots
+    )
+    return Choice(places, tuple(cost for _, cost in spots))
 
 
 def _rounds(pose: Pose, link: str) -> list[tuple[complex, float]]:
@@ -144,16 +203,23 @@ def _beside_bar(
     """Middles of the name beside the longest side of an outline, with their penalties."""
     sides = list(zip(outline, outline[1:] + outline[:1], strict=True))
     start, end = max(sides, key=lambda side: abs(side[1] - side[0]))
+    return _beside_line(start, end, printed_name(name), height, measures)
+
+
+def _beside_line(
+    start: complex, end: complex, text: str, height: float, measures: Measures
+) -> list[tuple[complex, float]]:
+    """Middles of a text beside a line from start to end, with their penalties."""
     left = (end - start) / abs(end - start) * 1j
-    half_width = text_width(printed_name(name), height) / 2
+    half_width = text_width(text, height) / 2
     clear = abs(left.real) * half_width + abs(left.imag) * 0.5 * height + 0.8 * measures.pin
     return [
         (
             start + share * (end - start) + side * (clear + further * 0.6 * height) * left,
             2 * abs(share - 0.5) + further * _FURTHER,
         )
-        for further in range(4)
-        for share in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
+        for further in range(5)
+        for share in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9)
         for side in (1, -1)
     ]
 
@@ -175,18 +241,24 @@ def placed(choices: Sequence[Choice], drawn: Iterable[Primitive]) -> list[Text]:
         np.array(c.cost) + np.array([obstacles.cost([box]) for box in b])
         for c, b in zip(choices, boxes, strict=True)
     ]
+    edges = [np.array([(*box.corners[0], *box.corners[1]) for box in b]) for b in boxes]
     # Most hemmed in first: they have the least choice.
     order = sorted(range(len(choices)), key=lambda k: -float(np.min(fixed[k])))
     taken: dict[int, int] = {}
     for _ in range(4):
         before = dict(taken)
         for k in order:
-            others = [boxes[j][place] for j, place in taken.items() if j != k]
-            cost = [
-                fixed[k][place] + _NAME_ON_NAME * sum(box.overlap(other) > 0 for other in others)
-                for place, box in enumerate(boxes[k])
-            ]
+            others = np.array([edges[j][place] for j, place in taken.items() if j != k])
+            cost = fixed[k] + _NAME_ON_NAME * _overlaps(edges[k], others.reshape(-1, 4))
             taken[k] = int(np.argmin(cost))
         if taken == before:
             break
     return [choices[k].places[taken[k]] for k in range(len(choices))]
+
+
+def _overlaps(boxes: Array, others: Array) -> Array:
+    """With how many others (k, 4) each box (n, 4) shares an area; left, bottom, right, top."""
+    low = np.maximum(boxes[:, None, :2], others[None, :, :2])
+    high = np.minimum(boxes[:, None, 2:], others[None, :, 2:])
+    shared: Array = np.sum(np.all(high > low, axis=2), axis=1, dtype=float)
+    return shared

@@ -161,7 +161,7 @@ def _sheet_figure(sheet: Sheet, theme: Theme) -> Figure:
         for spine in ax.spines.values():
             spine.set_visible(True)
         text = "\n".join(name)
-        ax.set_title(text, fontsize=_SMALL, color=theme.ink, loc="left", pad=3.0, parse_math=False)
+        ax.set_title(text, fontsize=_SMALL, color=theme.ink, loc="left", pad=4.0, parse_math=False)
         brush = _Brush(ax, scene, theme)
         for primitive in scene.primitives:
             brush.draw(primitive)
@@ -199,6 +199,8 @@ def _house_settings() -> Iterator[None]:
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams["svg.hashsalt"] = "linkwork"
+        matplotlib.rcParams["path.simplify"] = False  # files show the scene's own coordinates
+        matplotlib.rcParams["pdf.fonttype"] = 42  # journals refuse PDF files with fonts of type 3
         yield
 
 

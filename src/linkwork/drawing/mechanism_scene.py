@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
+from linkwork.drawing.annotations import Subject, annotation_of
 from linkwork.drawing.belt_symbols import belt_symbols
+from linkwork.drawing.box import Box
 from linkwork.drawing.captions import inputs_caption, reached_caption
 from linkwork.drawing.contour_symbols import cam_symbols, curve_symbols
 from linkwork.drawing.cylinder_symbol import cylinder_symbols
@@ -25,8 +27,11 @@ from linkwork.drawing.link_symbols import link_symbols, pin_symbols, tones
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.rack_symbols import rack_symbols, rolling_symbols
-from linkwork.drawing.scene import Box, Primitive, Scene
+from linkwork.drawing.scene import Primitive, Role, Scene, xy
+from linkwork.drawing.scene_options import SceneOptions
 from linkwork.drawing.trace_path import trace_symbols
+from linkwork.drawing.vector_polygon import Edge
+from linkwork.drawing.vector_symbols import vector_edges
 from linkwork.drawing.wheel_symbols import wheel_symbols
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.results.motion import Motion
@@ -34,36 +39,8 @@ from linkwork.results.position import Position
 
 __all__ = ["SceneOptions", "scene_of"]
 
-
-@dataclass(frozen=True, kw_only=True)
-class SceneOptions:
-    """What else a picture shows.
-
-    Parameters
-    ----------
-    link_names : bool
-        Write the names of links beside them.
-    arrows : bool
-        Show by arrows what is driven.
-    further : int
-        About how many more positions of the motion to show, faintly; if any, its dead points and
-        change points are marked.
-    title : str, optional
-        Instead of the mechanism's name; an empty one leaves it out.
-    larger : float
-        How much larger than usual names are, for small pictures; symbols grow by its root.
-    within : Box, optional
-        What the picture shows at least, and what the sizes of symbols are measured by: give all
-        pictures of one animation the same, from
-        :func:`~linkwork.drawing.drawn_box.reach_of`.
-    """
-
-    link_names: bool = False
-    arrows: bool = True
-    further: int = 0
-    larger: float = 1.0
-    title: str | None = None
-    within: Box | None = None
+_BEHIND = 0.62  # how faint the mechanism is behind its vectors
+_FIRM = (Role.GROUND, Role.HATCH, Role.TRACE, Role.PIN, Role.POINT, Role.TRACED)
 
 
 def scene_of(
@@ -103,37 +80,75 @@ def scene_of(
     Colours and fonts are the writers' business, see :mod:`linkwork.drawing.theme`.
     """
     chosen = options or SceneOptions()
-    pose = Pose.of(position, motion)
+    pose = Pose.of(position, motion, bare=bool(chosen.vectors))
     names = _traced(pose, traces)
+    _check_motion(chosen, names, motion)
     further: list[Further] = []
-    if motion is not None and chosen.further:
+    if motion is not None and chosen.further and pose.points:
         further = further_positions(pose, motion, chosen.further)
-    within = chosen.within or drawn_box(pose, names, [other.pose for other in further])
+    polygons = tuple(map(tuple, vector_edges(chosen.vectors, pose)))
+    within = chosen.within or _within(pose, names, further, polygons)
     measures = Measures.of(within, pose.gaps, chosen.larger)
     found = tracks(pose, measures, tones(pose))
     sense = -1.0 if motion is not None and (motion.speed or 0.0) < 0 else 1.0
     marks, limit_names = limit_marks(further, motion, measures)
+    own = list(_symbols(pose, found, () if chosen.speed else names, measures))
     primitives: list[Primitive] = [
         *faint_symbols(further, measures),
-        *_symbols(pose, found, names, measures),
+        *(map(_faded, own) if chosen.vectors else own),
         *marks,
     ]
+    told = annotation_of(
+        Subject(position, motion, pose, names, polygons, within, measures), chosen, primitives
+    )
+    primitives += told.drawn
     if chosen.arrows:
         primitives += input_arrows(pose, found, measures, sense, primitives)
     wanted = [
         *(point_names(pose, measures) if labels else []),
         *(link_names(pose, measures) if chosen.link_names else []),
         *limit_names,
+        *told.names,
     ]
     primitives += placed(wanted, primitives)
+    caption = _caption(position, motion if further else None)
     return Scene(
         primitives=tuple(primitives),
         measures=measures,
         within=within,
         unit=position.units.length,
         title=position.mechanism if chosen.title is None else chosen.title,
-        caption=_caption(position, motion if further else None),
+        caption="; ".join(filter(None, (caption, told.caption))),
     )
+
+
+def _within(
+    pose: Pose,
+    names: tuple[str, ...],
+    further: Sequence[Further],
+    polygons: Iterable[Iterable[Edge]],
+) -> Box:
+    """What the picture has to show: the mechanism in all its positions, and vectors."""
+    vectors = [xy(end) for edges in polygons for edge in edges for end in (edge.tail, edge.tip)]
+    if not pose.points:
+        return Box.around(vectors)
+    box = drawn_box(pose, names, [other.pose for other in further])
+    return Box.around([*box.corners, *vectors])
+
+
+def _faded(primitive: Primitive) -> Primitive:
+    """What moves, fainter, for vectors to stand out from."""
+    return primitive if primitive.role in _FIRM else replace(primitive, fade=_BEHIND)
+
+
+def _check_motion(chosen: SceneOptions, names: tuple[str, ...], motion: Motion | None) -> None:
+    """Refuse what only a motion tells."""
+    if motion is None and chosen.centrodes:
+        raise InputError("centrodes cannot be drawn from one position: give the motion too")
+    if motion is None and chosen.speed:
+        raise InputError("speeds along a path cannot be drawn from one position: give the motion")
+    if chosen.speed and not names:
+        raise InputError("there is no path to colour by speed: name the points to trace")
 
 
 def _symbols(

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from linkwork.drawing.box import Box
-from linkwork.drawing.scene import Arc, Disc, Hatch, Polygon, Polyline, Primitive, Role
+from linkwork.drawing.scene import Arc, Disc, Hatch, Polygon, Polyline, Primitive, Role, Text
 from linkwork.foundation.arrays import Array, BoolArray
 
 __all__ = ["Obstacles"]
@@ -19,9 +19,12 @@ _PENALTY = {
     Role.FRAME: 6.0, Role.WHEEL: 6.0, Role.PITCH: 1.5, Role.MARK: 8.0, Role.BELT: 14.0,
     Role.PLATE: 9.0, Role.HATCH: 6.0, Role.GROUND: 10.0, Role.TRACE: 2.5, Role.SLOT: 12.0,
     Role.SLIDER: 12.0, Role.LINK: 14.0, Role.CYLINDER: 14.0, Role.PIN: 60.0, Role.POINT: 40.0,
-    Role.TRACED: 40.0, Role.LIMIT: 40.0, Role.INPUT: 14.0,
+    Role.TRACED: 40.0, Role.LIMIT: 40.0, Role.INPUT: 14.0, Role.SPEED_TRACE: 4.0,
+    Role.FIXED_CENTRODE: 4.0, Role.MOVING_CENTRODE: 4.0, Role.EXTENSION: 4.0, Role.DIMENSION: 12.0,
+    Role.VECTOR: 14.0, Role.VELOCITY: 14.0, Role.ACCELERATION: 14.0, Role.CENTRE: 30.0,
 }  # fmt: skip
 _INSIDE_PLATE = 1.5
+_TEXT = 100.0  # to cover what is written
 _OPEN = (Role.FRAME, Role.WHEEL, Role.PITCH)  # discs that names and arrows may stand inside
 
 
@@ -59,6 +62,8 @@ class Obstacles:
                     plates.append(np.array(p.points))
             elif isinstance(p, Hatch):
                 found = list(p.strokes)
+            elif isinstance(p, Text):
+                found, penalty = list(pairwise(_frame(p.box))), _TEXT
             pieces += [(*a, *b) for a, b in found]
             piece_cost += [penalty] * len(found)
         return cls(
@@ -81,6 +86,13 @@ class Obstacles:
             + float(values @ (1 + np.log(counts)))
             + _INSIDE_PLATE * inside
         )
+
+
+def _frame(box: Box) -> list[tuple[float, float]]:
+    """The corners of a box, around and back, and across."""
+    (left, bottom), (right, top) = box.corners
+    around = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)]
+    return [*around, (right, top)]
 
 
 def _covers(discs: Array, box: Box) -> BoolArray:

@@ -48,15 +48,15 @@ class Pose:
     angles: dict[str, float] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, position: Position, motion: Motion | None) -> Pose:
-        """The pose of a position that was found.
+    def of(cls, position: Position, motion: Motion | None, *, bare: bool = False) -> Pose:
+        """The pose of a position that was found; a ``bare`` one may be without points.
 
         Raises
         ------
         InputError
             If the position was not found, has no points, or the motion is of something else.
         """
-        _check(position, motion)
+        _check(position, motion, bare)
         points = {name: complex(*place) for name, place in position.points.items()}
         paths = {} if motion is None else {name: _path(motion, name) for name in points}
         radians = position.units.angle.radians
@@ -147,13 +147,13 @@ def no_points(mechanism: str) -> InputError:
     )
 
 
-def _check(position: Position, motion: Motion | None) -> None:
+def _check(position: Position, motion: Motion | None, bare: bool) -> None:
     if not position.status.ok:
         raise InputError(
             f'"{position.mechanism}" has no position to draw at this input value: '
             f"{position.message or position.status.value}"
         )
-    if not position.points:
+    if not position.points and not bare:
         raise no_points(position.mechanism)
     bad = [name for name, place in position.points.items() if not np.isfinite(place).all()]
     if bad:

@@ -45,9 +45,15 @@ class Role(Enum):
     MARK = "the spoke that shows a wheel's angle"
     BELT = "a belt or chain"
     PLATE = "a link of three or more points"
+    SCALE = "a step of a colour scale"
     HATCH = "the hatching of what stands still"
     GROUND = "what stands still: pivots and rails"
     TRACE = "the path of a point"
+    SPEED_TRACE = "a piece of the path of a point, coloured by its speed there"
+    FIXED_CENTRODE = "the path of a link's instant centre in the plane"
+    MOVING_CENTRODE = "the path of a link's instant centre on the link"
+    EXTENSION = "a thin line from what is measured to its dimension"
+    DIMENSION = "a dimension line"
     SLOT = "the slot a pin runs in"
     SLIDER = "a sliding block"
     CYLINDER = "the barrel of a cylinder"
@@ -57,9 +63,20 @@ class Role(Enum):
     TRACED = "a point whose path is shown"
     LIMIT = "where a motion ends or branches cross"
     INPUT = "the arrow of what is driven"
+    VECTOR = "a vector of a loop equation"
+    VELOCITY = "the velocity of a point"
+    ACCELERATION = "the acceleration of a point"
+    CENTRE = "an instant centre"
     LINK_NAME = "the name of a link"
     LABEL = "the name of a point"
     LIMIT_NAME = "what a limit is, and where"
+    VECTOR_NAME = "the name of a vector of a loop equation"
+    LOOP_NAME = "the name of a loop equation"
+    VELOCITY_NAME = "the name of a velocity"
+    ACCELERATION_NAME = "the name of an acceleration"
+    CENTRE_NAME = "which links an instant centre is of"
+    DIMENSION_NAME = "the number of a dimension"
+    SCALE_NAME = "what a colour scale means"
 
     @property
     def layer(self) -> int:
@@ -74,13 +91,15 @@ class Primitive:
     ``of`` names the part of the mechanism that is shown. ``tone`` tells links apart: 0 for what
     is driven and for everything that has no colour of its own, 1, 2, … for the other links.
     ``fade`` mixes its colours with the page, 0 not at all, 1 away: for further positions of a
-    motion, which lie below everything that is not faint.
+    motion, which lie below everything that is not faint. ``level`` is its place on the theme's
+    colour scale, 0 to 1, for roles that have their colour from it.
     """
 
     role: Role
     of: str = ""
     tone: int = 0
     fade: float = 0.0
+    level: float = 0.0
 
     @property
     def outline(self) -> tuple[XY, ...]:

@@ -1,6 +1,7 @@
 """Colours and line widths of roles, shared by all writers.
 
-Colours are those of Okabe and Ito, told apart with every kind of colour blindness.
+Colours are those of Okabe and Ito on a light page, and chosen likewise on a dark one: told apart
+with every kind of colour blindness.
 
 References
 ----------
@@ -11,12 +12,13 @@ to colorblind people, 2002.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from linkwork.drawing.scene import Primitive, Role
+from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
 
-__all__ = ["LIGHT", "Style", "Theme"]
+__all__ = ["DARK", "LIGHT", "THEMES", "Style", "Theme", "theme_named"]
 
 _BLUE, _GREEN, _ORANGE = "#0072B2", "#009E73", "#E69F00"
 _VERMILLION, _PURPLE, _SKY = "#D55E00", "#CC79A7", "#56B4E9"
@@ -26,7 +28,8 @@ _VERMILLION, _PURPLE, _SKY = "#D55E00", "#CC79A7", "#56B4E9"
 class Style:
     """How a role is drawn.
 
-    ``line`` and ``fill`` are a colour, ``tone`` (the colour of the link) or nothing; ``width``
+    ``line`` and ``fill`` are a colour, ``tone`` (the colour of the link), ``level`` (from the
+    theme's colour scale) or nothing; ``width``
     counts strokes (:attr:`linkwork.drawing.measures.Measures.stroke`), as do the lengths of
     ``dashes`` and of the gaps between them, in widths of the line.
     """
@@ -40,13 +43,18 @@ class Style:
 
 @dataclass(frozen=True, kw_only=True)
 class Theme:
-    """Colours of a page: background, ink of text, faint ink of axes, tones of links, styles."""
+    """Colours of a page: background, ink of text, faint ink of axes, tones of links, styles.
+
+    ``scale`` are colours at equal steps from 0 to 1 of what is shown by colour, as speed; their
+    lightness goes one way.
+    """
 
     background: str
     ink: str
     faint: str
     driven: str
     tones: tuple[str, ...]
+    scale: tuple[str, ...]
     styles: Mapping[Role, Style]
 
     def line(self, primitive: Primitive) -> str:
@@ -61,48 +69,146 @@ class Theme:
         if colour == "tone":
             tone = primitive.tone
             colour = self.tones[(tone - 1) % len(self.tones)] if tone else self.driven
+        elif colour == "level":
+            colour = self.at_level(primitive.level)
         return self._mixed(colour, primitive.fade) if colour and primitive.fade else colour
 
+    def at_level(self, level: float) -> str:
+        """The colour of the scale at a place from 0 to 1."""
+        place = min(max(level, 0.0), 1.0) * (len(self.scale) - 1)
+        k = min(int(place), len(self.scale) - 2)
+        return _between(self.scale[k], self.scale[k + 1], place - k)
+
     def _mixed(self, colour: str, fade: float) -> str:
-        """A colour #RRGGBB with the page shining through: opaque, so that crossings stay faint."""
-        ink, page = ([int(c[k : k + 2], 16) for k in (1, 3, 5)] for c in (colour, self.background))
-        mixed = (round((1.0 - fade) * i + fade * p) for i, p in zip(ink, page, strict=True))
-        return "#" + "".join(f"{part:02X}" for part in mixed)
+        """A colour with the page shining through: opaque, so that crossings stay faint."""
+        return _between(colour, self.background, fade)
 
 
-_INK, _GREY, _PAPER = "#1A1A1A", "#5A5A5A", "#FFFFFF"
+def _between(colour: str, other: str, share: float) -> str:
+    """A colour #RRGGBB on the way to another one."""
+    one, two = ([int(c[k : k + 2], 16) for k in (1, 3, 5)] for c in (colour, other))
+    mixed = (round((1.0 - share) * a + share * b) for a, b in zip(one, two, strict=True))
+    return "#" + "".join(f"{part:02X}" for part in mixed)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Inks:
+    """The colours that styles are mixed from; ``page`` is also what covers what lies below."""
+
+    ink: str
+    grey: str
+    page: str
+    still: str
+    block: str
+    driven: str
+    velocity: str
+    acceleration: str
+
+
+def _styles(c: _Inks) -> FrozenDict[Role, Style]:
+    """How every role is drawn: the same lines in every theme, in its colours."""
+    centrode = Style(line=c.velocity, width=1.6)
+    return FrozenDict.of(
+        {
+            Role.FRAME: Style(line=c.grey, width=1.3, fill=c.block),
+            Role.FRAME_BAND: Style(fill=c.block),
+            Role.BAND: Style(fill="tone", opacity=0.16),
+            Role.WHEEL: Style(line="tone", width=1.5, fill="tone", opacity=0.16),
+            Role.PITCH: Style(line=c.grey, width=0.7, dashes=(14.0, 4.0, 2.0, 4.0)),
+            Role.MARK: Style(line="tone", width=1.5, fill="tone"),
+            Role.BELT: Style(line=c.ink, width=1.8),
+            Role.PLATE: Style(line="tone", width=1.9, fill="tone", opacity=0.2),
+            Role.SCALE: Style(fill="level"),
+            Role.HATCH: Style(line=c.grey, width=0.8),
+            Role.GROUND: Style(line=c.grey, width=1.3, fill=c.still),
+            Role.TRACE: Style(line=c.ink, width=1.3, fill=c.ink, dashes=(0.01, 2.2)),
+            Role.SPEED_TRACE: Style(line="level", width=2.6),
+            Role.FIXED_CENTRODE: centrode,
+            Role.MOVING_CENTRODE: replace(centrode, line=c.acceleration, dashes=(5.0, 2.5)),
+            Role.EXTENSION: Style(line=c.grey, width=0.6),
+            Role.DIMENSION: Style(line=c.ink, width=0.7, fill=c.ink),
+            Role.SLOT: Style(line="tone", width=1.7, fill=c.page),
+            Role.SLIDER: Style(line=c.ink, width=1.3, fill=c.block),
+            Role.LINK: Style(line="tone", width=2.8),
+            Role.CYLINDER: Style(line="tone", width=1.4, fill=c.page),
+            Role.PIN: Style(line=c.ink, width=1.4, fill=c.page),
+            Role.POINT: Style(fill=c.ink),
+            Role.TRACED: Style(fill=c.ink),
+            Role.LIMIT: Style(line=c.ink, width=2.2, fill=c.page),
+            Role.INPUT: Style(line=c.driven, width=1.7, fill=c.driven),
+            Role.VECTOR: Style(line="tone", width=2.0, fill="tone"),
+            Role.VELOCITY: Style(line=c.velocity, width=2.0, fill=c.velocity),
+            Role.ACCELERATION: Style(line=c.acceleration, width=2.0, fill=c.acceleration),
+            Role.CENTRE: Style(line=c.acceleration, width=1.8),
+            Role.LINK_NAME: Style(fill="tone"),
+            Role.LABEL: Style(fill=c.ink),
+            Role.LIMIT_NAME: Style(fill=c.grey),
+            Role.VECTOR_NAME: Style(fill="tone"),
+            Role.LOOP_NAME: Style(fill="tone"),
+            Role.VELOCITY_NAME: Style(fill=c.velocity),
+            Role.ACCELERATION_NAME: Style(fill=c.acceleration),
+            Role.CENTRE_NAME: Style(fill=c.acceleration),
+            Role.DIMENSION_NAME: Style(fill=c.ink),
+            Role.SCALE_NAME: Style(fill=c.grey),
+        }
+    )
+
 
 LIGHT = Theme(
-    background=_PAPER,
-    ink=_INK,
+    background="#FFFFFF",
+    ink="#1A1A1A",
     faint="#8A8A8A",
     driven=_VERMILLION,
     tones=(_BLUE, _GREEN, _PURPLE, _ORANGE, _SKY),
-    styles=FrozenDict.of(
-        {
-            Role.FRAME: Style(line=_GREY, width=1.3, fill="#EDEDED"),
-            Role.FRAME_BAND: Style(fill="#EDEDED"),
-            Role.BAND: Style(fill="tone", opacity=0.16),
-            Role.WHEEL: Style(line="tone", width=1.5, fill="tone", opacity=0.16),
-            Role.PITCH: Style(line=_GREY, width=0.7, dashes=(14.0, 4.0, 2.0, 4.0)),
-            Role.MARK: Style(line="tone", width=1.5, fill="tone"),
-            Role.BELT: Style(line=_INK, width=1.8),
-            Role.PLATE: Style(line="tone", width=1.9, fill="tone", opacity=0.2),
-            Role.HATCH: Style(line=_GREY, width=0.8),
-            Role.GROUND: Style(line=_GREY, width=1.3, fill="#E6E6E6"),
-            Role.TRACE: Style(line=_INK, width=1.3, fill=_INK, dashes=(0.01, 2.2)),
-            Role.SLOT: Style(line="tone", width=1.7, fill=_PAPER),
-            Role.SLIDER: Style(line=_INK, width=1.3, fill="#EDEDED"),
-            Role.LINK: Style(line="tone", width=2.8),
-            Role.CYLINDER: Style(line="tone", width=1.4, fill=_PAPER),
-            Role.PIN: Style(line=_INK, width=1.4, fill=_PAPER),
-            Role.POINT: Style(fill=_INK),
-            Role.TRACED: Style(fill=_INK),
-            Role.LIMIT: Style(line=_INK, width=2.2, fill=_PAPER),
-            Role.INPUT: Style(line=_VERMILLION, width=1.7, fill=_VERMILLION),
-            Role.LINK_NAME: Style(fill="tone"),
-            Role.LABEL: Style(fill=_INK),
-            Role.LIMIT_NAME: Style(fill=_GREY),
-        }
+    scale=("#0D0660", "#5B1A8C", "#A63A86", "#E3685F", "#FBA63A"),
+    styles=_styles(
+        _Inks(
+            ink="#1A1A1A",
+            grey="#5A5A5A",
+            page="#FFFFFF",
+            still="#E6E6E6",
+            block="#EDEDED",
+            driven=_VERMILLION,
+            velocity="#1F3A93",
+            acceleration="#8E1B5B",
+        )
     ),
 )
+
+#: For dark pages and screens: lighter hues, as far apart with every kind of colour blindness.
+DARK = Theme(
+    background="#15191E",
+    ink="#ECEFF3",
+    faint="#8B95A1",
+    driven="#FF803D",
+    tones=("#607AEA", "#1FCB8E", "#BE6BA0", "#E4F02D", "#B2AEF9"),
+    scale=("#5A3FB5", "#3F76C0", "#2FA0A0", "#6CC96A", "#F2E63C"),
+    styles=_styles(
+        _Inks(
+            ink="#ECEFF3",
+            grey="#A7B0BA",
+            page="#15191E",
+            still="#333B44",
+            block="#2A3139",
+            driven="#FF803D",
+            velocity="#A9C4FF",
+            acceleration="#FFA9D2",
+        )
+    ),
+)
+
+#: Every theme by the name it is asked for.
+THEMES: Mapping[str, Theme] = FrozenDict.of({"light": LIGHT, "dark": DARK})
+
+
+def theme_named(name: str) -> Theme:
+    """The theme of a name.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is none.
+    """
+    if name not in THEMES:
+        raise UnknownNameError(f'there is no theme "{name}" {choices("themes", THEMES, name)}')
+    return THEMES[name]

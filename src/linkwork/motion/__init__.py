@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from linkwork.motion.model import Model, model_of
     from linkwork.motion.solving import solve
     from linkwork.motion.sweeping import sweep
+    from linkwork.motion.vector_loops import vector_loops
 else:
     __getattr__ = loader(
         __name__,
@@ -33,6 +34,7 @@ else:
             "model": ("Model", "model_of"),
             "solving": ("solve",),
             "sweeping": ("sweep",),
+            "vector_loops": ("vector_loops",),
         },
     )
 
@@ -52,4 +54,5 @@ __all__ = [
     "solve_configuration",
     "started_in",
     "sweep",
+    "vector_loops",
 ]

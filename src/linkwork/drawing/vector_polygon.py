@@ -1,0 +1,119 @@
+"""Where the vectors of a loop equation lie: head to tail around a closed polygon.
+
+The sum does not tell the order of its terms. Drawn in the order in which most of them end at points
+of the mechanism, they lie over its links.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from linkwork.drawing.pose import Pose
+from linkwork.results.vector_loop import LoopVector, VectorLoop
+
+__all__ = ["Edge", "polygon"]
+
+_SAME = 1e-6  # of the longest vector: places as near as this are one
+_NAMED = 0.1  # more than at any point it counts to end at one that the loop's name has
+_IN_TURN = 0.05  # and more if it is that one's turn
+_MOST = 10  # vectors whose orders are compared: 2^10 partial sums from every point
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A vector where it is drawn: its arrow's tail and tip."""
+
+    vector: LoopVector
+    tail: complex
+    tip: complex
+
+
+@dataclass(frozen=True)
+class _Step:
+    """A vector as the polygon runs through it; ``against`` the way that its arrow points."""
+
+    vector: LoopVector
+    way: complex
+    against: bool
+
+
+def polygon(loop: VectorLoop, pose: Pose) -> list[Edge]:
+    """The closed polygon of a loop equation, over the mechanism as far as it can be.
+
+    Left-hand vectors are run through forwards, right-hand ones backwards. Loops of more than ten
+    vectors stay in the order in which they are written.
+    """
+    steps = _written(loop)
+    size = max((abs(step.way) for step in steps), default=0.0)
+    if not size:
+        return []
+    best, start = -1.0, 0j
+    ordered = steps
+    for place in _starts(loop, pose):
+        worth, order = _ordered(steps, place, loop, pose, _SAME * size)
+        if worth > best + 1e-9:
+            best, start, ordered = worth, place, order
+    edges = []
+    for step in ordered:
+        after = start + step.way
+        ends = (after, start) if step.against else (start, after)
+        edges.append(Edge(step.vector, *ends))
+        start = after
+    return edges
+
+
+def _written(loop: VectorLoop) -> list[_Step]:
+    """Around the loop as it is written: the left side, then the right one from its end."""
+    left = [_Step(v, v.value, v.backwards) for v in loop.left]
+    right = [_Step(v, -v.value, not v.backwards) for v in reversed(loop.right)]
+    return left + right
+
+
+def _starts(loop: VectorLoop, pose: Pose) -> list[complex]:
+    """Where the polygon may begin, the likeliest first."""
+    named = [pose.points[word] for word in loop.label.split() if word in pose.points]
+    fixed = [pose.points[name] for name in pose.skeleton.fixed]
+    return list(dict.fromkeys([*named[:1], *fixed, 0j, *pose.points.values()]))
+
+
+def _ordered(
+    steps: Sequence[_Step], start: complex, loop: VectorLoop, pose: Pose, near: float
+) -> tuple[float, list[_Step]]:
+    """The order that is worth most from a start, and what it is worth; of equals, as written.
+
+    A partial sum depends on which vectors it has, not on their order: so the best order of a set
+    follows from those of the sets with one vector less (Held and Karp 1962).
+
+    References
+    ----------
+    M. Held, R. M. Karp, A dynamic programming approach to sequencing problems, Journal of the
+    Society for Industrial and Applied Mathematics 10 (1962) 196-210, doi:10.1137/0110015.
+    """
+    words = loop.label.split()
+    count = len(steps)
+
+    def worth(place: complex, turn: int) -> float:
+        here = [name for name, z in pose.points.items() if abs(z - place) <= near]
+        own = [name for name in here if name in words]
+        in_turn = any(words[turn % len(words)] == name for name in own)
+        return bool(here) + _NAMED * bool(own) + _IN_TURN * in_turn
+
+    if count > _MOST:
+        place, total = start, 0.0
+        for turn, step in enumerate(steps, 1):
+            place += step.way
+            total += worth(place, turn)
+        return total, list(steps)
+    best = {0: (0.0, -1)}
+    for chosen in range(1, 2**count):
+        place = start + sum(steps[i].way for i in range(count) if chosen >> i & 1)
+        # Of equals the last one written comes last.
+        before, last = max((best[chosen ^ (1 << i)][0], i) for i in range(count) if chosen >> i & 1)
+        best[chosen] = (round(before + worth(place, chosen.bit_count()), 9), last)
+    order, left = [], 2**count - 1
+    while left:
+        last = best[left][1]
+        order.append(steps[last])
+        left ^= 1 << last
+    return best[2**count - 1][0], order[::-1]

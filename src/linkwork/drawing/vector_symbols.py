@@ -1,0 +1,107 @@
+"""The vector diagram: every loop equation's vectors head to tail, in a colour of its own.
+
+An arrow points the way its vector does, whether the equation adds it or takes it off. Where several
+loops use one vector, their arrows lie side by side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from linkwork.drawing.captions import printed_formula
+from linkwork.drawing.label_placement import Choice, places_along, places_within
+from linkwork.drawing.measures import Measures
+from linkwork.drawing.pose import Pose
+from linkwork.drawing.scene import Polyline, Primitive, Role, xy
+from linkwork.drawing.vector_polygon import Edge, polygon
+from linkwork.results.vector_loop import LoopVector, VectorLoop
+
+__all__ = ["vector_edges", "vector_symbols"]
+
+_SAME = 1e-6  # of the drawn size: places as near as this are one
+_BESIDE = 1.3  # radii of a pin between arrows side by side
+_LONGEST_HEAD = 0.4  # of an arrow
+
+
+@dataclass(frozen=True)
+class _Arrow:
+    """A vector in its place: where it begins and ends as drawn, and the number of its loop."""
+
+    vector: LoopVector
+    tail: complex
+    tip: complex
+    loop: int
+
+
+def vector_edges(loops: Sequence[VectorLoop], pose: Pose) -> list[list[Edge]]:
+    """Every loop's polygon; vectors of no length, which nothing shows, left out."""
+    found = [polygon(loop, pose) for loop in loops]
+    longest = max((abs(e.tip - e.tail) for edges in found for e in edges), default=0.0)
+    return [[e for e in edges if abs(e.tip - e.tail) > _SAME * longest] for edges in found]
+
+
+def vector_symbols(
+    loops: Sequence[VectorLoop], polygons: Sequence[Sequence[Edge]], measures: Measures
+) -> tuple[list[Primitive], list[Choice]]:
+    """The arrows of every loop, and places for their names and the loops' own."""
+    arrows = [
+        _Arrow(edge.vector, edge.tail, edge.tip, number)
+        for number, edges in enumerate(polygons, 1)
+        for edge in edges
+    ]
+    drawn: list[Primitive] = []
+    names: list[Choice] = []
+    for k, arrow in enumerate(arrows):
+        twins = [other for other in arrows[:k] if _same_line(arrow, other, measures)]
+        tail, tip = _moved(arrow, len(twins), measures)
+        head = min(measures.head, _LONGEST_HEAD * abs(tip - tail))
+        drawn.append(
+            Polyline(
+                role=Role.VECTOR,
+                of=arrow.vector.name,
+                tone=arrow.loop,
+                points=(xy(tail), xy(tip)),
+                head=head,
+            )
+        )
+        if not any(other.vector.name == arrow.vector.name for other in twins):
+            text = printed_formula(arrow.vector.name)
+            line = (tail, tip)
+            names.append(
+                places_along(Role.VECTOR_NAME, arrow.vector.name, text, line, arrow.loop, measures)
+            )
+    return drawn, names + [
+        _loop_name(loop, [a for a in arrows if a.loop == k], k, measures)
+        for k, loop in enumerate(loops, 1)
+        if any(a.loop == k for a in arrows)
+    ]
+
+
+def _same_line(one: _Arrow, other: _Arrow, measures: Measures) -> bool:
+    """Whether two arrows would cover each other: both lie in one line and share a stretch of it."""
+    near = _SAME * measures.size
+    length = abs(one.tip - one.tail)
+    along = (one.tip - one.tail) / length
+    tail, tip = ((z - one.tail) * along.conjugate() for z in (other.tail, other.tip))
+    if max(abs(tail.imag), abs(tip.imag)) > near:
+        return False
+    low, high = sorted((tail.real, tip.real))
+    return min(high, length) - max(low, 0.0) > near
+
+
+def _moved(arrow: _Arrow, before: int, measures: Measures) -> tuple[complex, complex]:
+    """Where an arrow is drawn with so many others on its line: on this side or that of them."""
+    along = (arrow.tip - arrow.tail) / abs(arrow.tip - arrow.tail)
+    if (along.real, along.imag) < (0.0, 0.0):
+        along = -along
+    steps = (before + 1) // 2 * (1 if before % 2 else -1)
+    across = steps * _BESIDE * measures.pin * along * 1j
+    return arrow.tail + across, arrow.tip + across
+
+
+def _loop_name(loop: VectorLoop, arrows: list[_Arrow], number: int, measures: Measures) -> Choice:
+    """Places for a loop's name about its middle."""
+    ends = [end for arrow in arrows for end in (arrow.tail, arrow.tip)]
+    text = f"loop {printed_formula(loop.label)}"
+    return places_within(Role.LOOP_NAME, loop.label, text, ends, number, measures)

@@ -1,0 +1,56 @@
+"""In the picture of every library mechanism names cover neither each other nor symbols."""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import combinations
+
+import pytest
+
+import linkwork as lw
+from linkwork.drawing import Disc, Role, Scene, SceneOptions, Text, scene_of
+from linkwork.drawing.obstacles import Obstacles
+from linkwork.motion import vector_loops
+
+NAMES = [name for name in lw.examples() if not name.startswith("newton-")]  # those have no points
+SYMBOLS = {
+    Role.LINK, Role.PLATE, Role.INPUT, Role.SLIDER, Role.CYLINDER, Role.GROUND, Role.BELT,
+    Role.PIN, Role.POINT, Role.TRACED,
+}  # fmt: skip
+_TOUCHED = 2.0  # of cost: less is to lie inside a plate
+
+
+@cache
+def solved(name: str) -> tuple[lw.Mechanism, lw.Position]:
+    mechanism = lw.example(name)
+    return mechanism, mechanism.solve()
+
+
+def assert_texts_are_apart(scene: Scene) -> None:
+    for one, other in combinations(scene.select(Text), 2):
+        assert one.box.overlap(other.box) == 0, (one.text, other.text)
+    for disc in scene.select(Disc, Role.PIN):
+        for text in scene.select(Text):
+            assert text.box.distance(disc.centre) >= 0.99 * disc.radius, (text.text, disc.of)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_names_cover_neither_each_other_nor_symbols(name):
+    _, position = solved(name)
+    scene = scene_of(position)
+    assert_texts_are_apart(scene)
+    for symbol in scene.primitives:
+        if symbol.role in SYMBOLS:
+            obstacle = Obstacles.of([symbol])
+            for text in scene.select(Text):
+                box = text.box.grown(-0.05 * text.height)
+                assert obstacle.cost([box]) < _TOUCHED, (text.text, symbol.role, symbol.of)
+
+
+@pytest.mark.parametrize("name", NAMES[::5])
+def test_names_of_vectors_cover_neither_each_other_nor_pins(name):
+    mechanism, position = solved(name)
+    if not mechanism.loop_equations.loops:
+        pytest.skip("no loops: nothing but wheels or cams")
+    loops = vector_loops(mechanism.model, position)
+    assert_texts_are_apart(scene_of(position, options=SceneOptions(vectors=loops)))
