@@ -1,0 +1,84 @@
+"""Rows of a motion as lines: broken where there is no position, no way, or an angle jumps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from linkwork.drawing.charts.chart import Mark, Rule
+from linkwork.drawing.charts.columns import Column
+from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.results.motion import LimitKind, Motion
+
+__all__ = ["breaks", "broken", "limit_marks", "runs"]
+
+_DEAD = LimitKind.DEAD_POINT.word
+_SINGULAR = (_DEAD, LimitKind.CHANGE_POINT.word, LimitKind.UNKNOWN.word)
+
+
+def breaks(motion: Motion, lead: Array, *columns: Column) -> BoolArray:
+    """Between which neighbouring rows nothing may be drawn, shape (N - 1,).
+
+    Rows on different branches are not neighbours on the way, nor are two dead points without a
+    row between them: there may be none. An angle jumps if it changes by more than half a turn
+    other than its derivative says.
+
+    Parameters
+    ----------
+    lead : array (N,)
+        The leading input, everyday units.
+    """
+    branch = np.array(motion.branch)
+    dead = np.array(motion.limit) == _DEAD
+    found: BoolArray = (branch[1:] != branch[:-1]) | (dead[1:] & dead[:-1])
+    for column in columns:
+        if column.turn:
+            found |= _jumps(column, np.diff(lead))
+    return found
+
+
+def _jumps(column: Column, dx: Array) -> BoolArray:
+    dy = np.diff(column.values)
+    expected = np.zeros(len(dy))
+    if column.slope is not None:
+        # the first finite one of both ends: at a dead point there is none
+        ahead, behind = column.slope[:-1], column.slope[1:]
+        slope = np.where(np.isfinite(ahead), ahead, behind)
+        expected = np.where(np.isfinite(slope), slope, 0.0) * dx
+    half = 0.5 * column.turn
+    jumps: BoolArray = (np.abs(dy) > half) & (np.abs(dy - expected) > half)
+    return jumps
+
+
+def broken(values: Array, where: BoolArray) -> Array:
+    """Values (N,) with NaN between the rows that ``where`` (N - 1,) parts."""
+    return np.insert(values, np.flatnonzero(where) + 1, np.nan)
+
+
+def runs(x: Array, y: Array) -> Iterator[tuple[Array, Array]]:
+    """The pieces of a line between its NaN."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], np.isfinite(x + y).astype(int), [0]))))
+    for start, stop in zip(edges[::2], edges[1::2], strict=True):
+        yield x[start:stop], y[start:stop]
+
+
+def limit_marks(
+    motion: Motion, across: Column, column: Column, tone: int
+) -> tuple[list[Mark], list[Rule]]:
+    """Dead points, change points and extremes of a column: marks on it, rules where it is not.
+
+    Derivatives and conditions have no value at a dead point; only its place is shown.
+    """
+    marks: list[Mark] = []
+    rules: list[Rule] = []
+    for k, kind in enumerate(motion.limit):
+        x, y = float(across.values[k]), float(column.values[k])
+        word, _, of = kind.partition(" of ")
+        if not kind or (of and of != column.name) or not np.isfinite(x):
+            continue
+        if np.isfinite(y) and not (column.rate and word == _DEAD):
+            marks.append(Mark(x=x, y=y, tone=tone, kind=word))
+        elif word in _SINGULAR:
+            rules.append(Rule(along="x", at=x, kind=word))
+    return marks, rules
