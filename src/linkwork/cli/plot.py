@@ -67,6 +67,7 @@ __all__ = ["plot"]
 @click.pass_context
 def plot(
     context: click.Context,
+    /,
     file: str,
     output: str,
     names: tuple[str, ...],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -15,7 +14,7 @@ from linkwork.results.circuits import Branch, Circuits
 
 __all__ = ["branch_chart"]
 
-_MOST_COLUMNS = 4
+_USUAL_COLUMNS, _MOST_COLUMNS = 3, 4
 _STEPS = {1: 8, 2: 4, 3: 4}  # ticks of a turn, by the number of columns
 
 
@@ -60,11 +59,10 @@ def branch_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
 
 
 def _columns(count: int) -> int:
-    """How many panels stand in a row: as many as leave the last row fullest."""
-    if count <= 3:
-        return max(count, 1)
-    widths = (2,) if count == 4 else (3, 4)
-    return min(widths, key=lambda n: (math.ceil(count / n) * n - count, n))
+    """How many panels stand in a row."""
+    if count == 4:
+        return 2
+    return max(1, min(count, _USUAL_COLUMNS if count <= _USUAL_COLUMNS**2 else _MOST_COLUMNS))
 
 
 def _axis(axis: Axis, columns: int) -> Axis:

@@ -112,7 +112,7 @@ def column_of(motion: Motion, name: str) -> Column:
         if rate is None:
             raise InputError(
                 f'"{point}" is a point: plot a coordinate, "{point}.x" or "{point}.y", or its '
-                'path, kind="path"'
+                'path, kind="path" (--kind path)'
             )
         return _size_of_rate(motion, point, rate)
     return _quantity(motion, quantity, rate)

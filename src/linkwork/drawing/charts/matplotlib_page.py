@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -94,19 +93,26 @@ def legend_entries(chart: Chart, theme: ChartTheme) -> list[Any]:
 
     curves = [curve for panel in chart.panels for curve in panel.curves if not curve.quiet]
     names = {curve.name: (curve.tone, curve.pen) for curve in curves}
-    found = [
-        Line2D([], [], label=name, **curve_style(theme, tone, pen))
-        for name, (tone, pen) in names.items()
-    ]
-    for kind in dict.fromkeys(mark.kind for panel in chart.panels for mark in panel.marks):
-        if kind != "station":
-            found.append(Line2D([], [], label=kind, **mark_style(theme, kind, theme.ink)))
-    said = {entry.get_label() for entry in found}
-    for kind in dict.fromkeys(rule.kind for panel in chart.panels for rule in panel.rules):
-        if kind and kind not in said:
-            found.append(Line2D([], [], label=kind, **rule_style(theme, kind)))
+    marks = dict.fromkeys(mark.kind for panel in chart.panels for mark in panel.marks)
+    rules = dict.fromkeys(rule.kind for panel in chart.panels for rule in panel.rules)
     bands = dict.fromkeys(band.name for panel in chart.panels for band in panel.bands)
-    entries: Sequence[Any] = [*found, *(Patch(label=name, **band_style(theme)) for name in bands)]
+    entries = [
+        *(
+            Line2D([], [], label=name, **curve_style(theme, tone, pen))
+            for name, (tone, pen) in names.items()
+        ),
+        *(
+            Line2D([], [], label=kind, **mark_style(theme, kind, theme.ink))
+            for kind in marks
+            if kind != "station"
+        ),
+        *(
+            Line2D([], [], label=kind, **rule_style(theme, kind))
+            for kind in rules
+            if kind and kind not in marks
+        ),
+        *(Patch(label=name, **band_style(theme)) for name in bands),
+    ]
     return [e for e in entries if chart.legend is None or e.get_label() in chart.legend]
 
 

@@ -26,7 +26,7 @@ _QUIET = 1.0
 _DOT = 2.2  # points: the diameter of a value that stands alone
 _TICK = 0.9 * SMALL
 _STATION, _STATION_TEXT = 3.2, 7.5
-_ROOM = 1.08  # of a plane's size: what is shown of it
+_ROOM = 1.22  # of a plane's size: what is shown of it, so that stations have room
 _LABEL_AT = 0.62  # inches left of a panel
 _MOST_TICKS = ((4.0, 8), (1.5, 5), (0.0, 3))  # by the length of a side [inches]
 _SHAPES = {"dead point": "o", "change point": "D", "maximum": "^", "minimum": "v"}
@@ -186,7 +186,9 @@ def _to_one_scale(ax: Axes, panel: Panel, across: Axis) -> None:
 def _name(ax: Axes, panel: Panel, theme: ChartTheme, pad: float) -> None:
     if panel.title:
         place: dict[str, Any] = {"loc": "left", "pad": pad, "parse_math": False}
-        ax.set_title(panel.title, fontsize=SMALL, color=theme.ink, **place)
+        widest = max(text_width(line, 1.0) for line in panel.title.split("\n"))
+        size = min(SMALL, _length(ax, "x") * 72 / widest)
+        ax.set_title(panel.title, fontsize=size, color=theme.ink, **place)
 
 
 def _polar_sides(ax: Axes, panel: Panel, across: Axis, theme: ChartTheme) -> None:
@@ -287,15 +289,15 @@ def _rounding_scale(ax: Axes, name: str, ticked: TickedAxis) -> None:
 
 
 def _power_text(value: float) -> str:
-    """``20``, ``10⁻¹⁴``, ``5·10⁶``."""
+    """``20``, ``10⁻¹⁴``, ``−5·10⁶``."""
     if value == 0:
         return "0"
     power = math.floor(math.log10(abs(value)) + 1e-9)
     if -3 <= power < 4:
         return _plain(value)
-    head = _plain(round(value / 10.0**power, 6))
+    head = f"{value / 10.0**power:.6g}".replace("-", "\u2212")
     tail = f"10{str(power).translate(_SUPERSCRIPTS)}"
-    return tail if head == "1" else f"{head}·{tail}"
+    return {"1": tail, "\u22121": f"\u2212{tail}"}.get(head, f"{head}·{tail}")
 
 
 def _tick_text(axis: Axis) -> Callable[[float], str]:
@@ -308,6 +310,9 @@ def _tick_text(axis: Axis) -> Callable[[float], str]:
 
 
 def _plain(value: float) -> str:
+    """``0.25``, ``−30``, ``1.5·10⁶``."""
+    if value and not 1e-4 <= abs(value) < 1e5:
+        return _power_text(value)
     return f"{value:.6g}".replace("-", "\u2212")
 
 

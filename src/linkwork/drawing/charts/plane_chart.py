@@ -153,7 +153,12 @@ def _plane(
         for tone, (name, z) in enumerate(paths.items(), start=1)
     )
     room = _room(motion, list(paths.values()), pole)
-    marks = [mark for k, z in enumerate(paths.values(), 1) for mark in room.marks(motion, z, k)]
+    told: list[complex] = []
+    marks = [
+        mark
+        for tone, path in enumerate(paths.values(), start=1)
+        for mark in (*room.limits(motion, path, tone), *room.stations(motion, path, tone, told))
+    ]
     if pole:
         marks.append(Mark(x=0.0, y=0.0, tone=0, kind="pole"))
     rules = (Rule(along="x", at=0.0), Rule(along="y", at=0.0)) if pole else ()
@@ -187,14 +192,22 @@ class _Room:
     def shows(self, place: complex) -> bool:
         return bool(np.isfinite(place)) and not 0 < self.radius < abs(place - self.centre)
 
-    def marks(self, motion: Motion, path: ComplexArray, tone: int) -> Iterator[Mark]:
-        """Limits on a path, and stations with their input beside them where there is room."""
+    def limits(self, motion: Motion, path: ComplexArray, tone: int) -> Iterator[Mark]:
+        """Dead points and change points on a path."""
         for k, kind in enumerate(motion.limit):
             if kind in ("dead point", "change point") and self.shows(path[k]):
                 yield Mark(x=path[k].real, y=path[k].imag, tone=tone, kind=kind)
-        told: list[complex] = []
+
+    def stations(
+        self, motion: Motion, path: ComplexArray, tone: int, told: list[complex]
+    ) -> Iterator[Mark]:
+        """Stations on a path; where there is room, with their input beside them.
+
+        ``told`` are the places of texts, which grow by those of this path.
+        """
+        found = np.isfinite(path)
+        middle = complex(path[found].mean()) if found.any() else 0j
         dots: list[complex] = []
-        middle = complex(np.nanmean(path[np.isfinite(path)])) if np.isfinite(path).any() else 0j
         for k, text in _stations(motion):
             here = complex(path[k])
             if not self.shows(here) or any(abs(here - d) < _SAME * self.size for d in dots):

@@ -21,7 +21,8 @@ _RADIANS = (*_FINE[:-1], *(math.pi / part for part in (12, 6, 4, 2)))
 _TURNS = (0.5, *(d * 10.0**k for k in range(9) for d in (1, 2, 5)))
 _MOST_STEPS = 5
 _MOST_ACROSS = 9
-_FREE = 0.1  # of a step between the edge and a curve that could run along it
+_FREE = 0.1  # of a step: a curve this near to an edge runs along it,
+_ALONG = 0.1  # if as much of it does; it would look like the edge
 
 _TAIL = 0.1  # of the input's range at either end of the values, where curves run to infinity
 _LEVEL = 1e-9  # of its size: what a quantity varies by at most if it is constant
@@ -44,12 +45,21 @@ def angle_ends(values: Array, unit: AngleUnit) -> tuple[tuple[float, float], flo
     if most - least <= _LEVEL * unit.turn:
         smallest = 1.0 if unit is AngleUnit.DEGREE else 0.05
         least = most = 0.5 * (least + most)
-    free = _FREE if most - least <= unit.turn / 2 else 0.0
+    found = values[np.isfinite(values)]
     for step in _steps(unit):
-        first, last = math.floor(least / step - free), math.ceil(most / step + free)
-        if step >= smallest and last - first <= _MOST_STEPS:
+        if step < smallest:
+            continue
+        first, last = math.floor(least / step), math.ceil(most / step)
+        first -= _along(found / step - first)
+        last += _along(last - found / step)
+        if last - first <= _MOST_STEPS:
             return (first * step, last * step), step
     return (least, most), 0.0
+
+
+def _along(away: Array) -> int:
+    """One step more, if a curve runs along an edge; ``away`` [steps] are its distances."""
+    return int(float((away < _FREE).mean()) > _ALONG)
 
 
 def across_step(span: float, unit: AngleUnit) -> float:
