@@ -125,6 +125,8 @@ def _circuits(mechanism: Mechanism, kind: str, options: dict[str, Any]) -> Circu
         if value not in ("", None, False)
     ]
     if ignored:
-        raise InputError(f"--kind {kind} shows whole circuits: leave out {', '.join(ignored)}")
+        raise InputError(
+            f"--kind {kind} shows whole circuits: leave out {', '.join(sorted(ignored))}"
+        )
     with progress("following circuits") as tell:
         return mechanism.circuits(progress=tell)

@@ -52,7 +52,7 @@ class Column:
     turn : float
         A full turn in that unit, 0 if it is no angle.
     slope : array (N,), optional
-        Its derivative by the input, both as they are counted here.
+        Of an angle that may jump: its derivative by the input, both as they are counted here.
     size : float
         What is large for it: differences of a billionth are rounding.
     scale, pen

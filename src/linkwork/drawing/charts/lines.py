@@ -14,15 +14,17 @@ from linkwork.results.motion import LimitKind, Motion
 __all__ = ["breaks", "broken", "limit_marks", "runs"]
 
 _DEAD = LimitKind.DEAD_POINT.word
+_FURTHER = 1.5  # steps of the table: rows that are further apart are no neighbours
 _SINGULAR = (_DEAD, LimitKind.CHANGE_POINT.word, LimitKind.UNKNOWN.word)
 
 
 def breaks(motion: Motion, lead: Array, *columns: Column) -> BoolArray:
     """Between which neighbouring rows nothing may be drawn, shape (N - 1,).
 
-    Rows on different branches are not neighbours on the way, nor are two dead points without a
-    row between them: there may be none. An angle jumps if it changes by more than half a turn
-    other than its derivative says.
+    Rows on different branches are not neighbours on the way, nor are rows whose inputs are further
+    apart than the table's, which are named whole turns away, nor two dead points without a row
+    between them: there may be none. An angle jumps if it changes by more than half a turn other
+    than its derivative says.
 
     Parameters
     ----------
@@ -32,20 +34,21 @@ def breaks(motion: Motion, lead: Array, *columns: Column) -> BoolArray:
     branch = np.array(motion.branch)
     dead = np.array(motion.limit) == _DEAD
     found: BoolArray = (branch[1:] != branch[:-1]) | (dead[1:] & dead[:-1])
+    steps = np.abs(np.diff(lead[motion.asked]))
+    if len(steps):
+        found |= np.abs(np.diff(lead)) > _FURTHER * steps.max()
     for column in columns:
-        if column.turn:
-            found |= _jumps(column, np.diff(lead))
+        if column.turn and column.slope is not None:
+            found |= _jumps(column, column.slope, np.diff(lead))
     return found
 
 
-def _jumps(column: Column, dx: Array) -> BoolArray:
+def _jumps(column: Column, slope: Array, dx: Array) -> BoolArray:
     dy = np.diff(column.values)
-    expected = np.zeros(len(dy))
-    if column.slope is not None:
-        # the first finite one of both ends: at a dead point there is none
-        ahead, behind = column.slope[:-1], column.slope[1:]
-        slope = np.where(np.isfinite(ahead), ahead, behind)
-        expected = np.where(np.isfinite(slope), slope, 0.0) * dx
+    # the first finite one of both ends: at a dead point there is none
+    ahead, behind = slope[:-1], slope[1:]
+    steady = np.where(np.isfinite(ahead), ahead, behind)
+    expected = np.where(np.isfinite(steady), steady, 0.0) * dx
     half = 0.5 * column.turn
     jumps: BoolArray = (np.abs(dy) > half) & (np.abs(dy - expected) > half)
     return jumps

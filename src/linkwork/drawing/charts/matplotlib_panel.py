@@ -26,7 +26,7 @@ _QUIET = 1.0
 _DOT = 2.2  # points: the diameter of a value that stands alone
 _TICK = 0.9 * SMALL
 _STATION, _STATION_TEXT = 3.2, 7.5
-_ROOM = 1.22  # of a plane's size: what is shown of it, so that stations have room
+_ROOM = 0.33  # inches around what a plane shows, for the texts of stations
 _LABEL_AT = 0.62  # inches left of a panel
 _MOST_TICKS = ((4.0, 8), (1.5, 5), (0.0, 3))  # by the length of a side [inches]
 _SHAPES = {"dead point": "o", "change point": "D", "maximum": "^", "minimum": "v"}
@@ -174,9 +174,10 @@ def _to_one_scale(ax: Axes, panel: Panel, across: Axis) -> None:
     wanted = []
     for axis, ticked in ((across, ax.xaxis), (panel.axis, ax.yaxis)):
         low, high = axis.ends or ticked.get_data_interval()
-        wanted.append((0.5 * (low + high), 0.5 * (high - low) * (1.0 if axis.ends else _ROOM)))
+        wanted.append((0.5 * (low + high), 0.5 * (high - low)))
     sides = [_length(ax, name) for name in "xy"]
-    scale = max(half / side for (_, half), side in zip(wanted, sides, strict=True)) or 1.0
+    room = [max(side - 2 * _ROOM, 0.5 * side) for side in sides]
+    scale = max(half / side for (_, half), side in zip(wanted, room, strict=True)) or 1.0
     (x, _), (y, _) = wanted
     ax.set_xlim(x - scale * sides[0], x + scale * sides[0])
     ax.set_ylim(y - scale * sides[1], y + scale * sides[1])
