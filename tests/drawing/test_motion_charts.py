@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -96,7 +97,7 @@ def test_the_velocity_of_a_point_is_the_length_of_the_vector():
 
 
 def test_many_angles_are_spread_over_panels_with_a_colour_for_each():
-    chart = motion_chart(swept("dixon-one"), list(swept("dixon-one").unknowns) + ["a1b2"])
+    chart = motion_chart(swept("dixon-one"), [*swept("dixon-one").unknowns, "a1b2"])
     sizes = [len(panel.curves) for panel in chart.panels]
     assert max(sizes) <= 6
     assert max(sizes) - min(sizes) <= 1
@@ -220,7 +221,7 @@ def test_a_wrapped_line_is_cut_as_often_as_it_passes_a_whole_turn():
     planet = curves_of(motion_chart(motion, ["planet"], wrapped=True))[0]
     assert len(pieces(planet)) - 1 == round(np.ptp(motion["planet"]) / 360)
     places = [part[[0, -1], 1] for part in pieces(planet)]
-    for before, after in zip(places[:-1], places[1:], strict=True):
+    for before, after in pairwise(places):
         assert abs(before[-1] - after[0]) == pytest.approx(360)
 
 
