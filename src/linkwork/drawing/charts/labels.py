@@ -17,8 +17,8 @@ def printed_unit(unit: str) -> str:
 
 
 def with_unit(text: str, unit: str) -> str:
-    """``ds₁₆/dθ₁₂ [mm/rad]``; a number without a unit stands alone."""
-    return f"{text} [{printed_unit(unit)}]" if unit else text
+    """``ds₁₆/dθ₁₂ [mm/rad]``; a number without a unit, or by one without, stands alone."""
+    return f"{text} [{printed_unit(unit)}]" if unit.replace("^2", "") not in ("", "1/1") else text
 
 
 def axis_label(name: str, unit: str) -> str:

@@ -26,6 +26,7 @@ _QUIET = 1.0
 _DOT = 2.2  # points: the diameter of a value that stands alone
 _TICK = 0.9 * SMALL
 _STATION, _STATION_TEXT = 3.2, 7.5
+_BESIDE = 0.35  # of a unit vector: a text in this direction is beside what it belongs to
 _ROOM = 0.33  # inches around what a plane shows, for the texts of stations
 _LABEL_AT = 0.62  # inches left of a panel
 _MOST_TICKS = ((4.0, 8), (1.5, 5), (0.0, 3))  # by the length of a side [inches]
@@ -33,6 +34,7 @@ _SHAPES = {"dead point": "o", "change point": "D", "maximum": "^", "minimum": "v
 #: Curves of one colour differ in these.
 _DASHES: tuple[Any, ...] = ("solid", (0, (4.0, 1.6)), (0, (1.0, 1.2)), (0, (4.0, 1.4, 1.0, 1.4)))
 _RULE_DASHES = {"dead point": (0, (1.0, 1.6)), "change point": (0, (5.0, 2.0, 1.0, 2.0))}
+_LARGE = 1e5  # from here on numbers are written with powers of ten
 _ROUNDING = 1e-16  # residuals below it are shown as zero
 _DECADES = 3  # an axis over more of them has ticks at powers of ten only
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
@@ -130,10 +132,11 @@ def _mark(ax: Axes, mark: Mark, turned: float, theme: ChartTheme, leaves: bool) 
         ax.annotate(
             mark.text,
             (mark.x * turned, mark.y),
-            xytext=(12.0 * x, 9.0 * y),
+            xytext=(5.5 * x, 5.5 * y),
             textcoords="offset points",
-            ha="center",
-            va="center",
+            # beside a dot, the nearer end of the text stands at it; above and below, its middle
+            ha="left" if x > _BESIDE else "right" if x < -_BESIDE else "center",
+            va="bottom" if y > _BESIDE else "top" if y < -_BESIDE else "center",
             fontsize=_STATION_TEXT,
             color=theme.faint,
             zorder=6,
@@ -238,7 +241,14 @@ def _scale(ticked: TickedAxis, axis: Axis, show: Callable[[float, float], Any]) 
     if axis.ends is not None:
         show(*axis.ends)
     text = _tick_text(axis)
-    ticked.set_major_formatter(lambda value, _: text(value))
+    ticked.set_major_formatter(
+        lambda value, _: (_power_text if _large(ticked, axis) else text)(value)
+    )
+
+
+def _large(ticked: TickedAxis, axis: Axis) -> bool:
+    """Whether some ticks need a power of ten: then all of them have it."""
+    return not axis.turn and max(map(abs, ticked.get_view_interval())) >= _LARGE
 
 
 def _length(ax: Axes, name: str) -> float:
@@ -312,7 +322,7 @@ def _tick_text(axis: Axis) -> Callable[[float], str]:
 
 def _plain(value: float) -> str:
     """``0.25``, ``−30``, ``1.5·10⁶``."""
-    if value and not 1e-4 <= abs(value) < 1e5:
+    if value and not 1e-4 <= abs(value) < _LARGE:
         return _power_text(value)
     return f"{value:.6g}".replace("-", "\u2212")
 

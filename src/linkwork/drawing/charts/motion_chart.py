@@ -16,6 +16,7 @@ from linkwork.drawing.charts.lines import breaks, broken, limit_marks, runs
 from linkwork.drawing.charts.overlap import layered
 from linkwork.drawing.charts.scales import across_step, angle_ends, finite_ends, level_ends
 from linkwork.drawing.charts.turns import Window, origin, rounded, turn_axis
+from linkwork.drawing.scene import text_width
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
@@ -23,7 +24,7 @@ from linkwork.results.motion import Motion
 __all__ = ["across_axis", "check_found", "columns_of", "motion_chart", "shared_panels"]
 
 _MOST_CURVES = 6  # in a panel: as many as there are colours
-_NAMED = 30  # letters of the names of curves that a label has room for
+_BESIDE = 15.0  # em: the longest label beside a panel that names all of its curves
 _BEYOND = 4.0  # times as far as most of it: a curve that runs to infinity at a dead point
 
 
@@ -128,9 +129,10 @@ def _panel(
 def _value_axis(motion: Motion, group: Sequence[Column], curves: Sequence[Curve]) -> Axis:
     """The axis of columns that share a panel: what it is called, what it shows."""
     first = group[0]
-    names = ", ".join(column.label for column in group)
-    label = names if len(names) <= _NAMED or len(group) == 1 else first.measure
-    axis = Axis(label=with_unit(label, first.unit), turn=first.turn, scale=first.scale)
+    label = with_unit(", ".join(column.label for column in group), first.unit)
+    if len(group) > 1 and text_width(label, 1.0) > _BESIDE:
+        label = with_unit(first.measure, first.unit)
+    axis = Axis(label=label, turn=first.turn, scale=first.scale)
     values = np.concatenate([curve.y for curve in curves])
     if not np.isfinite(values).any() or first.scale is not Scale.LINEAR:
         return axis

@@ -24,6 +24,7 @@ _HEIGHTS = (3.4, 2.4, 1.9)  # of a graph over the width of the page: alone, of t
 _CELL = 0.75  # height of a graph by its width, where several stand side by side
 _PLANE = 4.6  # the longer side of a plane or a polar panel, if there is but one
 _FLATTEST, _TALLEST = 0.4, 1.15  # height of a plane by its width
+_LOWEST = 1.7  # height of a plane: its label has room beside it
 _RIM = 0.3  # around a polar panel, for the angles
 
 
@@ -106,7 +107,8 @@ def _cells(chart: Chart, ratio: float) -> tuple[list[tuple[float, float, float, 
         tall = _CELL * wide if columns > 1 else _HEIGHTS[min(count, len(_HEIGHTS)) - 1]
     else:
         wide = min(wide, _PLANE)
-        ratio = min(max(ratio, _FLATTEST), _TALLEST) if shape is Shape.PLANE else 1.0
+        flattest = max(_FLATTEST, _LOWEST / wide)
+        ratio = min(max(ratio, flattest), _TALLEST) if shape is Shape.PLANE else 1.0
         tall = wide * ratio
     rows = math.ceil(count / columns)
     names = max(len(panel.title.split("\n")) if panel.title else 0 for panel in chart.panels)

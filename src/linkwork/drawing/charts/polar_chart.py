@@ -47,7 +47,7 @@ def polar_chart(motion: Motion, names: Sequence[str] = (), *, against: str = "")
     if not across.turn:
         raise InputError(
             f'a polar plot is over an angle, and "{across.name}" is none: name an angle with '
-            f"against= (--against), as in {_an_angle(motion)}"
+            f"against= (--against){_an_angle(motion)}"
         )
     columns = columns_of(motion, names or _usual(motion))
     panels = [_round(panel) for panel in shared_panels(motion, across, columns)]
@@ -71,8 +71,9 @@ def _usual(motion: Motion) -> list[str]:
 
 
 def _an_angle(motion: Motion) -> str:
+    """One that there is, for the end of a message."""
     angles = [n for n, series in motion.unknowns.items() if series.quantity.kind is Kind.ANGLE]
-    return f'"{angles[0]}"' if angles else "an output that is one"
+    return f', as in "{angles[0]}"' if angles else ""
 
 
 def _round(panel: Panel) -> Panel:

@@ -66,7 +66,7 @@ LIGHT_CHART = ChartTheme(
 )
 
 DARK_CHART = ChartTheme(
-    background="#15181D",
+    background="#15191E",
     ink="#F2F3F5",
     faint="#A9AFB8",
     rule="#474C55",
