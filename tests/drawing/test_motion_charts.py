@@ -160,6 +160,27 @@ def test_no_line_joins_two_branches():
     assert sum(map(len, parts)) == motion.found.sum()
 
 
+def test_branches_that_meet_at_a_dead_point_are_not_joined_beyond_the_table():
+    motion = lw.example("slider-input").sweep(stop=158.5, step=0.5, through=True, certify=False)
+    [change] = np.flatnonzero([a != b for a, b in pairwise(motion.branch)])
+    assert motion["d"][change + 1] - motion["d"][change] < 0.5  # nearer than rows of the table
+    [curve] = curves_of(motion_chart(motion, ["θ2"]))
+    first, second, beyond = pieces(curve)
+    assert len(first) == change + 1
+    assert second[0].tolist() == [motion["d"][change + 1], motion["θ2"][change + 1]]
+    assert len(beyond) == 1  # the other dead point lies outside the table
+
+
+def test_a_condition_at_a_dead_point_is_no_number_along_a_circuit_either():
+    motion = lw.example("rapier-drive-limited").circuits(certify=False)[0].motion
+    at = motion.condition[[kind == "dead point" for kind in motion.limit]]
+    assert at.min() > 1e12  # infinite, but for rounding
+    [panel] = motion_chart(motion, ["condition"]).panels
+    assert np.nanmax(panel.curves[0].y) < 1e9
+    assert not panel.marks
+    assert {rule.kind for rule in panel.rules} == {"dead point"}
+
+
 def test_extremes_are_marked_on_their_own_curve_only():
     motion = swept("rapier-drive-limited", through=True, limits_of=("s16",))
     chart = motion_chart(motion, ["s16", "theta13"])

@@ -64,10 +64,11 @@ def test_texts_of_stations_keep_apart():
         [panel] = chart.panels
         every = np.concatenate([[c.x, c.y] for c in panel.curves], axis=1)
         size = np.nanmax(np.nanmax(every, axis=1) - np.nanmin(every, axis=1))
-        told = np.array([(m.x + 1j * m.y) for m in stations(chart) if m.text])
-        away = np.abs(told[:, None] - told) + 10 * size * np.eye(len(told))
-        assert len(told) >= 3
-        assert away.min() > 0.005 * size
+        marks = [mark for mark in stations(chart) if mark.text]
+        places = np.array([(m.x + 1j * m.y) + 0.045 * size * complex(*m.away) for m in marks])
+        away = np.abs(places[:, None] - places) + 10 * size * np.eye(len(places))
+        assert len(marks) >= 3
+        assert away.min() > 0.09 * size
 
 
 def test_without_traced_points_the_last_moving_one_is_taken():
@@ -290,6 +291,10 @@ def test_every_branch_stands_in_front_of_the_others_once(name):
         np.testing.assert_array_equal(own.y, together.curves[k].y)
         assert len(others) == len(branches) - 1
         assert panel.axis == together.axis
+        line = np.stack([own.x, own.y], axis=1)
+        size = np.nanmax(np.abs(line), axis=0)
+        for mark in panel.marks:
+            assert (np.abs(line - (mark.x, mark.y)) <= 1e-8 * size).all(axis=1).any()
     marked = {(m.x, m.y) for panel in chart.panels for m in panel.marks}
     assert marked == {(m.x, m.y) for m in together.marks}
 

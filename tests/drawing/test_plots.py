@@ -114,12 +114,17 @@ def test_planes_are_drawn_to_one_scale():
         assert x1 - x0 == pytest.approx(y1 - y0, rel=1e-6)
 
 
-def test_large_numbers_are_written_with_powers_of_ten():
+def test_large_numbers_are_written_with_powers_of_ten_along_the_whole_axis():
     motion = swept("slider-crank-engine")
     texts = svg_texts(render(motion_plot(motion, ["s.acceleration"]), "svg"))
-    assert "−10⁶" in texts
+    assert {"−10⁶", "−5·10⁵", "0", "5·10⁵"} <= set(texts)
     assert not any("e+" in text for text in texts)
     assert "acceleration of s [mm/s²]" in texts
+    hodograph = motion_plot(swept("four-bar"), ["B"], kind="hodograph")
+    page = chart_figure(hodograph, LIGHT)
+    page.canvas.draw()
+    across = [label.get_text() for label in page.axes[1].get_xticklabels()]
+    assert {"−10⁵", "−5·10⁴", "0", "5·10⁴"} <= set(across)
 
 
 def test_a_lone_position_is_a_dot():

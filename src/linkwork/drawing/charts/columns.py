@@ -97,7 +97,10 @@ def column_of(motion: Motion, name: str) -> Column:
     """
     if name in _EVIDENCE:
         scale, pen = _EVIDENCE[name]
-        values = np.where(motion.found, getattr(motion, name).astype(float), np.nan)
+        shown = motion.found
+        if name == "condition":  # infinite at dead points but for rounding
+            shown = shown & ~np.isin(motion.limit, ("dead point", "change point"))
+        values = np.where(shown, getattr(motion, name).astype(float), np.nan)
         label = name.replace("_", " ")
         return Column(name=name, label=label, unit="", measure="", values=values, scale=scale,
                       pen=pen)  # fmt: skip

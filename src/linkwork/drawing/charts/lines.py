@@ -80,7 +80,7 @@ def limit_marks(
         word, _, of = kind.partition(" of ")
         if not kind or (of and of != column.name) or not np.isfinite(x):
             continue
-        if np.isfinite(y) and not (column.rate and word == _DEAD):
+        if np.isfinite(y):
             marks.append(Mark(x=x, y=y, tone=tone, kind=word))
         elif word in _SINGULAR:
             rules.append(Rule(along="x", at=x, kind=word))
