@@ -321,6 +321,12 @@ def test_columns_can_stand_over_each_other():
     assert chart.axis.ends is None
 
 
+@pytest.mark.parametrize("against", ["residual", "iterations"])
+def test_nothing_joins_rows_over_what_is_scattered(against):
+    chart = motion_chart(swept("four-bar"), ["B.x"], against=against)
+    assert [curve.pen for curve in curves_of(chart)] == [Pen.DOTS]
+
+
 def test_the_leading_input_is_the_one_that_moves():
     motion = swept("three-rpr")
     moving = [name for name, values in motion.inputs.items() if np.ptp(values)]

@@ -134,6 +134,11 @@ def test_negative_radii_have_a_circle_at_zero():
     assert [(rule.along, rule.at) for rule in panel.rules] == [("y", 0.0)]
 
 
+def test_rings_of_angles_stand_at_parts_of_a_turn_from_zero_on():
+    [panel] = motion_plot(swept("rapier-drive"), ["θ13"], kind="polar").panels
+    assert (panel.axis.ends, panel.axis.step) == ((0, 225), 45)
+
+
 def test_a_polar_plot_of_nothing_in_particular_shows_lengths_or_speeds():
     told = {
         name: [curve.name for curve in motion_plot(swept(name), kind="polar").panels[0].curves]

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from linkwork.drawing.captions import reached_caption
-from linkwork.drawing.charts.chart import Axis, Chart, Curve, Mark, Panel, Rule, Scale
+from linkwork.drawing.charts.chart import Axis, Chart, Curve, Mark, Panel, Pen, Rule, Scale
 from linkwork.drawing.charts.columns import Column, abscissa_of, column_of, lead_of
 from linkwork.drawing.charts.labels import with_unit
 from linkwork.drawing.charts.lines import breaks, broken, limit_marks, runs
@@ -115,11 +115,12 @@ def _panel(
         tone = tones[column.name]
         where = breaks(motion, motion.inputs[lead_of(motion)], across, column)
         x, y = broken(across.values, where), broken(column.values, where)
-        curves.append(Curve(x=x, y=y, tone=tone, name=column.label, pen=column.pen))
+        pen = Pen.DOTS if Pen.DOTS in (across.pen, column.pen) else Pen.LINE
+        curves.append(Curve(x=x, y=y, tone=tone, name=column.label, pen=pen))
         own, gaps = limit_marks(motion, across, column, tone)
         marks, rules = marks + own, rules + gaps
     axis = _value_axis(motion, group, curves)
-    if wrapped and axis.turn:
+    if wrapped and axis.turn and any(np.isfinite(curve.y).any() for curve in curves):
         axis, curves, marks = _wrapped(motion, axis, curves, marks)
     drawn = tuple(layered(curves)) if len(curves) > 1 else tuple(curves)
     unique = tuple(dict.fromkeys(rules))

@@ -21,6 +21,8 @@ def layered(curves: Sequence[Curve]) -> list[Curve]:
     """The curves, each with the number of tones drawn later that hide much of it."""
     points = [np.stack([curve.x, curve.y], axis=1) for curve in curves]
     every = np.concatenate(points)
+    if not np.isfinite(every).all(axis=1).any():
+        return list(curves)
     size = np.nanmax(every, axis=0) - np.nanmin(every, axis=0)
     scaled = [line / np.where(size > 0.0, size, 1.0) for line in points]
     layered = []

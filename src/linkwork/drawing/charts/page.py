@@ -101,7 +101,7 @@ def _cells(chart: Chart, ratio: float) -> tuple[list[tuple[float, float, float, 
     count, columns = len(chart.panels), chart.columns
     room = _WIDTH - _LEFT - _RIGHT
     shape = chart.panels[0].shape
-    between = {Shape.GRAPH: _BESIDE, Shape.PLANE: _LEFT, Shape.POLAR: 2 * _RIM}[shape]
+    between = {Shape.GRAPH: _BESIDE, Shape.PLANE: _LEFT, Shape.POLAR: 3 * _RIM}[shape]
     wide = (room - (columns - 1) * between) / columns
     if shape is Shape.GRAPH:
         tall = _CELL * wide if columns > 1 else _HEIGHTS[min(count, len(_HEIGHTS)) - 1]

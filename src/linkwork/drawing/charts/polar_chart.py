@@ -13,7 +13,7 @@ from linkwork.drawing.charts.chart import Axis, Chart, Panel, Rule, Scale, Shape
 from linkwork.drawing.charts.columns import abscissa_of
 from linkwork.drawing.charts.labels import with_unit
 from linkwork.drawing.charts.motion_chart import check_found, columns_of, shared_panels
-from linkwork.drawing.charts.scales import round_step
+from linkwork.drawing.charts.scales import angle_ends, round_step
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind, Rate
@@ -50,7 +50,7 @@ def polar_chart(motion: Motion, names: Sequence[str] = (), *, against: str = "")
             f"against= (--against){_an_angle(motion)}"
         )
     columns = columns_of(motion, names or _usual(motion))
-    panels = [_round(panel) for panel in shared_panels(motion, across, columns)]
+    panels = [_round(motion, panel) for panel in shared_panels(motion, across, columns)]
     named = [curve.name for panel in panels if len(panel.curves) > 1 for curve in panel.curves]
     kinds = [mark.kind for panel in panels for mark in panel.marks]
     return Chart(
@@ -76,14 +76,17 @@ def _an_angle(motion: Motion) -> str:
     return f', as in "{angles[0]}"' if angles else ""
 
 
-def _round(panel: Panel) -> Panel:
+def _round(motion: Motion, panel: Panel) -> Panel:
     """A panel around its zero: radii start there, or below it where some are negative."""
     axis = panel.axis
     values = np.concatenate([curve.y for curve in panel.curves])
     low, high = axis.ends or (float(np.nanmin(values)), float(np.nanmax(values)))
     low, high = min(low, 0.0), max(high, 0.0)
-    if axis.scale is Scale.LINEAR and high > low:
-        step = axis.step or round_step((high - low) / _RINGS)
+    if axis.turn:
+        ends, step = angle_ends(np.append(values, 0.0), motion.units.angle)
+        axis = replace(axis, ends=ends, step=step)
+    elif axis.scale is Scale.LINEAR and high > low:
+        step = round_step((high - low) / _RINGS)
         ends = (math.floor(low / step) * step, math.ceil(high / step) * step)
         axis = replace(axis, ends=ends, step=step)
     zero = (Rule(along="y", at=0.0),) if low < 0.0 else ()

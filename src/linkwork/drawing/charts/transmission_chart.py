@@ -8,11 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from linkwork.drawing.captions import printed_name, printed_value, reached_caption
+from linkwork.drawing.captions import printed_name, reached_caption
 from linkwork.drawing.charts.chart import Axis, Band, Chart
 from linkwork.drawing.charts.columns import Column, abscissa_of, column_of
 from linkwork.drawing.charts.labels import with_unit
 from linkwork.drawing.charts.motion_chart import across_axis, check_found, shared_panels
+from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import spelled
@@ -53,23 +54,12 @@ def transmission_chart(motion: Motion, names: Sequence[str] = (), *, against: st
     pins = {dyad.pin: dyad for dyad in found}
     columns = [_column(motion, found, pins, name) for name in names or pins]
     across = abscissa_of(motion, against)
-    unit = motion.units.angle
-    low, high = (bound / unit.radians for bound in _GOOD)
-    told = [printed_value(round(bound, 10), unit.value, motion.units) for bound in (low, high)]
-    if unit.sign != "°":
-        told = ["2π/9", "7π/9 rad"]
-    band = Band(low=low, high=high, name=f"recommended: {told[0]} to {told[1]}")
-    axis = Axis(
-        label=with_unit("transmission angle", unit.value),
-        turn=unit.turn,
-        ends=(0.0, math.pi / unit.radians),
-        ticks=tuple(tick / unit.radians for tick in _TICKS),
-    )
+    axis, band = _axis(motion), _band(motion)
     panels = [
         replace(panel, axis=axis, bands=(band,)) for panel in shared_panels(motion, across, columns)
     ]
     kinds = [mark.kind for panel in panels for mark in panel.marks]
-    legend = dict.fromkeys([*(c.label for c in columns), *kinds, band.name])
+    legend = dict.fromkeys([*(column.label for column in columns), *kinds, band.name])
     return Chart(
         title=motion.mechanism,
         caption=reached_caption(motion),
@@ -77,6 +67,26 @@ def transmission_chart(motion: Motion, names: Sequence[str] = (), *, against: st
         panels=tuple(panels),
         legend=tuple(legend),
     )
+
+
+def _axis(motion: Motion) -> Axis:
+    """From 0 to half a turn, with ticks at the ends of the band."""
+    unit = motion.units.angle
+    return Axis(
+        label=with_unit("transmission angle", unit.value),
+        turn=unit.turn,
+        ends=(0.0, math.pi / unit.radians),
+        ticks=tuple(tick / unit.radians for tick in _TICKS),
+    )
+
+
+def _band(motion: Motion) -> Band:
+    unit = motion.units.angle
+    low, high = (bound / unit.radians for bound in _GOOD)
+    told = ("2π/9", "7π/9 rad")
+    if unit is AngleUnit.DEGREE:
+        told = (f"{low:.0f}°", f"{high:.0f}°")
+    return Band(low=low, high=high, name=f"recommended: {told[0]} to {told[1]}")
 
 
 def _column(
