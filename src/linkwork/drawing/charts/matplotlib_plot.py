@@ -99,16 +99,11 @@ def _given(ax: Any, chart: Chart) -> list[Axes]:
             "give one for each, or fewer columns"
         )
     for each, panel in zip(given, chart.panels, strict=True):
-        if (panel.shape is Shape.POLAR) != (each.name == "polar"):
-            wanted = "polar axes" if panel.shape is Shape.POLAR else "axes that are not polar"
-            raise InputError(
-                f"this plot needs {wanted}: "
-                + (
-                    'plt.subplot(projection="polar")'
-                    if "are not" not in wanted
-                    else "plt.subplot()"
-                )
-            )
+        polar = panel.shape is Shape.POLAR
+        if polar and each.name != "polar":
+            raise InputError('this plot needs polar axes: plt.subplot(projection="polar")')
+        if not polar and each.name == "polar":
+            raise InputError("this plot needs axes that are not polar: plt.subplot()")
     return given
 
 
