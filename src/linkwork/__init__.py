@@ -5,6 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from linkwork.foundation.lazy import loader
+from linkwork.foundation.showing import shown_by
+
+shown_by("Motion.plot", "linkwork.drawing.charts.matplotlib_plot", "plot_motion")
+shown_by("Circuits.plot", "linkwork.drawing.charts.matplotlib_plot", "plot_circuits")
 
 if TYPE_CHECKING:
     from linkwork.everyday import (

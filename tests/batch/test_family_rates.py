@@ -76,7 +76,9 @@ def test_rates_that_do_not_exist_are_refused_before_anything_is_computed(
 
     monkeypatch.setattr("linkwork.batch.family_motion.design_rates", refuse)
     slow = lw.example("four-bar").driven_by(link="crank", start=0, stop=90, step=45)
-    told = 'there is no "rocker.velocity" without a speed of the input: give it one, or ask for'
+    told = (
+        'there is no "rocker.velocity" without a speed of the input: give it one (speed in [input])'
+    )
     fresh = slow.family({"A B": [119.0, 121.0]})
     for mechanism in (slow.sweep(), fresh.sweep()):
         assert mechanism.speed is None

@@ -11,9 +11,11 @@ from matplotlib.colors import to_rgba
 
 import linkwork as lw
 from linkwork.drawing import LIGHT, circuit_chart, render
-from linkwork.drawing import chart as chart_module
-from linkwork.drawing.chart import Chart
-from linkwork.drawing.matplotlib_chart import chart_figure
+from linkwork.drawing.charts import chart as chart_module
+from linkwork.drawing.charts import circuit_chart as circuit_chart_module
+from linkwork.drawing.charts.chart import Chart
+from linkwork.drawing.charts.matplotlib_page import chart_figure
+from linkwork.drawing.charts.theme import LIGHT_CHART
 from linkwork.foundation.errors import InputError, UnknownNameError
 from tests.drawing.pages import assert_page_is_clear, printed_texts, size_in_inches, svg_texts
 
@@ -166,7 +168,7 @@ def test_a_line_along_an_edge_moves_into_the_panel():
 def test_angles_within_less_than_half_a_turn_fill_their_panel():
     chart = circuit_chart(circuits_of("rapier-drive-limited"))
     told = [(panel.axis.ends, panel.axis.step) for panel in chart.panels]
-    assert told == [((135, 210), 15), ((30, 180), 30), ((60, 210), 30), (None, 0)]
+    assert told == [((150, 200), 10), ((30, 180), 30), ((60, 210), 30), (None, 0)]
     for panel in chart.panels[:3]:
         (low, high), step = panel.axis.ends, panel.axis.step
         y = np.concatenate([curve.y for curve in panel.curves])
@@ -301,7 +303,7 @@ def test_quantities_are_drawn_as_asked_in_any_spelling_and_once():
 
 
 def test_the_first_unknowns_are_drawn_if_nobody_says_which(monkeypatch):
-    monkeypatch.setattr(chart_module, "MOST_PANELS", 3)
+    monkeypatch.setattr(circuit_chart_module, "MOST_PANELS", 3)
     chart = circuit_chart(circuits_of("rapier-drive"))
     assert [p.axis.label for p in chart.panels] == ["θ₁₃ [deg]", "θ₁₄ [deg]", "θ₁₅ [deg]"]
 
@@ -402,25 +404,28 @@ def test_the_page_draws_the_curves_and_marks_of_the_chart():
         lines = [line for line in ax.lines if line.get_gid().startswith("curve:")]
         for line, curve in zip(lines, panel.curves, strict=True):
             np.testing.assert_array_equal(line.get_xydata(), np.stack([curve.x, curve.y], axis=1))
-            assert line.get_color() == LIGHT.tones[curve.tone - 1]
+            assert line.get_color() == LIGHT_CHART.tones[curve.tone - 1]
         marks = [line for line in ax.lines if line.get_gid() == "dead-point"]
         for line, mark in zip(marks, panel.marks, strict=True):
             assert line.get_xydata().tolist() == [[mark.x, mark.y]]
             assert line.get_marker() == "o"
-            assert line.get_markeredgecolor() == LIGHT.tones[mark.tone - 1]
+            assert line.get_markeredgecolor() == LIGHT_CHART.tones[mark.tone - 1]
 
 
 def test_a_png_is_as_wide_as_a_page_and_grows_by_a_panel():
     circuits = circuits_of("rapier-drive")
+    names = ["s16", "θ13", "θ14", "θ15", "E.x"]
     sizes = [
-        size_in_inches(render(circuit_chart(circuits, names), "png", dpi=100), 100)
-        for names in (["s16"], ["s16", "θ13"], ["s16", "θ13", "θ14"])
+        size_in_inches(render(circuit_chart(circuits, names[:count]), "png", dpi=100), 100)
+        for count in (1, 2, 3, 4, 5)
     ]
     assert {width for width, _ in sizes} == {6.95}
-    one, two, three = (height for _, height in sizes)
-    assert 2.5 < one < 3.5
-    assert two - one == pytest.approx(three - two, abs=0.011)  # whole pixels
-    assert two - one == pytest.approx(2.12, abs=0.011)
+    one, two, three, four, five = (height for _, height in sizes)
+    # a single panel is higher than one of several
+    assert 4.5 < one < two < three
+    assert one - (three - 2 * 2.12) > 1.0
+    assert four - three == pytest.approx(five - four, abs=0.011)  # whole pixels
+    assert five - four == pytest.approx(2.12, abs=0.011)
 
 
 def test_an_svg_names_its_texts_curves_and_marks():

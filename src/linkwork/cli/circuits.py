@@ -23,7 +23,7 @@ from linkwork.cli.terminal import (
     wrapped,
 )
 from linkwork.cli.text_table import Column, short, table_lines
-from linkwork.drawing.chart import MOST_PANELS, circuit_chart
+from linkwork.drawing.charts.circuit_chart import MOST_PANELS, circuit_chart
 from linkwork.everyday import Mechanism
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import InputError

@@ -23,6 +23,7 @@ _COMMANDS = (
     "configurations",
     "circuits",
     "draw",
+    "plot",
     "study",
     "examples",
     "schema",

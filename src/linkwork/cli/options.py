@@ -9,18 +9,22 @@ import click
 
 from linkwork.everyday import Mechanism
 from linkwork.foundation.errors import ExpressionError, InputError
+from linkwork.foundation.policy import ChangePointPolicy
 
 __all__ = [
     "DEBUG",
     "NUMBER",
     "at_option",
+    "change_points_option",
     "configuration_option",
     "debug_option",
     "file_argument",
     "input_values",
     "json_option",
     "number_or_formula",
+    "range_options",
     "set_option",
+    "through_option",
 ]
 
 #: Key of ``click.Context.meta`` under which ``--debug`` is noted.
@@ -92,6 +96,27 @@ configuration_option: Decorator = click.option(
     help="Start from this configuration or branch instead of the guess's; "
     "`linkwork configurations` and `linkwork circuits` list them.",
 )
+
+
+through_option: Decorator = click.option(
+    "--through", is_flag=True, help="Go on through dead points around the circuit."
+)
+
+change_points_option: Decorator = click.option(
+    "--change-points",
+    type=click.Choice([policy.value for policy in ChangePointPolicy]),
+    default=ChangePointPolicy.STOP.value,
+    show_default=True,
+    help="At a change point: stop, straight on, or turn into the other branch.",
+)
+
+
+def range_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """``--from``, ``--to`` and ``--step`` of a sweep."""
+    command = click.option("--step", type=NUMBER, help="Distance between input values.")(command)
+    command = click.option("--to", "stop", type=NUMBER, help="Last input value.")(command)
+    first = "First input value, in the file's unit."
+    return click.option("--from", "start", type=NUMBER, help=first)(command)
 
 
 def input_values(mechanism: Mechanism, asked: tuple[str, ...]) -> dict[str, float] | None:

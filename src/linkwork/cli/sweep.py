@@ -12,21 +12,23 @@ from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.motion_page import failure_line, motion_lines
 from linkwork.cli.options import (
-    NUMBER,
+    change_points_option,
     configuration_option,
     debug_option,
     file_argument,
     json_option,
+    range_options,
     set_option,
+    through_option,
 )
 from linkwork.cli.output_file import check_outputs, write_bytes, write_text
 from linkwork.cli.position_page import residual_measure
 from linkwork.cli.terminal import print_json, print_lines, progress, wrapped
+from linkwork.drawing.charts.plotting import motion_plot
 from linkwork.drawing.scene import Scene
 from linkwork.everyday import Mechanism
 from linkwork.export import csv_lines, workbook_of
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.mechanism.parts import Number
 from linkwork.results.motion import Motion
 from linkwork.results.table import table_of
@@ -36,18 +38,10 @@ __all__ = ["sweep"]
 
 @click.command
 @file_argument
-@click.option("--from", "start", type=NUMBER, help="First input value, in the file's unit.")
-@click.option("--to", "stop", type=NUMBER, help="Last input value.")
-@click.option("--step", type=NUMBER, help="Distance between input values.")
+@range_options
 @configuration_option
-@click.option("--through", is_flag=True, help="Go on through dead points around the circuit.")
-@click.option(
-    "--change-points",
-    type=click.Choice([policy.value for policy in ChangePointPolicy]),
-    default=ChangePointPolicy.STOP.value,
-    show_default=True,
-    help="At a change point: stop, straight on, or turn into the other branch.",
-)
+@through_option
+@change_points_option
 @click.option(
     "--limits-of",
     metavar="NAME",
@@ -58,6 +52,7 @@ __all__ = ["sweep"]
 @click.option("--csv", metavar="PATH", help="Write the whole table; - is standard output.")
 @click.option("--xlsx", metavar="PATH", help="Write a workbook whose formulas solve it again.")
 @click.option("--draw", metavar="PATH", help="Draw the motion: .png, .svg or .pdf.")
+@click.option("--plot", metavar="PATH", help="Plot unknowns and outputs over the input.")
 @set_option
 @json_option
 @debug_option
@@ -76,6 +71,7 @@ def sweep(
     csv: str | None,
     xlsx: str | None,
     draw: str | None,
+    plot: str | None,
     changes: tuple[str, ...],
     as_json: bool,
 ) -> None:
@@ -87,15 +83,16 @@ def sweep(
     \b
       linkwork sweep rapier.toml
       linkwork sweep rapier.toml --csv rapier.csv --draw rapier.png
-      linkwork sweep rapier.toml --xlsx rapier.xlsx
+      linkwork sweep rapier.toml --xlsx rapier.xlsx --plot curves.png
       linkwork sweep rapier.toml --from 90 --to 180 --step 0.5 --csv - | head
       linkwork sweep rapier.toml --through --limits-of s16
     """
     if as_json and csv == "-":
         raise InputError("--json and --csv - both want standard output: name a file for the table")
-    if draw is not None:
-        picture.check_picture(draw)
-    check_outputs(file, csv, draw, workbook=xlsx)
+    for name in (draw, plot):
+        if name is not None:
+            picture.check_picture(name)
+    check_outputs(file, csv, draw, plot, workbook=xlsx)
     mechanism = read_mechanism(file, changes)
     if draw is not None:
         picture.check_points(mechanism)
@@ -113,6 +110,8 @@ def sweep(
         )
     page = None if draw is None else _scene(mechanism, motion, configuration)
     written = _written(motion, page, csv, draw)
+    if plot is not None:
+        written.append(_plotted(motion, plot))
     if xlsx is not None:
         written += _written_workbook(mechanism, motion, xlsx)
     if as_json:
@@ -148,6 +147,14 @@ def _written(motion: Motion, page: Scene | None, csv: str | None, draw: str | No
     elif draw is not None:
         said.append(f"Did not write {draw}: there is no position to draw.")
     return said
+
+
+def _plotted(motion: Motion, path: str) -> str:
+    """Plot the unknowns and outputs, if there are positions, and say so."""
+    if not motion.found.any():
+        return f"Did not write {path}: there is no position to plot."
+    picture.write(motion_plot(motion), path)
+    return f"Wrote {path}: unknowns and outputs over the input."
 
 
 def _written_workbook(mechanism: Mechanism, motion: Motion, path: str) -> list[str]:

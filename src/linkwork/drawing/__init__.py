@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
-    from linkwork.drawing.chart import Chart, circuit_chart
+    from linkwork.drawing.charts.chart import Chart
+    from linkwork.drawing.charts.circuit_chart import circuit_chart
     from linkwork.drawing.drawn_box import reach_of
     from linkwork.drawing.matplotlib_writer import figure, render, write
     from linkwork.drawing.mechanism_scene import SceneOptions, scene_of
@@ -18,7 +19,8 @@ else:
     __getattr__ = loader(
         __name__,
         {
-            "chart": ("Chart", "circuit_chart"),
+            "charts.chart": ("Chart",),
+            "charts.circuit_chart": ("circuit_chart",),
             "drawn_box": ("reach_of",),
             "matplotlib_writer": ("figure", "render", "write"),
             "mechanism_scene": ("SceneOptions", "scene_of"),

@@ -15,8 +15,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwork.drawing.captions import lines_within
-from linkwork.drawing.chart import Chart
-from linkwork.drawing.matplotlib_chart import chart_figure
+from linkwork.drawing.charts.chart import Chart
+from linkwork.drawing.charts.matplotlib_page import chart_figure
+from linkwork.drawing.charts.theme import ChartTheme
 from linkwork.drawing.scene import (
     XY,
     Arc,
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["FORMATS", "figure", "render", "write"]
+__all__ = ["FORMATS", "figure", "house_settings", "render", "write"]
 
 #: File formats by suffix.
 FORMATS = ("png", "svg", "pdf")
@@ -56,7 +57,11 @@ _DATELESS: dict[str, dict[str, str | None]] = {
 
 
 def write(
-    scene: Scene | Chart | Sheet, path: str | Path, *, dpi: float = 200.0, theme: Theme = LIGHT
+    scene: Scene | Chart | Sheet,
+    path: str | Path,
+    *,
+    dpi: float = 200.0,
+    theme: Theme | ChartTheme = LIGHT,
 ) -> Path:
     """Write a scene, a chart or a sheet to a file; the suffix of ``path`` chooses the format.
 
@@ -87,20 +92,31 @@ def write(
 
 
 def render(
-    scene: Scene | Chart | Sheet, kind: str, *, dpi: float = 200.0, theme: Theme = LIGHT
+    scene: Scene | Chart | Sheet,
+    kind: str,
+    *,
+    dpi: float = 200.0,
+    theme: Theme | ChartTheme = LIGHT,
 ) -> bytes:
-    """A scene, chart or sheet as the content of a file of one of :data:`FORMATS`."""
+    """A scene, chart or sheet as the content of a file of one of :data:`FORMATS`.
+
+    Raises
+    ------
+    InputError
+        For an unknown format, or a drawing in the colours of a chart.
+    """
     if kind not in FORMATS:
         raise InputError(f'there is no format "{kind}" (formats: {", ".join(FORMATS)})')
     buffer = io.BytesIO()
-    with _house_settings():
-        match scene:
-            case Chart():
-                page = chart_figure(scene, theme)
-            case Sheet():
-                page = _sheet_figure(scene, theme)
-            case Scene():
-                page = figure(scene, theme=theme)
+    with house_settings():
+        if isinstance(scene, Chart):
+            page = chart_figure(scene, theme)
+        elif isinstance(theme, ChartTheme):
+            raise InputError("a drawing needs the theme of a drawing: that of a chart has no links")
+        elif isinstance(scene, Sheet):
+            page = _sheet_figure(scene, theme)
+        else:
+            page = figure(scene, theme=theme)
         page.savefig(buffer, format=kind, dpi=dpi, metadata=_DATELESS[kind])
     return buffer.getvalue()
 
@@ -114,7 +130,7 @@ def figure(scene: Scene, ax: Axes | None = None, *, theme: Theme = LIGHT) -> Fig
         The figure that holds the drawing. In axes of the caller, line widths and fonts suit the
         size that the axes have now.
     """
-    with _house_settings():
+    with house_settings():
         if ax is None:
             ax = _page(scene, theme)
         else:
@@ -190,7 +206,7 @@ def _write_heading(page: Figure, heading: list[tuple[str, float, str]], left: fl
 
 
 @contextmanager
-def _house_settings() -> Iterator[None]:
+def house_settings() -> Iterator[None]:
     """Matplotlib's own defaults, whatever the user's settings are, while we draw."""
     try:
         import matplotlib

@@ -24,7 +24,7 @@ class Guide:
     """A slider or slot: ``point`` runs along the line through two points of the body ``on``.
 
     ``offset`` is the distance of ``point`` to the left of the line. ``block`` tells a sliding
-    block (prismatic joint) from a pin in a slot.
+    block (prismatic joint) from a pin in a slot; ``link`` is the one that slides.
     """
 
     name: str
@@ -33,6 +33,7 @@ class Guide:
     line: tuple[str, str]
     offset: float = 0.0
     block: bool = False
+    link: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,6 +103,7 @@ class Skeleton:
                         line=s.line,
                         offset=linkage.numbers(s.offset),
                         block=True,
+                        link=s.link,
                     )
                     for s in linkage.sliders
                     for point in s.points

@@ -13,6 +13,7 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.showing import shower
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit, Motion
 from linkwork.results.summary import circuits_summary
@@ -160,6 +161,43 @@ class Circuits:
         if name not in known:
             raise UnknownNameError(f'there is no "{name}" {choices("branches", known, name)}')
         return known[name]
+
+    def plot(
+        self,
+        *names: str,
+        kind: str = "circuits",
+        ax: Any = None,
+        theme: str = "light",
+        title: str | None = None,
+    ) -> Any:
+        """Plot quantities over the input, every circuit as a closed curve.
+
+        Parameters
+        ----------
+        names : str
+            Unknowns, links, sliders, outputs, coordinates; the first unknowns if left out.
+        kind : str
+            ``circuits`` together, or ``branches`` side by side, each in a panel of its own.
+        ax : Axes, or a sequence of them, optional
+            Where to draw: one for each panel. A new figure if left out.
+        theme : str
+            ``light`` or ``dark``.
+        title : str, optional
+            The mechanism's name unless given; "" for none.
+
+        Returns
+        -------
+        matplotlib.axes.Axes, or a tuple of them
+            One for each panel.
+
+        Raises
+        ------
+        InputError
+            If there is no circuit, or more branches than stand beside each other.
+        UnknownNameError
+            For a name that does not exist.
+        """
+        return shower("Circuits.plot")(self, *names, kind=kind, ax=ax, theme=theme, title=title)
 
     def __repr__(self) -> str:
         return circuits_summary(self)

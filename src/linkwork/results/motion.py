@@ -16,6 +16,7 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.names import spelled
+from linkwork.foundation.showing import shower
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
@@ -320,6 +321,51 @@ class Motion:
     def to_xarray(self) -> Any:
         """An xarray Dataset over the input, with units."""
         return self.table().to_xarray()
+
+    def plot(
+        self,
+        *names: str,
+        kind: str = "curves",
+        against: str = "",
+        wrapped: bool = False,
+        ax: Any = None,
+        theme: str = "light",
+        title: str | None = None,
+    ) -> Any:
+        """Plot columns over the input: ``motion.plot("theta3", "s16")``.
+
+        Parameters
+        ----------
+        names : str
+            Columns, rates and ``residual``, ``iterations``, ``condition`` among them; unknowns
+            and outputs if left out. Points for paths and hodographs, pins for transmission angles.
+        kind : str
+            ``curves``, ``polar``, ``path``, ``hodograph`` or ``transmission``.
+        against : str
+            The column to plot over, or ``time``; the leading input if left out.
+        wrapped : bool
+            Show angles over one turn; no line is drawn where they jump.
+        ax : Axes, or a sequence of them, optional
+            Where to draw: one for each panel. A new figure if left out.
+        theme : str
+            ``light`` or ``dark``.
+        title : str, optional
+            The mechanism's name unless given; "" for none.
+
+        Returns
+        -------
+        matplotlib.axes.Axes, or a tuple of them
+            One for each panel: columns of one unit share a panel.
+
+        Raises
+        ------
+        InputError
+            If there is nothing to plot, or what is asked does not go together.
+        UnknownNameError
+            For a name that does not exist.
+        """
+        options: dict[str, Any] = {"kind": kind, "against": against, "wrapped": wrapped}
+        return shower("Motion.plot")(self, *names, ax=ax, theme=theme, title=title, **options)
 
     def __repr__(self) -> str:
         return motion_summary(self)

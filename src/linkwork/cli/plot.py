@@ -1,0 +1,132 @@
+"""``linkwork plot``"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from linkwork.cli import picture
+from linkwork.cli.mechanism_source import read_mechanism
+from linkwork.cli.motion_page import failure_line
+from linkwork.cli.options import (
+    change_points_option,
+    configuration_option,
+    debug_option,
+    file_argument,
+    range_options,
+    set_option,
+    through_option,
+)
+from linkwork.cli.output_file import check_outputs
+from linkwork.cli.terminal import print_lines, progress
+from linkwork.drawing.charts.plotting import (
+    CIRCUIT_KINDS,
+    PlotKind,
+    circuits_plot,
+    motion_plot,
+)
+from linkwork.drawing.charts.theme import THEMES, chart_theme
+from linkwork.everyday import Mechanism
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.policy import ChangePointPolicy
+from linkwork.results.circuits import Circuits
+
+__all__ = ["plot"]
+
+
+@click.command
+@file_argument
+@click.option("-o", "--output", metavar="PATH", required=True, help="Picture: .png, .svg or .pdf.")
+@click.option(
+    "--of",
+    "names",
+    metavar="NAME",
+    multiple=True,
+    help="What to plot: a column of the table; a point for path and hodograph; a pin for "
+    "transmission; repeatable. Left out: unknowns and outputs, traced points, all pins.",
+)
+@click.option(
+    "--kind",
+    type=click.Choice([kind.value for kind in PlotKind]),
+    default=PlotKind.CURVES.value,
+    show_default=True,
+    help="Which plot.",
+)
+@click.option("--against", metavar="NAME", default="", help="Plot over this column, or over time.")
+@click.option("--wrapped", is_flag=True, help="Show angles over one turn.")
+@click.option(
+    "--theme", type=click.Choice(list(THEMES)), default="light", show_default=True, help="Colours."
+)
+@range_options
+@configuration_option
+@through_option
+@change_points_option
+@set_option
+@debug_option
+@click.pass_context
+def plot(
+    context: click.Context,
+    /,
+    file: str,
+    output: str,
+    names: tuple[str, ...],
+    kind: str,
+    against: str,
+    wrapped: bool,
+    theme: str,
+    changes: tuple[str, ...],
+    **sweeping: Any,
+) -> None:
+    """Plot columns over the input, paths, hodographs, circuits.
+
+    \b
+    curves        columns over the input, over time or over each other
+    polar         columns as radii over the input
+    path          paths of points in the plane
+    hodograph     velocities and accelerations of a point as vectors
+    transmission  transmission angles with the band of 40 to 140 degrees
+    circuits      unknowns over the input: every circuit, limits marked
+    branches      the same branch by branch, side by side
+
+    \b
+      linkwork plot rapier.toml -o s16.png --of s16 --of s16.d1
+      linkwork plot fourbar.toml -o time.svg --of B.velocity --against time
+      linkwork plot jansen.toml -o foot.png --kind hodograph --of F
+      linkwork plot rapier.toml -o quality.png --of condition --of residual
+    """
+    picture.check_picture(output)
+    check_outputs(file, output)
+    mechanism = read_mechanism(file, changes)
+    colours = chart_theme(theme)
+    if kind in [which.value for which in CIRCUIT_KINDS]:
+        found = _circuits(mechanism, kind, {"against": against, "wrapped": wrapped, **sweeping})
+        picture.write(circuits_plot(found, names, kind=kind), output, theme=colours)
+        print_lines([f"Wrote {output}."])
+        return
+    with progress("sweeping") as tell:
+        motion = mechanism.sweep(progress=tell, **sweeping)
+    if motion.found.any():
+        chart = motion_plot(motion, names, kind=kind, against=against, wrapped=wrapped)
+        picture.write(chart, output, theme=colours)
+        print_lines([f"Wrote {output}."])
+    if not motion.found.all():
+        print_lines(failure_line(motion), err=True)
+        context.exit(1)
+
+
+def _circuits(mechanism: Mechanism, kind: str, options: dict[str, Any]) -> Circuits:
+    """Circuits are followed as far as they go: what a sweep is asked for would be ignored."""
+    options["change_points"] = options["change_points"] != ChangePointPolicy.STOP.value
+    spelled = {"start": "from", "stop": "to"}
+    ignored = [
+        f"--{spelled.get(name, name).replace('_', '-')}"
+        for name, value in options.items()
+        if value not in ("", None, False)
+    ]
+    if ignored:
+        raise InputError(
+            f"--kind {kind} shows whole circuits: leave out {', '.join(sorted(ignored))}"
+        )
+    with progress("following circuits") as tell:
+        return mechanism.circuits(progress=tell)

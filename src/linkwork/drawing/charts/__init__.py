@@ -1,0 +1,1 @@
+"""Charts as plain data, made from results alone, and their translation by Matplotlib."""

@@ -1,0 +1,243 @@
+"""Columns of a motion, ready to be drawn: what they are called, measured in, spread over."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.drawing.captions import printed_name
+from linkwork.drawing.charts.chart import Pen, Scale
+from linkwork.drawing.charts.labels import rate_label, size_label
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.names import spelled
+from linkwork.results.motion import Motion
+from linkwork.results.quantity import Kind, Rate
+
+__all__ = ["TIME", "Column", "abscissa_of", "column_of", "lead_of"]
+
+#: What ``against`` calls the time.
+TIME = "time"
+
+#: Columns of a table that are text.
+_TEXTS = ("status", "certified", "branch", "limit")
+
+#: Numbers about a position: how they are spread, how they are drawn.
+_EVIDENCE: Mapping[str, tuple[Scale, Pen]] = {
+    "residual": (Scale.ROUNDING, Pen.DOTS),
+    "iterations": (Scale.COUNT, Pen.DOTS),
+    "condition": (Scale.LOG, Pen.LINE),
+    "radius": (Scale.LOG, Pen.LINE),
+    "unique_within": (Scale.LOG, Pen.LINE),
+}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Column:
+    """One column of a motion.
+
+    Parameters
+    ----------
+    name : str
+        As the motion spells it, ``theta13.d1``.
+    label, unit : str
+        As printed without the unit, and the unit as tables write it.
+    measure : str
+        What it measures, in a word: ``angle``, ``length``, ``velocity``; columns of one measure
+        and unit share a panel. "" for numbers that share it with nothing.
+    values : array (N,)
+        Everyday units, NaN where there is no position.
+    turn : float
+        A full turn in that unit, 0 if it is no angle.
+    slope : array (N,), optional
+        Of an angle that may jump: its derivative by the input, both as they are counted here.
+    size : float
+        What is large for it: differences of a billionth are rounding.
+    scale, pen
+        How it is spread along an axis and drawn.
+    """
+
+    name: str
+    label: str
+    unit: str
+    measure: str
+    values: Array
+    turn: float = 0.0
+    slope: Array | None = None
+    size: float = 1.0
+    scale: Scale = Scale.LINEAR
+    pen: Pen = Pen.LINE
+
+    @property
+    def rate(self) -> bool:
+        """Whether it is a derivative: these grow beyond all limits at dead points."""
+        return Rate.split(self.name)[1] is not None
+
+
+def lead_of(motion: Motion) -> str:
+    """The leading input: the first one that changes from row to row."""
+    rows = motion.asked
+    moving = (name for name, values in motion.inputs.items() if np.ptp(values[rows]))
+    return next(moving, next(iter(motion.inputs)))
+
+
+def column_of(motion: Motion, name: str) -> Column:
+    """A column by its name: quantity, input, coordinate, rate, or ``residual`` and the like.
+
+    ``B.velocity`` is the length of the vector, of a point B.
+
+    Raises
+    ------
+    UnknownNameError
+        With the names that exist; for rates by time, with what to add.
+    InputError
+        If the column is text, or a point has to be followed by one of its coordinates.
+    """
+    if name in _EVIDENCE:
+        scale, pen = _EVIDENCE[name]
+        shown = motion.found
+        if name == "condition":  # infinite at dead points but for rounding
+            shown = shown & ~np.isin(motion.limit, ("dead point", "change point"))
+        values = np.where(shown, getattr(motion, name).astype(float), np.nan)
+        label = name.replace("_", " ")
+        return Column(name=name, label=label, unit="", measure="", values=values, scale=scale,
+                      pen=pen)  # fmt: skip
+    if name in _TEXTS:
+        raise InputError(f'"{name}" is text: there is nothing to plot but numbers')
+    own = spelled(name, motion.inputs)
+    if own in motion.inputs:
+        return _input(motion, own)
+    quantity, rate = Rate.split(name)
+    point = spelled(quantity, motion.points)
+    if point in motion.points and point not in _named(motion):
+        if rate is None:
+            raise InputError(
+                f'"{point}" is a point: plot a coordinate, "{point}.x" or "{point}.y", or its '
+                'path, kind="path" (--kind path)'
+            )
+        return _size_of_rate(motion, point, rate)
+    return _quantity(motion, quantity, rate)
+
+
+def _named(motion: Motion) -> list[str]:
+    tables = (motion.inputs, motion.unknowns, motion.links, motion.sliders, motion.outputs)
+    return list(dict.fromkeys(name for table in tables for name in table))
+
+
+def _input(motion: Motion, name: str) -> Column:
+    unit = motion.input_units[name]
+    angle = unit == motion.units.angle.value
+    return Column(
+        name=name,
+        label=printed_name(name),
+        unit=unit,
+        measure="angle" if angle else "length" if unit else "",
+        values=motion.inputs[name],
+        turn=motion.units.angle.turn if angle else 0.0,
+    )
+
+
+def _quantity(motion: Motion, name: str, rate: Rate | None) -> Column:
+    try:
+        series = motion.series(name)
+    except UnknownNameError:
+        known = [*_named(motion), *(f"{p}.{axis}" for p in motion.points for axis in "xy")]
+        text = f'there is no "{name}" {choices("columns", [*known, *_EVIDENCE], name)}'
+        raise UnknownNameError(text) from None
+    own, kind, units = series.quantity.name, series.quantity.kind, motion.units
+    lead = lead_of(motion)
+    if rate is not None:
+        rate.check(own, motion.speed)
+        size = _reach(motion) if kind is Kind.LENGTH else 1.0
+        return Column(
+            name=f"{own}.{rate.value}",
+            label=rate_label(own, rate, lead),
+            unit=rate.unit(kind, units, motion.derivative_unit),
+            measure=_word(rate) if kind is not Kind.NUMBER else "",
+            values=rate.of(series.first, series.second, motion.speed),
+            size=size * abs(motion.speed or 1.0) ** rate.order if rate.by_time else size,
+        )
+    turn = units.angle.turn if kind is Kind.ANGLE else 0.0
+    by_input = 1.0 if motion.input_units[lead] != units.angle.value else units.angle.radians
+    return Column(
+        name=own,
+        label=printed_name(own),
+        unit=units.of(kind),
+        measure="" if kind is Kind.NUMBER else kind.value,
+        values=series.value,
+        turn=turn,
+        slope=series.first * by_input / units.scale(kind),
+        size=turn or (_reach(motion) if kind is Kind.LENGTH else 1.0),
+    )
+
+
+def _size_of_rate(motion: Motion, point: str, rate: Rate) -> Column:
+    """The length of a point's velocity or acceleration, or of its derivatives by the input."""
+    rate.check(point, motion.speed)
+    return Column(
+        name=f"{point}.{rate.value}",
+        label=size_label(point, rate, lead_of(motion)),
+        unit=rate.unit(Kind.LENGTH, motion.units, motion.derivative_unit),
+        measure=_word(rate),
+        values=np.abs(motion.trace(f"{point}.{rate.value}")),
+        size=_reach(motion) * abs(motion.speed or 1.0) ** (rate.order if rate.by_time else 0),
+    )
+
+
+def _word(rate: Rate) -> str:
+    return {
+        Rate.FIRST: "first derivative",
+        Rate.SECOND: "second derivative",
+        Rate.VELOCITY: "velocity",
+        Rate.ACCELERATION: "acceleration",
+    }[rate]
+
+
+def _reach(motion: Motion) -> float:
+    """How far the mechanism's points are from each other: the size of its lengths."""
+    places = [series.value for pair in motion.points.values() for series in pair]
+    found = [p[np.isfinite(p)] for p in places]
+    return max((float(np.ptp(p)) for p in found if len(p)), default=0.0) or 1.0
+
+
+def abscissa_of(motion: Motion, against: str = "") -> Column:
+    """What a motion is drawn over: the leading input, ``time``, or any column.
+
+    Raises
+    ------
+    InputError
+        If the time is not known, or as :func:`column_of`.
+    """
+    if not against:
+        return column_of(motion, lead_of(motion))
+    if against == TIME and TIME not in _named(motion):
+        return _time(motion)
+    return column_of(motion, against)
+
+
+def _time(motion: Motion) -> Column:
+    """Time from the first row on, while the leading input moves at its speed."""
+    lead = lead_of(motion)
+    if motion.speed is None:
+        raise InputError(
+            f"there is no time without a speed of the input: give {lead} one in [input], as in "
+            f'speed = "{_speed_of(motion)}", or plot against {lead}'
+        )
+    if len(set(motion.branch) - {""}) > 1:
+        raise InputError(
+            f"there is no time along several branches: {lead} turns back between them, so it has "
+            f"no steady speed; plot against {lead}, or sweep one branch"
+        )
+    values = motion.inputs[lead]
+    angle = motion.input_units[lead] == motion.units.angle.value
+    unit = motion.units.angle.radians if angle else 1.0
+    passed = (values - values[0]) * unit / motion.speed
+    return Column(name=TIME, label=TIME, unit="s", measure=TIME, values=passed)
+
+
+def _speed_of(motion: Motion) -> str:
+    """A speed as one would write it for this input."""
+    unit = motion.input_units[lead_of(motion)]
+    return "60 rpm" if unit == motion.units.angle.value else f"50 {unit}/s" if unit else "50"

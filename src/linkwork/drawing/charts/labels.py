@@ -1,0 +1,45 @@
+"""Columns of a motion as figures name them: ``θ₁₃ [deg]``, ``ds₁₆/dθ₁₂ [mm/rad]``."""
+
+from __future__ import annotations
+
+from linkwork.drawing.captions import printed_name
+from linkwork.foundation.names import pretty
+from linkwork.results.quantity import Rate
+
+__all__ = ["axis_label", "printed_unit", "rate_label", "size_label", "with_unit"]
+
+_BY_TIME = {Rate.VELOCITY: "velocity", Rate.ACCELERATION: "acceleration"}
+
+
+def printed_unit(unit: str) -> str:
+    """A unit as printed: ``mm/rad^2`` → ``mm/rad²``."""
+    return unit.replace("^2", "²")
+
+
+def with_unit(text: str, unit: str) -> str:
+    """``ds₁₆/dθ₁₂ [mm/rad]``; a number without a unit, or by one without, stands alone."""
+    return f"{text} [{printed_unit(unit)}]" if unit.replace("^2", "") not in ("", "1/1") else text
+
+
+def axis_label(name: str, unit: str) -> str:
+    """The label of an axis that shows a quantity: ``θ₁₃ [deg]``."""
+    return with_unit(printed_name(name), unit)
+
+
+def rate_label(name: str, rate: Rate, driver: str) -> str:
+    """A rate of a quantity: ``ds₁₆/dθ₁₂``, ``velocity of s₁₆``; ``driver`` is the input."""
+    if rate.by_time:
+        return f"{_BY_TIME[rate]} of {printed_name(name)}"
+    power = "" if rate.order == 1 else "²"
+    return f"d{power}{_term(name)}/d{_term(driver)}{power}"
+
+
+def size_label(point: str, rate: Rate, driver: str) -> str:
+    """The length of a point's rate: ``|velocity of B|``."""
+    return f"|{rate_label(point, rate, driver)}|"
+
+
+def _term(name: str) -> str:
+    """A name behind the d of a derivative: words stand apart from it."""
+    stem = pretty(name).partition(".")[0].rstrip("0123456789'")
+    return printed_name(name) if len(stem) == 1 else f" {printed_name(name)}"

@@ -1,0 +1,196 @@
+"""Columns of a motion over its input, over time, or over each other."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from linkwork.drawing.captions import reached_caption
+from linkwork.drawing.charts.chart import Axis, Chart, Curve, Mark, Panel, Pen, Rule, Scale
+from linkwork.drawing.charts.columns import Column, abscissa_of, column_of, lead_of
+from linkwork.drawing.charts.labels import with_unit
+from linkwork.drawing.charts.lines import breaks, broken, limit_marks, runs
+from linkwork.drawing.charts.overlap import layered
+from linkwork.drawing.charts.scales import across_step, angle_ends, finite_ends, level_ends
+from linkwork.drawing.charts.turns import Window, origin, rounded, turn_axis
+from linkwork.drawing.scene import text_width
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import InputError
+from linkwork.results.motion import Motion
+
+__all__ = ["across_axis", "check_found", "columns_of", "motion_chart", "shared_panels"]
+
+_MOST_CURVES = 6  # in a panel: as many as there are colours
+_BESIDE = 15.0  # em: the longest label beside a panel that names all of its curves
+_BEYOND = 4.0  # times as far as most of it: a curve that runs to infinity at a dead point
+
+
+def motion_chart(
+    motion: Motion, names: Sequence[str] = (), *, against: str = "", wrapped: bool = False
+) -> Chart:
+    """Columns over the leading input, those of one unit in one panel, limits marked.
+
+    Lines are broken where there is no position.
+
+    Parameters
+    ----------
+    names : sequence of str
+        The columns; unknowns and outputs if left out.
+    against : str
+        Over which column, or ``time``; over the leading input if left out.
+    wrapped : bool
+        Show angles over one turn; a line goes on at the other side of the panel.
+
+    Raises
+    ------
+    InputError
+        If no position was found, a name is text or a point, or there is no time.
+    UnknownNameError
+        For a column that does not exist.
+    """
+    check_found(motion)
+    across = abscissa_of(motion, against)
+    columns = columns_of(motion, names or [*motion.unknowns, *motion.outputs])
+    panels = shared_panels(motion, across, columns, wrapped=wrapped)
+    named = [curve.name for p in panels if len(p.curves) > 1 for curve in p.curves]
+    kinds = [mark.kind for p in panels for mark in p.marks]
+    kinds += [rule.kind for p in panels for rule in p.rules]
+    return Chart(
+        title=motion.mechanism,
+        caption=reached_caption(motion),
+        axis=across_axis(motion, across, own=not against),
+        panels=tuple(panels),
+        legend=tuple(dict.fromkeys([*named, *kinds])),
+    )
+
+
+def check_found(motion: Motion) -> None:
+    """Refuse a motion without a position."""
+    if not motion.found.any():
+        raise InputError(f'"{motion.mechanism}" has no position to plot: {motion.message}')
+
+
+def columns_of(motion: Motion, names: Sequence[str]) -> list[Column]:
+    """The columns of some names, each once."""
+    if not names:
+        raise InputError(f'"{motion.mechanism}" has no unknowns: name the columns to plot')
+    found = {column.name: column for column in (column_of(motion, name) for name in names)}
+    return list(found.values())
+
+
+def shared_panels(
+    motion: Motion, across: Column, columns: Sequence[Column], *, wrapped: bool = False
+) -> list[Panel]:
+    """Panels of columns over one of them; those of one measure and unit share a panel."""
+    groups = _grouped(columns)
+    order = [column.name for group in groups for column in group]
+    tones = {name: tone for tone, name in enumerate(order, start=1)}
+    return [_panel(motion, across, group, tones, wrapped) for group in groups]
+
+
+def _grouped(columns: Sequence[Column]) -> list[list[Column]]:
+    """Columns that share a panel: of one measure and unit, as many as can be told apart."""
+    groups: dict[tuple[str, str], list[Column]] = {}
+    for column in columns:
+        key = (column.measure, column.unit) if column.measure else ("", column.name)
+        groups.setdefault(key, []).append(column)
+    shared: list[list[Column]] = []
+    for group in groups.values():
+        count = math.ceil(len(group) / _MOST_CURVES)
+        size = math.ceil(len(group) / count)
+        shared += [group[k : k + size] for k in range(0, len(group), size)]
+    return shared
+
+
+def _panel(
+    motion: Motion, across: Column, group: list[Column], tones: dict[str, int], wrapped: bool
+) -> Panel:
+    curves: list[Curve] = []
+    marks: list[Mark] = []
+    rules: list[Rule] = []
+    for column in group:
+        tone = tones[column.name]
+        where = breaks(motion, motion.inputs[lead_of(motion)], across, column)
+        x, y = broken(across.values, where), broken(column.values, where)
+        pen = Pen.DOTS if Pen.DOTS in (across.pen, column.pen) else Pen.LINE
+        curves.append(Curve(x=x, y=y, tone=tone, name=column.label, pen=pen))
+        own, gaps = limit_marks(motion, across, column, tone)
+        marks, rules = marks + own, rules + gaps
+    axis = _value_axis(motion, group, curves)
+    if wrapped and axis.turn and any(np.isfinite(curve.y).any() for curve in curves):
+        axis, curves, marks = _wrapped(motion, axis, curves, marks)
+    drawn = tuple(layered(curves)) if len(curves) > 1 else tuple(curves)
+    unique = tuple(dict.fromkeys(rules))
+    return Panel(axis=axis, curves=drawn, marks=tuple(marks), rules=unique)
+
+
+def _value_axis(motion: Motion, group: Sequence[Column], curves: Sequence[Curve]) -> Axis:
+    """The axis of columns that share a panel: what it is called, what it shows."""
+    first = group[0]
+    label = with_unit(", ".join(column.label for column in group), first.unit)
+    if len(group) > 1 and text_width(label, 1.0) > _BESIDE:
+        label = with_unit(first.measure, first.unit)
+    axis = Axis(label=label, turn=first.turn, scale=first.scale)
+    values = np.concatenate([curve.y for curve in curves])
+    if not np.isfinite(values).any() or first.scale is not Scale.LINEAR:
+        return axis
+    if first.turn:
+        ends, step = angle_ends(values, motion.units.angle)
+        return replace(axis, ends=ends, step=step)
+    level = level_ends(values, max(column.size for column in group))
+    if level is not None:
+        return replace(axis, ends=level)
+    singular = any(kind in ("dead point", "change point") for kind in motion.limit)
+    if singular and any(column.rate for column in group):
+        most = finite_ends(curves)
+        reach = float(np.nanmax(values) - np.nanmin(values))
+        if most is not None and reach > _BEYOND * (most[1] - most[0]):
+            return replace(axis, ends=most)
+    return axis
+
+
+def _wrapped(
+    motion: Motion, axis: Axis, curves: Sequence[Curve], marks: Sequence[Mark]
+) -> tuple[Axis, list[Curve], list[Mark]]:
+    """The same over one turn: the one that cuts lines least often."""
+    turn = axis.turn
+    pieces = [list(runs(curve.x, rounded(curve.y, turn))) for curve in curves]
+    low = origin([y for lines in pieces for _, y in lines], turn)
+    window = Window(x_turn=0.0, y_turn=turn, low=low)
+    folded = []
+    for curve, lines in zip(curves, pieces, strict=True):
+        x, y = _joined([window.folded(x, y) for x, y in lines])
+        folded.append(replace(curve, x=x, y=y))
+    ends = np.concatenate([np.stack([curve.x, curve.y], axis=1) for curve in folded])
+    placed = [
+        replace(mark, x=x, y=y)
+        for mark in marks
+        for x, y in window.shown_on(ends, mark.x, float(rounded(np.array(mark.y), turn)))
+    ]
+    return turn_axis(axis, [c.y for c in folded], low, motion.units.angle), folded, placed
+
+
+def _joined(pieces: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
+    """Pieces of a line behind each other, NaN between them."""
+    gap = (np.array([np.nan]), np.array([np.nan]))
+    parts = [part for piece in pieces for part in (gap, piece)][1:] or [gap]
+    return np.concatenate([x for x, _ in parts]), np.concatenate([y for _, y in parts])
+
+
+def across_axis(motion: Motion, across: Column, *, own: bool) -> Axis:
+    """The axis that all panels have in common; an input is shown as far as it was asked for."""
+    axis = Axis(label=with_unit(across.label, across.unit), turn=across.turn, scale=across.scale)
+    values = across.values[np.isfinite(across.values)]
+    low, high = float(values.min()), float(values.max())
+    if high <= low:
+        return axis
+    step = across_step(high - low, motion.units.angle) if across.turn else 0.0
+    if own or across.measure == "time":
+        return replace(axis, ends=(low, high), step=step)
+    if across.turn:
+        ends, step = angle_ends(values, motion.units.angle)
+        return replace(axis, ends=ends, step=step)
+    return axis

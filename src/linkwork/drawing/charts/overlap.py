@@ -1,0 +1,48 @@
+"""Curves that lie over each other: the lower one is drawn wider, so that both are seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from linkwork.drawing.charts.chart import Curve
+from linkwork.foundation.arrays import Array
+
+__all__ = ["layered"]
+
+_NEAR = 0.004  # of the panel's sides: curves as near as this hide each other
+_LOOKED_AT = 100  # points of a curve, to see whether another one hides it
+_HIDDEN = 0.4  # share of a curve that another one hides, from which on it is drawn wider
+
+
+def layered(curves: Sequence[Curve]) -> list[Curve]:
+    """The curves, each with the number of tones drawn later that hide much of it."""
+    points = [np.stack([curve.x, curve.y], axis=1) for curve in curves]
+    every = np.concatenate(points)
+    if not np.isfinite(every).all(axis=1).any():
+        return list(curves)
+    size = np.nanmax(every, axis=0) - np.nanmin(every, axis=0)
+    scaled = [line / np.where(size > 0.0, size, 1.0) for line in points]
+    layered = []
+    for k, curve in enumerate(curves):
+        hiding = {
+            other.tone
+            for other, line in zip(curves, scaled, strict=True)
+            if other.tone > curve.tone and _hidden_share(scaled[k], line) > _HIDDEN
+        }
+        layered.append(replace(curve, below=len(hiding)))
+    return layered
+
+
+def _hidden_share(line: Array, other: Array) -> float:
+    """The share of the points of a line (K, 2) that lie on another one (M, 2)."""
+    points = line[np.isfinite(line).all(axis=1)]
+    points = points[:: max(1, len(points) // _LOOKED_AT)]
+    start, step = other[:-1], np.diff(other, axis=0)
+    squared = np.maximum((step**2).sum(axis=1), 1e-30)
+    offset = points[:, None, :] - start
+    share = np.clip((offset * step).sum(axis=2) / squared, 0.0, 1.0)
+    away = np.linalg.norm(offset - share[:, :, None] * step, axis=2)
+    return float((away < _NEAR).any(axis=1).mean()) if away.size else 0.0

@@ -1,0 +1,111 @@
+"""Which chart a kind of plot is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import Enum
+
+from linkwork.drawing.charts.branch_chart import branch_chart
+from linkwork.drawing.charts.chart import Chart
+from linkwork.drawing.charts.circuit_chart import circuit_chart
+from linkwork.drawing.charts.motion_chart import motion_chart
+from linkwork.drawing.charts.plane_chart import hodograph_chart, path_chart
+from linkwork.drawing.charts.polar_chart import polar_chart
+from linkwork.drawing.charts.transmission_chart import transmission_chart
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.results.circuits import Circuits
+from linkwork.results.motion import Motion
+
+__all__ = ["CIRCUIT_KINDS", "MOTION_KINDS", "PlotKind", "circuits_plot", "motion_plot"]
+
+
+class PlotKind(Enum):
+    """Kinds of plots; the value is what people type."""
+
+    CURVES = "curves"
+    POLAR = "polar"
+    PATH = "path"
+    HODOGRAPH = "hodograph"
+    TRANSMISSION = "transmission"
+    CIRCUITS = "circuits"
+    BRANCHES = "branches"
+
+
+CIRCUIT_KINDS = (PlotKind.CIRCUITS, PlotKind.BRANCHES)
+MOTION_KINDS = tuple(kind for kind in PlotKind if kind not in CIRCUIT_KINDS)
+
+
+def motion_plot(
+    motion: Motion,
+    names: Sequence[str] = (),
+    *,
+    kind: str = PlotKind.CURVES.value,
+    against: str = "",
+    wrapped: bool = False,
+) -> Chart:
+    """The chart of a motion.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Columns; points for a path or a hodograph; pins for transmission angles.
+    kind : str
+        The value of one of :data:`MOTION_KINDS`.
+    against : str
+        A column to plot over, or ``time``; the leading input if left out.
+    wrapped : bool
+        Show angles over one turn.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to plot, or the kind does not go with what else is asked.
+    UnknownNameError
+        For a name or a kind that does not exist.
+    """
+    which = _kind(kind, MOTION_KINDS, "of a motion", "circuits().plot")
+    if wrapped and which is not PlotKind.CURVES:
+        raise InputError(f'angles of kind="{kind}" are not wrapped: leave out wrapped')
+    if against and which in (PlotKind.PATH, PlotKind.HODOGRAPH):
+        raise InputError(f'a {kind} is drawn in the plane, over nothing: leave out "{against}"')
+    match which:
+        case PlotKind.POLAR:
+            return polar_chart(motion, names, against=against)
+        case PlotKind.PATH:
+            return path_chart(motion, names)
+        case PlotKind.HODOGRAPH:
+            return hodograph_chart(motion, names)
+        case PlotKind.TRANSMISSION:
+            return transmission_chart(motion, names, against=against)
+        case _:
+            return motion_chart(motion, names, against=against, wrapped=wrapped)
+
+
+def circuits_plot(
+    circuits: Circuits, names: Sequence[str] = (), *, kind: str = PlotKind.CIRCUITS.value
+) -> Chart:
+    """The chart of all circuits: together, or branch by branch side by side.
+
+    Raises
+    ------
+    InputError
+        If there is no circuit, or more branches than stand beside each other.
+    UnknownNameError
+        For a quantity or a kind that does not exist.
+    """
+    which = _kind(kind, CIRCUIT_KINDS, "of circuits", "sweep().plot")
+    return (
+        branch_chart(circuits, names)
+        if which is PlotKind.BRANCHES
+        else circuit_chart(circuits, names)
+    )
+
+
+def _kind(kind: str, known: Sequence[PlotKind], what: str, elsewhere: str) -> PlotKind:
+    for which in known:
+        if which.value == kind:
+            return which
+    if kind in [which.value for which in PlotKind]:
+        raise InputError(f'there is no plot {what} of kind "{kind}": {elsewhere} makes it')
+    options = choices("kinds", [which.value for which in known], kind)
+    raise UnknownNameError(f'there is no plot {what} of kind "{kind}" {options}')

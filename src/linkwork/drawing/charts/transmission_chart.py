@@ -1,0 +1,120 @@
+"""Transmission angles over the input, with the band in which forces are passed on well."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from linkwork.drawing.captions import printed_name, reached_caption
+from linkwork.drawing.charts.chart import Axis, Band, Chart
+from linkwork.drawing.charts.columns import Column, abscissa_of, column_of
+from linkwork.drawing.charts.labels import with_unit
+from linkwork.drawing.charts.motion_chart import across_axis, check_found, shared_panels
+from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.names import spelled
+from linkwork.mechanism.dyad import Dyad
+from linkwork.results.motion import Motion
+from linkwork.results.transmission import transmission_angles
+
+__all__ = ["transmission_chart"]
+
+_GOOD = (2 * math.pi / 9, 7 * math.pi / 9)  # 40° to 140°, the usual recommendation [rad]
+_TICKS = (0.0, _GOOD[0], math.pi / 2, _GOOD[1], math.pi)
+
+
+def transmission_chart(motion: Motion, names: Sequence[str] = (), *, against: str = "") -> Chart:
+    """The transmission angle of every dyad, or of those at some pins.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Pins of dyads, or columns that are angles, folded to half a turn; all dyads if left out.
+    against : str
+        Over which column, or ``time``; over the leading input if left out.
+
+    Raises
+    ------
+    InputError
+        If no position was found, or there is no dyad and no name.
+    UnknownNameError
+        For a name that is neither the pin of a dyad nor an angle.
+    """
+    check_found(motion)
+    found = transmission_angles(motion)
+    if not names and not found:
+        raise InputError(
+            f'"{motion.mechanism}" has no two links of which the transmission angle is known: '
+            'add it to [outputs], as in mu = "rocker - coupler", and name it'
+        )
+    pins = {dyad.pin: dyad for dyad in found}
+    columns = [_column(motion, found, pins, name) for name in names or pins]
+    across = abscissa_of(motion, against)
+    axis, band = _axis(motion), _band(motion)
+    panels = [
+        replace(panel, axis=axis, bands=(band,)) for panel in shared_panels(motion, across, columns)
+    ]
+    kinds = [mark.kind for panel in panels for mark in panel.marks]
+    legend = dict.fromkeys([*(column.label for column in columns), *kinds, band.name])
+    return Chart(
+        title=motion.mechanism,
+        caption=reached_caption(motion),
+        axis=across_axis(motion, across, own=not against),
+        panels=tuple(panels),
+        legend=tuple(legend),
+    )
+
+
+def _axis(motion: Motion) -> Axis:
+    """From 0 to half a turn, with ticks at the ends of the band."""
+    unit = motion.units.angle
+    return Axis(
+        label=with_unit("transmission angle", unit.value),
+        turn=unit.turn,
+        ends=(0.0, math.pi / unit.radians),
+        ticks=tuple(tick / unit.radians for tick in _TICKS),
+    )
+
+
+def _band(motion: Motion) -> Band:
+    unit = motion.units.angle
+    low, high = (bound / unit.radians for bound in _GOOD)
+    told = ("2π/9", "7π/9 rad")
+    if unit is AngleUnit.DEGREE:
+        told = (f"{low:.0f}°", f"{high:.0f}°")
+    return Band(low=low, high=high, name=f"recommended: {told[0]} to {told[1]}")
+
+
+def _column(
+    motion: Motion, found: Mapping[Dyad, Array], pins: Mapping[str, Dyad], name: str
+) -> Column:
+    radians = motion.units.angle.radians
+    pin = spelled(name, pins)
+    if pin in pins:
+        label = f"{printed_name(pin)}: {', '.join(pins[pin].links)}"
+        values = found[pins[pin]] / radians
+    elif name in motion.points:
+        known = choices("pins between two links that are known to be held", pins, name)
+        raise UnknownNameError(f'the transmission angle at "{name}" is not known {known}')
+    else:
+        column = column_of(motion, name)
+        if not column.turn:
+            raise UnknownNameError(
+                f'"{name}" is no angle {choices("pins", pins, name)}; name a pin between two '
+                "links, or an angle"
+            )
+        label = column.label
+        values = np.abs(np.angle(np.exp(1j * column.values * radians))) / radians
+    return Column(
+        name=name,
+        label=label,
+        unit=motion.units.angle.value,
+        measure="transmission angle",
+        values=values,
+        turn=motion.units.angle.turn,
+        size=motion.units.angle.turn,
+    )
