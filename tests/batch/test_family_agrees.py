@@ -13,7 +13,7 @@ from flint import arb
 import linkwork as lw
 from linkwork.batch import Family
 from linkwork.batch.family_motion import FamilyMotion
-from linkwork.batch.quantities import quantities
+from linkwork.mechanism.quantities import quantities
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.kernels.lanes import lane_kernel

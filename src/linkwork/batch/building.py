@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from linkwork.batch.pattern import Coefficients, Pattern
-from linkwork.batch.quantities import Quantity, with_numbers
+from linkwork.mechanism.quantities import Quantity, with_numbers
 from linkwork.equations.compiling import compile_equations
 from linkwork.equations.from_linkage import write_loops
 from linkwork.equations.from_loops import read_loops, read_plain_equations

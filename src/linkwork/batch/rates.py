@@ -10,7 +10,7 @@ import numpy as np
 from linkwork.batch.coefficients import block_parts, loop_coefficients, zero_coefficients
 from linkwork.batch.designs import Designs
 from linkwork.batch.lane_rows import DesignRows
-from linkwork.batch.quantities import with_numbers
+from linkwork.mechanism.quantities import with_numbers
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.foundation.lanes import Consensus, NotElementwise, many

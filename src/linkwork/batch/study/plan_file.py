@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from linkwork.batch.family import family_of
 from linkwork.batch.family_motion import FamilyMotion
-from linkwork.batch.quantities import quantity_named
+from linkwork.mechanism.quantities import quantity_named
 from linkwork.batch.sampling import Plan
 from linkwork.batch.study.choosing import chosen, values_between
 from linkwork.batch.study.job import Job, linkwork_version, passes_name

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.batch.quantities import quantity_named
+from linkwork.mechanism.quantities import quantity_named
 from linkwork.batch.sampling import Plan
 from linkwork.batch.study.choosing import values_between
 from linkwork.batch.study.job import Job, passes_name

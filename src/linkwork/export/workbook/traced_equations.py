@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.batch.building import written_equations
-from linkwork.batch.quantities import Quantity, quantities, with_numbers
+from linkwork.mechanism.quantities import Quantity, quantities, with_numbers
 from linkwork.equations.model import LoopEquations
 from linkwork.export.workbook.linear_form import LinearForm
 from linkwork.export.workbook.traced_number import Trace, TracedNumber
