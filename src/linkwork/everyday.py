@@ -218,15 +218,17 @@ class Mechanism:
             progress=progress,
         )
 
-    def sweep_beside(self, neighbour: Motion) -> Motion:
+    def sweep_beside(self, neighbour: Motion | None = None) -> Motion:
         """The cycle of a mechanism whose numbers differ a little from another's; nothing proved.
 
         Many times faster than :meth:`sweep`, for pictures while a dimension is being changed:
         Newton-Raphson starts from the neighbour's positions, at all rows at once. Where that
         would not be safe, the branch is followed anew; see :func:`linkwork.motion.renewed`.
         """
-        renewed = motion.renewed(self.model, neighbour)
-        return self.sweep(certify=False) if renewed is None else renewed
+        renewed = None if neighbour is None else motion.renewed(self.model, neighbour)
+        if renewed is None:
+            renewed = motion.sweep(self.model, certify=False, explained=False)
+        return renewed
 
     def nearest_assembly(
         self, at: float | Mapping[str, float] | None = None

@@ -23,6 +23,7 @@ _COMMANDS = (
     "configurations",
     "circuits",
     "draw",
+    "view",
     "study",
     "examples",
     "schema",
