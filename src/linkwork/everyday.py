@@ -230,9 +230,7 @@ class Mechanism:
             renewed = motion.sweep(self.model, certify=False, explained=False)
         return renewed
 
-    def nearest_assembly(
-        self, at: float | Mapping[str, float] | None = None
-    ) -> NearestAssembly:
+    def nearest_assembly(self, at: float | Mapping[str, float] | None = None) -> NearestAssembly:
         """As near to closing as it gets; see :func:`linkwork.motion.nearest_assembly`."""
         return motion.nearest_assembly(self.model, at)
 

@@ -63,7 +63,9 @@ class _Seen:
         self.kept: list[tuple[int, Array, Array, Array | None]] = []
 
     def __call__(self, k: int, v: Array, residual: Array, change: Array | None) -> None:
-        self.kept.append((k, v[0].copy(), residual[0].copy(), None if change is None else change[0]))
+        self.kept.append(
+            (k, v[0].copy(), residual[0].copy(), None if change is None else change[0])
+        )
 
     def told(self, model: Model, start: Array) -> list[Iterate]:
         """The iterates by name; ``start`` (N,) is where all other variables stand."""

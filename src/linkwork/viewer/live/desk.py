@@ -101,7 +101,9 @@ class Desk:
         except Exception as error:  # whatever it is, the page and what is unsaved must live on
             _log.exception("a request failed")
             mistake = f"{type(error).__name__}: {error}"
-            events = [Refused(message=f"this is a mistake in Linkwork, please report it: {mistake}")]
+            events = [
+                Refused(message=f"this is a mistake in Linkwork, please report it: {mistake}")
+            ]
         if events or number is not None:
             self._tell(events, number)
 

@@ -169,7 +169,9 @@ def _put_place(text: TextEdits, point: str, place: complex) -> None:
 def _known_point(linkage: Linkage, name: str) -> str:
     own = spelled(name, linkage.points)
     if own not in linkage.points:
-        raise UnknownNameError(f'there is no point "{name}" {choices("points", linkage.points, name)}')
+        raise UnknownNameError(
+            f'there is no point "{name}" {choices("points", linkage.points, name)}'
+        )
     return own
 
 
@@ -239,8 +241,9 @@ def _(edit: ask.RemoveLink, text: TextEdits, before: Before) -> Followed:
 @applied.register
 def _(edit: ask.RemovePoint, text: TextEdits, before: Before) -> Followed:
     if not text.has(("points", edit.name)):
+        known = text.keys(("points",))
         raise UnknownNameError(
-            f'there is no point "{edit.name}" {choices("points", text.keys(("points",)), edit.name)}'
+            f'there is no point "{edit.name}" {choices("points", known, edit.name)}'
         )
     text.remove(("points", edit.name))
     for link in text.keys(("links",)):
@@ -260,7 +263,7 @@ def _(edit: ask.RemovePoint, text: TextEdits, before: Before) -> Followed:
 
 @applied.register
 def _(edit: ask.AddSlider, text: TextEdits, before: Before) -> Followed:
-    fields = {
+    fields: dict[str, object] = {
         "name": edit.name,
         "link": edit.link,
         "points": list(edit.points),

@@ -16,16 +16,16 @@ __all__ = [
     "Event",
     "FileChanged",
     "FileState",
-    "Link",
     "LimitFound",
+    "Link",
     "MotionFound",
     "NewtonIterate",
     "NewtonShown",
     "OpenEnd",
     "PointMoved",
     "PositionFound",
-    "ProblemsFound",
     "ProblemShown",
+    "ProblemsFound",
     "Refused",
     "Saved",
     "Unknown",
@@ -117,7 +117,8 @@ class LimitFound:
 class MotionFound:
     """The whole cycle, one entry per row; rows without position hold ``None``.
 
-    ``live``: found from the cycle before while something is dragged, nothing proved.
+    ``live``: found from the cycle before while something is dragged, nothing proved; some of the
+    rows, ``missing`` and ``certified`` count them all.
     ``points``: for every point its x and its y.
     """
 

@@ -39,10 +39,14 @@ class MessageError(InputError):
         self.id = id
 
 
-@cache
 def kind_of(message: type) -> str:
     """``SetNumber`` → ``set_number``."""
-    return re.sub(r"(?<!^)(?=[A-Z])", "_", message.__name__).lower()
+    return _snake_case(message.__name__)
+
+
+@cache
+def _snake_case(name: str) -> str:
+    return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
 
 
 def decoded(text: str | bytes) -> tuple[Request, int | None]:
@@ -117,8 +121,8 @@ def _message(data: Any, known: tuple[type, ...], where: str) -> Any:
     kinds = {kind_of(each): each for each in known}
     kind = data.get("kind") if isinstance(data, dict) else None
     if not isinstance(kind, str) or kind not in kinds:
-        wanted = kind if isinstance(kind, str) else ""
-        _refuse(f"{where or 'kind: '}no message of kind {_shown(kind)} {choices('kinds', kinds, wanted)}")
+        listed = choices("kinds", kinds, kind if isinstance(kind, str) else "")
+        _refuse(f"{where or 'kind: '}there is no kind {_shown(kind)} {listed}")
     entries = {name: entry for name, entry in data.items() if name != "kind"}
     return _filled(kinds[kind], entries, where or f"{kind}: ")
 
@@ -170,14 +174,16 @@ def _each(entries: Any, kind: Any, where: str, longest: int) -> list[Any]:
 
 
 def _one_of(entry: Any, kinds: tuple[Any, ...], where: str, longest: int) -> Any:
-    messages = tuple(kind for kind in kinds if dataclasses.is_dataclass(kind))
+    messages: tuple[Any, ...] = tuple(k for k in kinds if dataclasses.is_dataclass(k))
     if messages:
         return _message(entry, messages, f"{where}: ")
     if entry is None and type(None) in kinds:
         return None
     if isinstance(entry, str) and str in kinds:
         return _text(entry, where, longest)
-    return _value(entry, next(kind for kind in kinds if kind not in (str, type(None))), where, longest)
+    return _value(
+        entry, next(kind for kind in kinds if kind not in (str, type(None))), where, longest
+    )
 
 
 def _plain(entry: Any, kind: Any, where: str, longest: int) -> Any:
@@ -215,19 +221,20 @@ def _text(entry: Any, where: str, longest: int) -> str:
 def _listed(entry: Any, where: str) -> list[Any]:
     if not isinstance(entry, list):
         _refuse(f"{where}: must be a list, got {_shown(entry)}")
-    return _few(entry, where)
+    _check_few(entry, where)
+    return entry
 
 
 def _tabled(entry: Any, where: str) -> dict[str, Any]:
     if not isinstance(entry, dict):
         _refuse(f"{where}: must be an object of names and numbers, got {_shown(entry)}")
-    return _few(entry, where)
+    _check_few(entry, where)
+    return entry
 
 
-def _few(entries: Any, where: str) -> Any:
+def _check_few(entries: list[Any] | dict[str, Any], where: str) -> None:
     if len(entries) > _MOST_ENTRIES:
         _refuse(f"{where}: has {len(entries)} entries, at most {_MOST_ENTRIES} are read")
-    return entries
 
 
 def _shown(entry: Any) -> str:

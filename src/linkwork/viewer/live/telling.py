@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwork.equations.notation import PlainText
 from linkwork.equations.writing import EquationSheet
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.errors import MechanismError, key_text
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
@@ -40,23 +40,26 @@ __all__ = [
 
 Numbers = dict[str, float | None]
 
+_LIVE_ROWS = 181
+
 
 def motion_found(motion: Motion, *, live: bool, message: str = "") -> tell.MotionFound:
-    """The cycle; every column without its rates."""
+    """The cycle; every column without its rates. On the way, some of its rows will do."""
     tables = (motion.unknowns, motion.links, motion.sliders, motion.outputs)
     name, unit = next(iter(motion.input_units.items()))
-    found = motion.found
+    found, rows = motion.found, _rows_shown(motion, live)
     return tell.MotionFound(
         live=live,
-        rows=len(motion),
+        rows=len(rows),
         missing=int((motion.asked & ~found).sum()),
         certified=int(motion.certified.sum()),
-        inputs={name: tuple(values.tolist()) for name, values in motion.inputs.items()},
+        inputs={name: tuple(values[rows].tolist()) for name, values in motion.inputs.items()},
         points={
-            point: (_column(x.value), _column(y.value)) for point, (x, y) in motion.points.items()
+            point: (_column(x.value[rows]), _column(y.value[rows]))
+            for point, (x, y) in motion.points.items()
         },
-        columns={n: _column(series.value) for table in tables for n, series in table.items()},
-        status=tuple(status.name for status in motion.status),
+        columns={n: _column(s.value[rows]) for table in tables for n, s in table.items()},
+        status=tuple(motion.status[row].name for row in rows),
         limits=tuple(
             tell.LimitFound(
                 what=limit.kind.word,
@@ -69,6 +72,17 @@ def motion_found(motion: Motion, *, live: bool, message: str = "") -> tell.Motio
         worst_residual=_number(motion.worst),
         message=message or motion.message,
     )
+
+
+def _rows_shown(motion: Motion, live: bool) -> IndexArray:
+    """Which rows are told: all of them, or about so many that all limits are among them."""
+    every = np.arange(len(motion))
+    if not live:
+        return every
+    stride = -(-len(motion) // _LIVE_ROWS)
+    at_limits = np.array([bool(what) for what in motion.limit], dtype=bool)
+    shown: IndexArray = every[(every % stride == 0) | (every == every[-1]) | at_limits]
+    return shown
 
 
 def position_found(position: Position) -> tell.PositionFound:

@@ -323,8 +323,6 @@ class Workbench:
     def _state(self) -> tell.FileState:
         description, sheet = self._mechanism.description, self._mechanism.equations()
         kinds = {v.name: v.kind for v in sheet.equations.variables}
-        points: Mapping[str, tuple[object, ...]] = getattr(description, "points", {})
-        numbers = description.numbers
         return tell.FileState(
             file=self._file.name,
             title=description.name,
@@ -346,7 +344,7 @@ class Workbench:
         )
 
 
-def _same_thing(edit: ask.Edit) -> str:
+def _same_thing(edit: ask.Request) -> str:
     """What is being dragged: two changes of the same thing are one."""
     match edit:
         case ask.SetNumber():
@@ -368,7 +366,8 @@ def _words(edit: ask.Edit) -> str:
     """A change in a few words, for the history."""
     match edit:
         case ask.SetNumber():
-            return f"{edit.name} = {edit.value}"
+            value = edit.value if isinstance(edit.value, str) else f"{edit.value:.12g}"
+            return f"{edit.name} = {value}"
         case ask.MovePoint():
             return f"move {edit.point}"
         case ask.ChooseConfiguration():
@@ -381,6 +380,4 @@ def _words(edit: ask.Edit) -> str:
 def _followed(edit: ask.Edit, followed: Followed) -> Events:
     if not isinstance(edit, ask.MovePoint):
         return []
-    return [
-        tell.PointMoved(point=edit.point, followed=followed.followed, stayed=followed.stayed)
-    ]
+    return [tell.PointMoved(point=edit.point, followed=followed.followed, stayed=followed.stayed)]
