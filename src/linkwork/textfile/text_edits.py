@@ -100,7 +100,8 @@ class TextEdits:
         if table in self._document:
             rows = self._document[table]
             if hasattr(rows, "append") and not isinstance(rows, Mapping):
-                _end_with_blank_line(self._document)
+                if not rows[-1].as_string().endswith("\n\n"):
+                    new.trivia.indent = "\n"
                 rows.append(new)
                 return
             raise InputError(f"[{table}] is written as one table: make it [[{table}]] to add more")

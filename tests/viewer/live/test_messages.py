@@ -172,10 +172,9 @@ JSON = st.recursive(
 def test_random_json_is_read_or_refused(data: Any) -> None:
     try:
         request, _ = decoded(json.dumps(data))
-    except MessageError as error:
-        assert str(error)
-    else:
-        assert isinstance(request, ask.REQUESTS)
+    except MessageError:
+        return
+    assert isinstance(request, ask.REQUESTS)
 
 
 @given(st.sampled_from(ask.REQUESTS), st.data())
