@@ -144,6 +144,19 @@ def test_a_drag_that_is_refused_stays_where_it_was_good(bench: Workbench) -> Non
     assert '"A B" = 123' in only(events, tell.FileState).text
 
 
+def test_a_cycle_that_was_given_up_is_made_good(bench: Workbench) -> None:
+    bench.opened()
+    bench.hurried = lambda: True
+    assert kinds(bench.handle(ask.SetNumber(name="A B", value=121))) == ["FileState"]
+    bench.hurried = lambda: False
+    # the newer change, for which it was given up, turns out to be none
+    assert kinds(bench.handle(ask.SetNumber(name="A B", value=0))) == [
+        "ProblemsFound",
+        "MotionFound",
+    ]
+    assert kinds(bench.handle(ask.SetNumber(name="A B", value=0))) == ["ProblemsFound"]
+
+
 def test_questions_do_not_end_a_drag(bench: Workbench) -> None:
     bench.handle(ask.SetNumber(name="A B", value=122, live=True))
     bench.handle(ask.SolveAt(at={}))

@@ -14,6 +14,7 @@ _HTML = """\
 <html lang="en">
 <meta charset="utf-8">
 <title>Linkwork</title>
+<link rel="icon" href="data:,">
 <h1 id="title">Linkwork</h1>
 <p id="state" role="status">Connecting …</p>
 <script src="live.js"></script>

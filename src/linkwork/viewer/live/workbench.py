@@ -72,6 +72,7 @@ class Workbench:
         self._history = History(file.text)
         self._motion: Motion | None = None
         self._solution: Events = []  # the cycle of the mechanism as it is, once solved
+        self._owed = False  # a cycle was given up, and no other has been told since
         self._drag: _Drag | None = None
         self._conflict: tell.FileChanged | None = None
 
@@ -99,9 +100,10 @@ class Workbench:
                 self._end_drag()
             return self._handle(request)
         except MechanismError as error:
-            return [telling.problems_found(error), *self._after_refusal(request)]
+            events: Events = [telling.problems_found(error), *self._after_refusal(request)]
         except InputError as error:
-            return [tell.Refused(message=str(error)), *self._after_refusal(request)]
+            events = [tell.Refused(message=str(error)), *self._after_refusal(request)]
+        return [*events, *(self._solved() if self._owed else [])]
 
     def poll(self) -> Events:
         """What another program did to the file; its changes are taken over if none is unsaved."""
@@ -288,8 +290,9 @@ class Workbench:
         try:
             motion, message = self._swept(live)
         except GivenUpError:
+            self._owed = True
             return []
-        self._motion = motion
+        self._motion, self._owed = motion, False
         events: Events = [telling.motion_found(motion, live=live, message=message)]
         if all(status is Status.NO_START for status in motion.status):
             failure = motion.failure
