@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import threading
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -91,9 +92,9 @@ class Served:
         )
 
 
-@pytest.fixture
-def served(path: Path) -> Iterator[Served]:
-    """The four-bar behind a socket, ended at the end."""
+@contextmanager
+def serving(path: Path) -> Iterator[Served]:
+    """A mechanism file behind a socket, ended at the end."""
     workbench = Workbench(MechanismFile(path), lw.loads)
     server = LiveServer(workbench)
     thread = threading.Thread(target=server.run)
@@ -104,6 +105,23 @@ def served(path: Path) -> Iterator[Served]:
         server.stop()
         thread.join(10)
         assert not thread.is_alive()
+
+
+@pytest.fixture
+def served(path: Path) -> Iterator[Served]:
+    """A server of a test's own."""
+    with serving(path) as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def standing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """A server for all tests of a module that leave it as it is."""
+    file = tmp_path_factory.mktemp("standing") / "four-bar.toml"
+    file.write_text(FOUR_BAR, encoding="utf-8")
+    with serving(file) as found:
+        yield found
+        assert not found.workbench.unsaved
 
 
 def ask(page: ClientConnection, kind: str, **fields: Any) -> None:

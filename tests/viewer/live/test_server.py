@@ -54,8 +54,8 @@ def raw(served: Served, request: bytes) -> bytes:
 # Pages
 
 
-def test_the_page_is_answered_with_nothing_but_itself(served: Served) -> None:
-    response, body = answer(served)
+def test_the_page_is_answered_with_nothing_but_itself(standing: Served) -> None:
+    response, body = answer(standing)
     assert response.status == 200
     assert b"Linkwork" in body
     policy = response.headers["content-security-policy"]
@@ -68,21 +68,21 @@ def test_the_page_is_answered_with_nothing_but_itself(served: Served) -> None:
     assert response.headers["cache-control"] == "no-store"
     assert response.headers["x-frame-options"] == "DENY"
     assert response.headers["server"] is None
-    script, _ = answer(served, "/live.js")
+    script, _ = answer(standing, "/live.js")
     assert script.headers["content-type"].startswith("text/javascript")
 
 
-def test_the_page_works_under_both_names_of_this_machine(served: Served) -> None:
-    name = f"localhost:{served.server.port}"
-    assert answer(served, Host=name)[0].status == 200
-    with served.connect(origin=f"http://{served.host}") as page:
+def test_the_page_works_under_both_names_of_this_machine(standing: Served) -> None:
+    name = f"localhost:{standing.server.port}"
+    assert answer(standing, Host=name)[0].status == 200
+    with standing.connect(origin=f"http://{standing.host}") as page:
         assert told(page, "file_state")["title"] == "Four-bar"
 
 
-def test_nothing_that_is_served_carries_the_token_or_the_file(served: Served) -> None:
+def test_nothing_that_is_served_carries_the_token_or_the_file(standing: Served) -> None:
     for path in ("/", "/live.js"):
-        _, body = answer(served, path)
-        assert served.server.token.encode() not in body
+        _, body = answer(standing, path)
+        assert standing.server.token.encode() not in body
         assert b"four-bar" not in body
 
 
@@ -106,15 +106,17 @@ def test_nothing_that_is_served_carries_the_token_or_the_file(served: Served) ->
         "*",
     ],
 )
-def test_no_other_path_leads_anywhere(served: Served, target: str) -> None:
-    status = raw(served, f"GET {target} HTTP/1.1\r\nHost: {served.host}\r\n\r\n".encode())
+def test_no_other_path_leads_anywhere(standing: Served, target: str) -> None:
+    status = raw(standing, f"GET {target} HTTP/1.1\r\nHost: {standing.host}\r\n\r\n".encode())
     assert re.match(rb"HTTP/1.1 4\d\d ", status), status[:80]
     assert b"four" not in status
     assert b"root:" not in status
 
 
-def test_an_absolute_address_of_elsewhere_is_not_fetched(served: Served) -> None:
-    found = raw(served, f"GET http://example.com/ HTTP/1.1\r\nHost: {served.host}\r\n\r\n".encode())
+def test_an_absolute_address_of_elsewhere_is_not_fetched(standing: Served) -> None:
+    found = raw(
+        standing, f"GET http://example.com/ HTTP/1.1\r\nHost: {standing.host}\r\n\r\n".encode()
+    )
     assert re.match(rb"HTTP/1.1 4\d\d ", found), found[:80]
 
 
@@ -122,48 +124,48 @@ def test_an_absolute_address_of_elsewhere_is_not_fetched(served: Served) -> None
     "host",
     ["example.com", "127.0.0.1", "127.0.0.1:1", "localhost", "127.0.0.1.example.com:{port}", ""],
 )
-def test_a_foreign_host_is_refused(served: Served, host: str) -> None:
-    name = host.format(port=served.server.port)
-    response, body = answer(served, Host=name)
+def test_a_foreign_host_is_refused(standing: Served, host: str) -> None:
+    name = host.format(port=standing.server.port)
+    response, body = answer(standing, Host=name)
     assert response.status == 421
     assert body == b"this server does not answer under that name"
 
 
-def test_a_request_without_host_or_with_two_is_refused(served: Served) -> None:
-    assert b" 400 " in raw(served, b"GET / HTTP/1.1\r\n\r\n").split(b"\r\n")[0]
-    assert b" 421 " in raw(served, b"GET / HTTP/1.0\r\n\r\n").split(b"\r\n")[0]
-    two = f"GET / HTTP/1.1\r\nHost: {served.host}\r\nHost: example.com\r\n\r\n"
-    assert re.match(rb"HTTP/1.1 4(00|21) ", raw(served, two.encode()))
+def test_a_request_without_host_or_with_two_is_refused(standing: Served) -> None:
+    assert b" 400 " in raw(standing, b"GET / HTTP/1.1\r\n\r\n").split(b"\r\n")[0]
+    assert b" 421 " in raw(standing, b"GET / HTTP/1.0\r\n\r\n").split(b"\r\n")[0]
+    two = f"GET / HTTP/1.1\r\nHost: {standing.host}\r\nHost: example.com\r\n\r\n"
+    assert re.match(rb"HTTP/1.1 4(00|21) ", raw(standing, two.encode()))
 
 
 @pytest.mark.parametrize(
     "origin", ["http://example.com", "null", "https://{host}", "http://{host}.x"]
 )
-def test_a_foreign_origin_is_refused(served: Served, origin: str) -> None:
-    response, _ = answer(served, Origin=origin.format(host=served.host))
+def test_a_foreign_origin_is_refused(standing: Served, origin: str) -> None:
+    response, _ = answer(standing, Origin=origin.format(host=standing.host))
     assert response.status == 403
 
 
 @pytest.mark.parametrize(
     "method", ["POST", "PUT", "DELETE", "OPTIONS", "TRACE", "CONNECT", "PATCH"]
 )
-def test_no_method_changes_anything(served: Served, method: str) -> None:
-    response, _ = answer(served, method=method)
+def test_no_method_changes_anything(standing: Served, method: str) -> None:
+    response, _ = answer(standing, method=method)
     assert response.status in (400, 405)
-    assert answer(served)[0].status == 200
+    assert answer(standing)[0].status == 200
 
 
 @pytest.mark.parametrize("method", ["POST", "GET"])
-def test_a_body_of_100_megabytes_is_refused_unread(served: Served, method: str) -> None:
+def test_a_body_of_100_megabytes_is_refused_unread(standing: Served, method: str) -> None:
     size = 100_000_000
-    head = f"{method} / HTTP/1.1\r\nHost: {served.host}\r\nContent-Length: {size}\r\n\r\n"
-    with socket.create_connection(("127.0.0.1", served.server.port), timeout=10) as link:
+    head = f"{method} / HTTP/1.1\r\nHost: {standing.host}\r\nContent-Length: {size}\r\n\r\n"
+    with socket.create_connection(("127.0.0.1", standing.server.port), timeout=10) as link:
         link.sendall(head.encode())
         found = link.recv(65536)  # the answer comes before any of it is sent
         assert re.match(rb"HTTP/1.1 4(05|13) ", found), found[:80]
         assert b"connection: close" in found.lower()
         assert poured(link, size) < size // 4  # what fits into buffers on the way
-    assert answer(served)[0].status == 200
+    assert answer(standing)[0].status == 200
 
 
 def poured(link: socket.socket, size: int) -> int:
@@ -177,20 +179,20 @@ def poured(link: socket.socket, size: int) -> int:
     return sent
 
 
-def test_an_endless_body_in_pieces_is_refused(served: Served) -> None:
-    head = f"GET / HTTP/1.1\r\nHost: {served.host}\r\nTransfer-Encoding: chunked\r\n\r\n"
-    assert b" 413 " in raw(served, head.encode()).split(b"\r\n")[0]
+def test_an_endless_body_in_pieces_is_refused(standing: Served) -> None:
+    head = f"GET / HTTP/1.1\r\nHost: {standing.host}\r\nTransfer-Encoding: chunked\r\n\r\n"
+    assert b" 413 " in raw(standing, head.encode()).split(b"\r\n")[0]
 
 
-def test_an_endless_head_is_refused(served: Served) -> None:
-    head = f"GET / HTTP/1.1\r\nHost: {served.host}\r\nX: " + "a" * 200_000
-    assert re.match(rb"HTTP/1.1 4\d\d ", raw(served, head.encode()))
+def test_an_endless_head_is_refused(standing: Served) -> None:
+    head = f"GET / HTTP/1.1\r\nHost: {standing.host}\r\nX: " + "a" * 200_000
+    assert re.match(rb"HTTP/1.1 4\d\d ", raw(standing, head.encode()))
 
 
 @pytest.mark.parametrize("noise", [b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", b"\0" * 5000])
-def test_noise_is_no_request(served: Served, noise: bytes) -> None:
-    assert not raw(served, noise + b"\r\n\r\n").startswith(b"HTTP/1.1 200")
-    assert answer(served)[0].status == 200
+def test_noise_is_no_request(standing: Served, noise: bytes) -> None:
+    assert not raw(standing, noise + b"\r\n\r\n").startswith(b"HTTP/1.1 200")
+    assert answer(standing)[0].status == 200
 
 
 # The connection
@@ -210,33 +212,33 @@ def test_noise_is_no_request(served: Served, noise: bytes) -> None:
         {"path": "/live/../live2"},
     ],
 )
-def test_a_stranger_gets_no_connection(served: Served, changes: dict[str, object]) -> None:
-    with pytest.raises(InvalidStatus) as caught, served.connect(**changes):
+def test_a_stranger_gets_no_connection(standing: Served, changes: dict[str, object]) -> None:
+    with pytest.raises(InvalidStatus) as caught, standing.connect(**changes):
         pass
     assert caught.value.response.status_code == 403
 
 
-def test_the_right_token_beside_a_wrong_one_is_no_way_to_try_many(served: Served) -> None:
-    offers = ["linkwork", f"token.{served.server.token}", "token.guess"]
-    with pytest.raises(InvalidHandshake), served.connect(subprotocols=offers):
+def test_the_right_token_beside_a_wrong_one_is_no_way_to_try_many(standing: Served) -> None:
+    offers = ["linkwork", f"token.{standing.server.token}", "token.guess"]
+    with pytest.raises(InvalidHandshake), standing.connect(subprotocols=offers):
         pass
 
 
-def test_a_connection_under_a_foreign_host_is_refused(served: Served) -> None:
+def test_a_connection_under_a_foreign_host_is_refused(standing: Served) -> None:
     lines = [
         "GET /live HTTP/1.1",
         "Host: example.com",
-        f"Origin: http://{served.host}",
+        f"Origin: http://{standing.host}",
         "Upgrade: websocket",
         "Connection: Upgrade",
         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==",
         "Sec-WebSocket-Version: 13",
-        f"Sec-WebSocket-Protocol: linkwork, token.{served.server.token}",
+        f"Sec-WebSocket-Protocol: linkwork, token.{standing.server.token}",
     ]
-    ours = raw_head(served, lines)
+    ours = raw_head(standing, lines)
     assert b" 403 " in ours
-    lines[1] = f"Host: {served.host}"
-    assert b" 101 " in raw_head(served, lines)
+    lines[1] = f"Host: {standing.host}"
+    assert b" 101 " in raw_head(standing, lines)
 
 
 def raw_head(served: Served, lines: list[str]) -> bytes:
@@ -382,10 +384,10 @@ def test_our_own_mistake_is_said_and_survived(
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere 127.0.0.2 may not exist")
-def test_it_listens_on_this_machine_only(served: Served) -> None:
-    assert served.server.address.startswith("http://127.0.0.1:")
+def test_it_listens_on_this_machine_only(standing: Served) -> None:
+    assert standing.server.address.startswith("http://127.0.0.1:")
     with pytest.raises(OSError, match=r"(?i)refused"):  # this machine too, by another address
-        socket.create_connection(("127.0.0.2", served.server.port), timeout=5)
+        socket.create_connection(("127.0.0.2", standing.server.port), timeout=5)
 
 
 def test_every_server_has_its_own_token_and_port(served: Served, bench: Workbench) -> None:

@@ -456,7 +456,7 @@ def test_every_mechanism_of_the_library_opens_and_is_edited(name: str, tmp_path:
     assert isinstance(state, tell.FileState)
     assert state.equations
     plain = [n for n in state.numbers if not n.formula and n.table not in ("points", "guess")]
-    for each in plain[:2]:
+    for each in plain[:1]:
         events = bench.handle(ask.SetNumber(name=each.name, value=each.value * 1.0001 + 1e-4))
         assert events
         assert not isinstance(events[0], tell.Refused), events[0]
