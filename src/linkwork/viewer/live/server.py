@@ -7,23 +7,23 @@ import secrets
 import signal
 import socket
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from collections.abc import Awaitable, Callable, Iterator, MutableMapping
+from contextlib import contextmanager, suppress
+from typing import Any
 
 from linkwork.foundation.errors import InputError, MissingPackageError
 from linkwork.viewer.live.desk import Desk
 from linkwork.viewer.live.events import Event, Refused
-from linkwork.viewer.live.guard import SUBPROTOCOL, Guard, Refusal
+from linkwork.viewer.live.guard import SUBPROTOCOL, Guard
 from linkwork.viewer.live.messages import LARGEST_MESSAGE, MessageError, decoded, encoded
 from linkwork.viewer.live.placeholder import PAGES
 from linkwork.viewer.live.workbench import Workbench
 
-if TYPE_CHECKING:
-    from starlette.types import Receive, Scope, Send
-    from starlette.websockets import WebSocket
-
 __all__ = ["LiveServer"]
+
+Scope = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
+Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 
 _LOOPBACK = "127.0.0.1"
 _MOST_WAITING = 100  # requests or events; a page that sends or reads no slower is held back
@@ -70,7 +70,7 @@ class LiveServer:
         Raises
         ------
         MissingPackageError
-            Without uvicorn, starlette or websockets.
+            Without uvicorn or websockets.
         """
         try:
             self._server = _uvicorn(self._app)
@@ -105,59 +105,56 @@ class LiveServer:
                 signal.signal(number, handler)
 
     async def _app(self, scope: Scope, receive: Receive, send: Send) -> None:
-        from starlette.websockets import WebSocket
-
+        """An ASGI application, as uvicorn calls it."""
         if scope["type"] == "websocket":
-            await self._connection(WebSocket(scope, receive, send))
+            await self._connection(scope, receive, send)
         elif scope["type"] == "http":
-            await self._answer(scope, receive, send)
+            await self._answer(scope, send)
 
-    async def _answer(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def _answer(self, scope: Scope, send: Send) -> None:
         """One of the fixed pages; a body is never read."""
-        from starlette.responses import Response
-
         headers = self._guard.security_headers
         refusal = self._guard.refused(scope["method"], scope["raw_path"], scope["headers"])
-        if refusal is not None:
-            headers["connection"] = "close"
-            response = Response(refusal.message, refusal.status, headers, "text/plain")
+        if refusal is None:
+            status, (kind, content) = 200, PAGES[scope["path"]]
         else:
-            kind, content = PAGES[scope["path"]]
-            response = Response(content, 200, headers, kind)
-        await response(scope, receive, send)
+            status, kind, content = refusal.status, "text/plain", refusal.message.encode()
+            headers["connection"] = "close"
+        headers |= {"content-type": kind, "content-length": str(len(content))}
+        lines = [(name.encode(), entry.encode()) for name, entry in headers.items()]
+        await send({"type": "http.response.start", "status": status, "headers": lines})
+        await send({"type": "http.response.body", "body": content})
 
-    async def _connection(self, page: WebSocket) -> None:
+    async def _connection(self, scope: Scope, receive: Receive, send: Send) -> None:
         """A page with the token, from its connection to its end."""
-        refusal: Refusal | None = self._guard.connection_refused(
-            page.scope["path"], page.scope["headers"], page.scope["subprotocols"]
+        await receive()  # the wish to connect
+        refusal = self._guard.connection_refused(
+            scope["path"], scope["headers"], scope["subprotocols"]
         )
         if refusal is not None:
-            await page.close()  # before it is accepted: the answer is 403
+            await send({"type": "websocket.close"})  # before it is accepted: the answer is 403
             return
-        await page.accept(subprotocol=SUBPROTOCOL)
+        await send({"type": "websocket.accept", "subprotocol": SUBPROTOCOL})
         if self._page is not None:
-            await page.send_text(encoded(Refused(message=_OCCUPIED_MESSAGE)))
-            await page.close(_OCCUPIED, "another page is connected")
+            message = encoded(Refused(message=_OCCUPIED_MESSAGE))
+            await send({"type": "websocket.send", "text": message})
+            await send({"type": "websocket.close", "code": _OCCUPIED})
             return
         self._page, self._loop = asyncio.Queue(), asyncio.get_running_loop()
-        sending = asyncio.create_task(self._send(page, self._page))
+        sending = asyncio.create_task(self._send(send, self._page))
         try:
             self._desk.open()
-            await self._receive(page, self._page)
+            await self._receive(receive, self._page)
         finally:
             self._page = None  # the workbench stays as it is for the next page
             sending.cancel()
 
-    async def _receive(self, page: WebSocket, telling: asyncio.Queue[str]) -> None:
-        from starlette.websockets import WebSocketDisconnect
-
+    async def _receive(self, receive: Receive, telling: asyncio.Queue[str]) -> None:
+        """Requests until the page is gone."""
         while True:
             while max(self._desk.waiting, telling.qsize()) > _MOST_WAITING:
                 await asyncio.sleep(0.02)
-            try:
-                message = await page.receive()
-            except (WebSocketDisconnect, RuntimeError):
-                return
+            message = await receive()
             if message["type"] == "websocket.disconnect":
                 return
             text = message.get("text")
@@ -169,9 +166,10 @@ class LiveServer:
                 telling.put_nowait(encoded(Refused(message=str(error)), error.id))
 
     @staticmethod
-    async def _send(page: WebSocket, telling: asyncio.Queue[str]) -> None:
-        while True:
-            await page.send_text(await telling.get())
+    async def _send(send: Send, telling: asyncio.Queue[str]) -> None:
+        with suppress(OSError):  # the page is gone
+            while True:
+                await send({"type": "websocket.send", "text": await telling.get()})
 
     def _tell(self, events: list[Event], number: int | None) -> None:
         """Called by the desk: hand events over to the network's thread."""
@@ -214,12 +212,11 @@ def _listening(port: int) -> socket.socket:
 def _uvicorn(app: Callable[..., Any]) -> Any:
     """A server that writes no log, so that no token can get into one."""
     try:
-        import starlette  # noqa: F401 - asked for now, so that nothing fails later
         import uvicorn
         import websockets  # noqa: F401 - uvicorn's way to hold the connection
     except ImportError:
         raise MissingPackageError(
-            'the live page needs starlette, uvicorn and websockets: pip install "linkwork[view]"'
+            'the live page needs uvicorn and websockets: pip install "linkwork[view]"'
         ) from None
     config = uvicorn.Config(
         app,
