@@ -363,7 +363,8 @@ def test_a_change_on_disk_reaches_the_page(served: Served) -> None:
     with served.connect() as page:
         told(page, "motion_found")
         served.path.write_text(FOUR_BAR.replace('"Four-bar"', '"Other"'), encoding="utf-8")
-        assert told(page, "file_changed")["reloaded"]
+        changed = told(page, "file_changed")
+        assert (changed["reloaded"], changed["answers"]) == (True, None)
         assert told(page, "file_state")["title"] == "Other"
 
 

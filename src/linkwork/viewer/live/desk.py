@@ -49,6 +49,10 @@ class Desk:
         """How many requests wait."""
         return len(self._waiting)
 
+    def prepare(self) -> None:
+        """Solve what :meth:`open` will tell."""
+        self.ask(*_UNTOLD)
+
     def open(self) -> None:
         """Tell everything from the beginning."""
         self.ask(None, None)
@@ -93,7 +97,10 @@ class Desk:
     def _do(self, request: Request | None, number: int | None) -> None:
         try:
             if (request, number) == _NOTHING:
-                events = self._workbench.poll()
+                number, events = None, self._workbench.poll()
+            elif (request, number) == _UNTOLD:
+                self._workbench.opened()
+                return
             elif request is None:
                 events = self._workbench.opened()
             else:
@@ -101,6 +108,7 @@ class Desk:
         except Exception as error:  # whatever it is, the page and what is unsaved must live on
             _log.exception("a request failed")
             mistake = f"{type(error).__name__}: {error}"
+            number = None if request is None else number
             events = [
                 Refused(message=f"this is a mistake in Linkwork, please report it: {mistake}")
             ]
@@ -108,7 +116,9 @@ class Desk:
             self._tell(events, number)
 
 
+#: Beside requests and their ids: a look at the file, and work that nobody waits for.
 _NOTHING: tuple[Request | None, int | None] = (None, -1)
+_UNTOLD: tuple[Request | None, int | None] = (None, -2)
 
 
 def _replaces(newer: Request | None, older: Request | None) -> bool:

@@ -73,6 +73,7 @@ class LiveServer:
             Without uvicorn or websockets.
         """
         try:
+            self._desk.prepare()  # solved while the browser starts
             self._server = _uvicorn(self._app)
             if not self._ended:
                 with self._ended_by_signals():
