@@ -179,11 +179,10 @@ def _one_of(entry: Any, kinds: tuple[Any, ...], where: str, longest: int) -> Any
         return _message(entry, messages, f"{where}: ")
     if entry is None and type(None) in kinds:
         return None
-    if isinstance(entry, str) and str in kinds:
+    others = [kind for kind in kinds if kind not in (str, type(None))]
+    if str in kinds and (isinstance(entry, str) or not others):
         return _text(entry, where, longest)
-    return _value(
-        entry, next(kind for kind in kinds if kind not in (str, type(None))), where, longest
-    )
+    return _value(entry, others[0], where, longest)
 
 
 def _plain(entry: Any, kind: Any, where: str, longest: int) -> Any:
