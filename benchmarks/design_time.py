@@ -10,9 +10,9 @@ import numpy as np
 import linkwork as lw
 from benchmarks.timing import bar, interleaved
 from linkwork.batch import Designs, designs_of
-from linkwork.batch.quantities import quantities
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import LinkworkError
+from linkwork.mechanism.quantities import quantities
 
 __all__ = ["measure"]
 

@@ -19,11 +19,11 @@ import linkwork as lw
 from linkwork.batch import Family, latin_hypercube
 from linkwork.batch.family_motion import FamilyMotion
 from linkwork.batch.lane_rows import Path
-from linkwork.batch.quantities import quantities
 from linkwork.foundation.errors import InputError
 from linkwork.kernels.lanes.device_compiling import graphics_card, name_of
 from linkwork.kernels.lanes.device_kernel import DeviceKernel
 from linkwork.kernels.lanes.lane_kernel import Gear, Steps
+from linkwork.mechanism.quantities import quantities
 
 __all__ = ["FAMILIES", "Compared", "compared", "family_of", "kernel_speed", "main"]
 

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from linkwork.results.circuits import Circuits
     from linkwork.results.classification import Inversion
     from linkwork.results.configurations import Configurations
+    from linkwork.results.iterates import Iterates
+    from linkwork.results.nearest_assembly import NearestAssembly
 
 __all__ = [
     "Mechanism",
@@ -215,6 +217,32 @@ class Mechanism:
             options=options,
             progress=progress,
         )
+
+    def sweep_beside(self, neighbour: Motion | None = None) -> Motion:
+        """The cycle of a mechanism whose numbers differ a little from another's; nothing proved.
+
+        Many times faster than :meth:`sweep`, for pictures while a dimension is being changed:
+        Newton-Raphson starts from the neighbour's positions, at all rows at once. Where that
+        would not be safe, the branch is followed anew; see :func:`linkwork.motion.renewed`.
+        """
+        renewed = None if neighbour is None else motion.renewed(self.model, neighbour)
+        if renewed is None:
+            renewed = motion.sweep(self.model, certify=False, explained=False)
+        return renewed
+
+    def nearest_assembly(self, at: float | Mapping[str, float] | None = None) -> NearestAssembly:
+        """As near to closing as it gets; see :func:`linkwork.motion.nearest_assembly`."""
+        return motion.nearest_assembly(self.model, at)
+
+    def iterates(
+        self,
+        guess: Mapping[str, float] | None = None,
+        at: float | Mapping[str, float] | None = None,
+        *,
+        options: NewtonOptions | None = None,
+    ) -> Iterates:
+        """Newton-Raphson from a guess, step by step; see :func:`linkwork.motion.iterates`."""
+        return motion.iterates(self.model, guess, at, options=options)
 
     def configurations(self, at: float | Mapping[str, float] | None = None) -> Configurations:
         """Every way to put it together at one input; see :func:`linkwork.motion.configurations`."""

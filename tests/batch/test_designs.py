@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 import linkwork as lw
 from linkwork.batch import building
 from linkwork.batch.designs import designs_of
-from linkwork.batch.quantities import quantities
 from linkwork.foundation.errors import InputError, MechanismError, UnknownNameError
 from linkwork.mechanism import link_shape
+from linkwork.mechanism.quantities import quantities
 from tests.batch.alone import agree
 
 FOUR_BAR = {

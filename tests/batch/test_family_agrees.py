@@ -13,10 +13,10 @@ from flint import arb
 import linkwork as lw
 from linkwork.batch import Family
 from linkwork.batch.family_motion import FamilyMotion
-from linkwork.batch.quantities import quantities
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.kernels.lanes import lane_kernel
+from linkwork.mechanism.quantities import quantities
 from linkwork.motion import sweep
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion

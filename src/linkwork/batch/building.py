@@ -14,7 +14,6 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from linkwork.batch.pattern import Coefficients, Pattern
-from linkwork.batch.quantities import Quantity, with_numbers
 from linkwork.equations.compiling import compile_equations
 from linkwork.equations.from_linkage import write_loops
 from linkwork.equations.from_loops import read_loops, read_plain_equations
@@ -25,6 +24,7 @@ from linkwork.foundation.lanes import Consensus, NotElementwise, many
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
+from linkwork.mechanism.quantities import Quantity, with_numbers
 from linkwork.motion.model import Model, model_of
 
 __all__ = ["Builder", "built", "family_base", "written_equations"]

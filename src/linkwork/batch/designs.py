@@ -9,11 +9,11 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.batch.building import Builder, built, family_base
-from linkwork.batch.quantities import Quantity, quantity_named, with_numbers
 from linkwork.foundation.arrays import AnyArray, Array, ComplexArray, IndexArray
 from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.mechanism.description import Description
+from linkwork.mechanism.quantities import Quantity, quantity_named, with_numbers
 from linkwork.motion.model import Model
 
 __all__ = ["Designs", "designs_of"]

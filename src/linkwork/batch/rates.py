@@ -10,7 +10,6 @@ import numpy as np
 from linkwork.batch.coefficients import block_parts, loop_coefficients, zero_coefficients
 from linkwork.batch.designs import Designs
 from linkwork.batch.lane_rows import DesignRows
-from linkwork.batch.quantities import with_numbers
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.foundation.lanes import Consensus, NotElementwise, many
@@ -19,6 +18,7 @@ from linkwork.kernels.lanes.closure import BlockPart
 from linkwork.kernels.lanes.places import at_places
 from linkwork.kernels.lanes.rate_programs import PlaceProgram, evidence_program, rate_program
 from linkwork.mechanism.description import Description
+from linkwork.mechanism.quantities import with_numbers
 from linkwork.motion.drive import Drive
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.speeds import leading_speeds

@@ -24,6 +24,7 @@ _COMMANDS = (
     "circuits",
     "draw",
     "plot",
+    "view",
     "study",
     "examples",
     "schema",

@@ -17,7 +17,10 @@ if TYPE_CHECKING:
     from linkwork.motion.classifying.inverting import driven_otherwise, inversion, inversions
     from linkwork.motion.described import as_described
     from linkwork.motion.extremes import check_quantities
+    from linkwork.motion.iterating import iterates
     from linkwork.motion.model import Model, model_of
+    from linkwork.motion.nearest_assembling import nearest_assembly
+    from linkwork.motion.renewing import renewed
     from linkwork.motion.solving import solve
     from linkwork.motion.sweeping import sweep
     from linkwork.motion.vector_loops import vector_loops
@@ -31,7 +34,10 @@ else:
             "circuit.circuits": ("branch_start", "circuits"),
             "extremes": ("check_quantities",),
             "classifying.inverting": ("driven_otherwise", "inversion", "inversions"),
+            "iterating": ("iterates",),
             "model": ("Model", "model_of"),
+            "nearest_assembling": ("nearest_assembly",),
+            "renewing": ("renewed",),
             "solving": ("solve",),
             "sweeping": ("sweep",),
             "vector_loops": ("vector_loops",),
@@ -49,7 +55,10 @@ __all__ = [
     "driven_otherwise",
     "inversion",
     "inversions",
+    "iterates",
     "model_of",
+    "nearest_assembly",
+    "renewed",
     "solve",
     "solve_configuration",
     "started_in",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -51,6 +52,29 @@ class Model:
         start = np.concatenate([position.q, np.array(values) * self.input_scale])
         equations = replace(self.equations, start=start)
         return replace(self, equations=equations, branch=position.configuration or self.branch)
+
+    def guessed(self, values: Mapping[str, float]) -> Model:
+        """The model with another guess for some unknowns, everyday units.
+
+        Raises
+        ------
+        UnknownNameError, InputError
+            For a name that is no unknown, or a value that is no finite number.
+        """
+        unknowns = self.equations.unknowns
+        number = {canonical(u.name): k for k, u in enumerate(unknowns)}
+        start = self.equations.start.copy()
+        for name, value in values.items():
+            if canonical(name) not in number:
+                raise UnknownNameError(
+                    f'"{name}" is not an unknown of {self.description.name} '
+                    f"{choices('unknowns', [u.name for u in unknowns], name)}"
+                )
+            if not np.isfinite(value):
+                raise InputError(f"the guess of {name} must be a finite number, got {value}")
+            k = number[canonical(name)]
+            start[k] = value * self.units.scale(Kind(unknowns[k].kind))
+        return replace(self, equations=replace(self.equations, start=start))
 
     @property
     def circuit(self) -> str:

@@ -52,6 +52,7 @@ def sweep(
     limits_of: Sequence[str] = (),
     options: NewtonOptions | None = None,
     progress: Callable[[float], None] | None = None,
+    explained: bool = True,
 ) -> Motion:
     """The positions at every row of the input's table, on the branch of the guess.
 
@@ -74,6 +75,9 @@ def sweep(
         Quantities whose largest and smallest values are located, a row for each.
     progress : callable, optional
         Called with the finished fraction, 0 to 1.
+    explained : bool
+        Find out why there is no start; that takes many times longer than finding that there is
+        none.
 
     Raises
     ------
@@ -83,7 +87,8 @@ def sweep(
     policy = ChangePointPolicy.of(change_points)
     _ = model.rows  # without an input there is nothing to sweep: an error
     check_quantities(model, limits_of)
-    work = _begun(model, certify, options or NewtonOptions(), policy, progress)
+    opt = options or NewtonOptions()
+    work = _begun(model, certify, opt, policy, progress, explained=explained)
     if isinstance(work, Start):
         return _without_start(model, work)
     if through:

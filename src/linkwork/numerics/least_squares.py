@@ -1,6 +1,8 @@
 """The nearest miss: where a system that may have no solution comes closest to one.
 
-Levenberg-Marquardt (Marquardt 1963, doi:10.1137/0111030) on scaled residuals and variables.
+Levenberg-Marquardt (Marquardt 1963, doi:10.1137/0111030) on scaled residuals and variables. Where
+much is missing, its model JᵀJ of the curvature is too poor for more than slow progress; the last
+stretch then goes by Newton's method with all of the curvature, JᵀJ + Σ r_k ∇²r_k.
 """
 
 from __future__ import annotations
@@ -11,6 +13,10 @@ from linkwork.foundation.arrays import Array
 from linkwork.numerics.system import System
 
 __all__ = ["nearest_miss"]
+
+_MOST_UNKNOWNS = 40  # of a system whose whole curvature is formed
+_NEWTON_STEPS = 30
+_CLOSED = 1e-20  # sum of squares of a position: there is nothing to refine
 
 
 def nearest_miss(system: System, start: Array, steps: int = 200) -> tuple[Array, Array]:
@@ -52,4 +58,54 @@ def nearest_miss(system: System, start: Array, steps: int = 200) -> tuple[Array,
             damping *= 5.0
             if damping > 1e12:
                 break
+    if n <= _MOST_UNKNOWNS and np.isfinite(r).all() and r @ r > _CLOSED:
+        v, f = _refined(system, v, f)
     return v[0], f[0]
+
+
+def _refined(system: System, v: Array, f: Array) -> tuple[Array, Array]:
+    """Newton's method for the minimum beside v (1, N); stops where it would lead uphill."""
+    n = system.unknowns
+    scale, weights = system.equation_scale, system.variable_scale[:n]
+    for _ in range(_NEWTON_STEPS):
+        r = f[0] / scale
+        j = system.jacobian(v)[0, :, :n] * weights / scale[:, None]
+        gradient = j.T @ r
+        hessian = j.T @ j + _curvature(system, v, r / scale)
+        try:
+            np.linalg.cholesky(hessian)
+        except np.linalg.LinAlgError:
+            break
+        change = -np.linalg.solve(hessian, gradient)
+        trial = v.copy()
+        trial[0, :n] += change * weights
+        f_trial = system.residual(trial)
+        r_trial = f_trial[0] / scale
+        if not (np.isfinite(r_trial).all() and r_trial @ r_trial < r @ r):
+            break
+        v, f = trial, f_trial
+        if np.abs(change).max() < 1e-14:
+            break
+    return v, f
+
+
+def _curvature(system: System, v: Array, weighted: Array) -> Array:
+    """Σ r_k ∇²r_k in scaled variables, (n, n), from second derivatives along single directions.
+
+    2 D²F[a, b] = D²F[a + b, a + b] - D²F[a, a] - D²F[b, b] gives the mixed ones.
+    """
+    n = system.unknowns
+    first, second = np.triu_indices(n)
+    along = np.zeros((len(first), v.shape[1]))
+    lanes = np.arange(len(first))
+    along[lanes, first] = system.variable_scale[first]
+    along[lanes, second] = system.variable_scale[second]  # the same one where both are one
+    bends = system.second(np.repeat(v, len(first), axis=0), along) @ weighted
+    curvature = np.zeros((n, n))
+    curvature[first, second] = bends
+    own = np.diag(curvature).copy()
+    mixed = first != second
+    halves = 0.5 * (bends[mixed] - own[first[mixed]] - own[second[mixed]])
+    curvature[first[mixed], second[mixed]] = halves
+    curvature[second[mixed], first[mixed]] = halves
+    return curvature

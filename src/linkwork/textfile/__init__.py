@@ -10,7 +10,8 @@ if TYPE_CHECKING:
     from linkwork.textfile.lines import Lines
     from linkwork.textfile.reader import ReadFile, read_bytes, read_file, read_text
     from linkwork.textfile.schema import json_schema, schema_of, schema_text
-    from linkwork.textfile.writer import save, write_text
+    from linkwork.textfile.text_edits import TextEdits
+    from linkwork.textfile.writer import save, save_text, write_text
 else:
     __getattr__ = loader(
         __name__,
@@ -18,18 +19,21 @@ else:
             "lines": ("Lines",),
             "reader": ("ReadFile", "read_bytes", "read_file", "read_text"),
             "schema": ("json_schema", "schema_of", "schema_text"),
-            "writer": ("save", "write_text"),
+            "text_edits": ("TextEdits",),
+            "writer": ("save", "save_text", "write_text"),
         },
     )
 
 __all__ = [
     "Lines",
     "ReadFile",
+    "TextEdits",
     "json_schema",
     "read_bytes",
     "read_file",
     "read_text",
     "save",
+    "save_text",
     "schema_of",
     "schema_text",
     "write_text",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 from linkwork.foundation.names import canonical
@@ -21,18 +21,25 @@ _DEEPEST = 8  # keys below are not kept: the format needs four, hostile files ha
 class Lines:
     """Line numbers, from 1, of the keys of one file.
 
+    They are looked for when the first one is asked for: most files have no problem.
+
     Parameters
     ----------
-    at : Mapping[Path, int]
-        Line of every key, of every entry of a list, and of every table's first mention.
+    text : str
+        Valid TOML (with or without BOM, LF or CRLF).
     """
 
-    at: Mapping[Path, int] = field(default_factory=dict)
+    text: str
 
     @classmethod
     def of(cls, text: str) -> Lines:
         """The index of a text that is valid TOML (with or without BOM, LF or CRLF)."""
-        return cls(_Scanner(text.removeprefix("\ufeff").replace("\r\n", "\n")).scanned())
+        return cls(text)
+
+    @cached_property
+    def at(self) -> Mapping[Path, int]:
+        """Line of every key, of every entry of a list, and of every table's first mention."""
+        return _Scanner(self.text.removeprefix("\ufeff").replace("\r\n", "\n")).scanned()
 
     def line(self, path: Sequence[str | int]) -> int:
         """The line of a key, or of the nearest key around it; of the file itself, 1.

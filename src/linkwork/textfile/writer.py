@@ -19,7 +19,7 @@ from linkwork.textfile.keys import FORMAT
 if TYPE_CHECKING:
     from tomlkit import TOMLDocument
 
-__all__ = ["save", "write_text"]
+__all__ = ["save", "save_text", "write_text"]
 
 _Tables = dict[str, dict[str, Any] | list[dict[str, Any]]]
 
@@ -48,7 +48,11 @@ def save(description: Description, path: Path | str) -> None:
     InputError
         If the file cannot be written; an older file of that name is then unchanged.
     """
-    text = write_text(description)
+    save_text(write_text(description), path)
+
+
+def save_text(text: str, path: Path | str) -> None:
+    """Write a text to a file as UTF-8: wholly, or not at all; raises like :func:`save`."""
     target = Path(path)
     try:
         target = target.resolve()

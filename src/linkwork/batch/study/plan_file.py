@@ -10,7 +10,6 @@ from typing import Any, TypeVar
 
 from linkwork.batch.family import family_of
 from linkwork.batch.family_motion import FamilyMotion
-from linkwork.batch.quantities import quantity_named
 from linkwork.batch.sampling import Plan
 from linkwork.batch.study.choosing import chosen, values_between
 from linkwork.batch.study.job import Job, linkwork_version, passes_name
@@ -28,6 +27,7 @@ from linkwork.foundation.errors import (
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import spelled
 from linkwork.mechanism.description import Description, Problems
+from linkwork.mechanism.quantities import quantity_named
 from linkwork.motion import Model, as_described
 from linkwork.textfile.library import example_text, examples
 from linkwork.textfile.lines import Lines

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.batch.quantities import quantity_named
 from linkwork.batch.sampling import Plan
 from linkwork.batch.study.choosing import values_between
 from linkwork.batch.study.job import Job, passes_name
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
+from linkwork.mechanism.quantities import quantity_named
 from linkwork.motion import Model
 
 __all__ = ["DESIGN", "Study", "Variable", "usual_chunk"]

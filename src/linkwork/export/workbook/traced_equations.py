@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.batch.building import written_equations
-from linkwork.batch.quantities import Quantity, quantities, with_numbers
 from linkwork.equations.model import LoopEquations
 from linkwork.export.workbook.linear_form import LinearForm
 from linkwork.export.workbook.traced_number import Trace, TracedNumber
@@ -19,6 +18,7 @@ from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.mechanism.parts import Number
+from linkwork.mechanism.quantities import Quantity, quantities, with_numbers
 
 __all__ = ["Dimension", "TracedEquations", "forms_of", "traced"]
 

@@ -1,0 +1,54 @@
+"""Newton-Raphson step by step: every iterate with its equations, Jacobian and picture."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from linkwork.results.position import Position
+
+__all__ = ["Iterate", "Iterates"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Iterate:
+    """One iterate of Newton-Raphson on one block of equations.
+
+    Parameters
+    ----------
+    equations : tuple of str
+        Labels of the block's equations.
+    k : int
+        Number of the iterate; 0 is the guess.
+    unknowns : Mapping[str, float]
+        The block's unknowns, everyday units.
+    residuals : tuple of float, shape (n,)
+        F: the real parts of the loops, their imaginary parts, then the other equations, each in
+        its own unit.
+    norm : float
+        |F|, the 2-norm of ``residuals``.
+    jacobian : tuple of tuple of float, shape (n, n)
+        dF/dx by the block's unknowns; angles in radians.
+    step : float, optional
+        Largest weighted change that led to the next iterate (radians, or of the longest link);
+        ``None`` at the last one.
+    points : Mapping[str, (x, y)]
+        The picture at this iterate: blocks before are solved, blocks behind stand at their guess.
+    """
+
+    equations: tuple[str, ...]
+    k: int
+    unknowns: Mapping[str, float]
+    residuals: tuple[float, ...]
+    norm: float
+    jacobian: tuple[tuple[float, ...], ...]
+    step: float | None
+    points: Mapping[str, tuple[float, float]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Iterates:
+    """The iterates from a guess, block after block, and where they ended: ``position``."""
+
+    position: Position
+    iterates: tuple[Iterate, ...]

@@ -1,0 +1,59 @@
+"""How near a mechanism that cannot close comes to closing, and where its links do not meet."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.mechanism.skeleton import Skeleton
+from linkwork.results.quantity import Units
+
+__all__ = ["LinkEnd", "NearestAssembly"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkEnd:
+    """An end of a link that does not reach the joint it belongs to.
+
+    Parameters
+    ----------
+    link, point : str
+        The link, and the joint.
+    joint, end : (x, y)
+        Where the joint lies, and where the link's own end does [length].
+    """
+
+    link: str
+    point: str
+    joint: tuple[float, float]
+    end: tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class NearestAssembly:
+    """The least-squares position: the loops left open by as little as was found near the guess.
+
+    Parameters
+    ----------
+    input, unknowns : Mapping[str, float]
+        Everyday units.
+    points : Mapping[str, (x, y)]
+        Coordinates of every point, each reached from ground by one way around its loop.
+    gaps : Mapping[str, (x, y)]
+        For every loop the vector by which it stays open [length]; zero where it closes.
+    gap : float
+        Root of the sum of their squares [length].
+    apart : tuple of LinkEnd
+        Ends of links that do not reach their joint (points-and-links mechanisms).
+    """
+
+    mechanism: str
+    units: Units
+    skeleton: Skeleton
+    input: Mapping[str, float]
+    unknowns: Mapping[str, float]
+    points: Mapping[str, tuple[float, float]]
+    gaps: Mapping[str, tuple[float, float]] = FrozenDict()
+    gap: float
+    apart: tuple[LinkEnd, ...] = ()

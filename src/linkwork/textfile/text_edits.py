@@ -1,0 +1,199 @@
+"""Changing a mechanism file's text in place: comments, order and spelling stay as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from linkwork.foundation.errors import InputError, UnknownNameError, choices, key_text
+from linkwork.foundation.names import canonical
+
+__all__ = ["TextEdits"]
+
+#: Keys, and from 0 the places in lists: ``("points", "A", 0)``, ``("input", 0, "from")``.
+KeyPath = tuple[str | int, ...]
+
+_BOM = "\ufeff"
+
+
+class TextEdits:
+    """A TOML text that is being changed.
+
+    Names are found in any spelling (``theta2``, ``θ2``) and the points of a length in either
+    order; a single ``[input]`` counts as the first of a list.
+
+    Parameters
+    ----------
+    text : str
+        Valid TOML; a BOM and Windows line ends are kept.
+    """
+
+    def __init__(self, text: str) -> None:
+        import tomlkit
+
+        self._bom = _BOM if text.startswith(_BOM) else ""
+        plain = text.removeprefix(_BOM)
+        self._line_end = "\r\n" if plain.count("\r\n") == plain.count("\n") > 0 else "\n"
+        self._document: Any = tomlkit.parse(plain.replace("\r\n", "\n"))
+
+    @property
+    def text(self) -> str:
+        """The text as it stands now."""
+        written: str = self._document.as_string()
+        return self._bom + written.replace("\r\n", "\n").replace("\n", self._line_end)
+
+    def has(self, path: KeyPath) -> bool:
+        """Whether something stands at a key path."""
+        return self._found(path) is not None
+
+    def get(self, path: KeyPath) -> Any:
+        """What stands at a key path, as plain data.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is nothing.
+        """
+        place = self._found(path)
+        if place is None:
+            raise UnknownNameError(f"{key_text(path)} is not in the file")
+        entry = place[0][place[1]]
+        return entry.unwrap() if hasattr(entry, "unwrap") else entry
+
+    def keys(self, path: KeyPath) -> list[str]:
+        """The keys of a table, none if it is not there."""
+        entry = self.get(path) if self.has(path) else {}
+        return list(entry) if isinstance(entry, Mapping) else []
+
+    def entries(self, table: str) -> Iterator[tuple[int, dict[str, Any]]]:
+        """The entries of a ``[[table]]`` with their places, as plain data."""
+        if self.has((table,)):
+            found = self.get((table,))
+            yield from enumerate(found if isinstance(found, list) else [found])
+
+    def put(self, path: KeyPath, entry: Any) -> None:
+        """Write a value; a table that is missing is made, comments beside the value are kept."""
+        place = self._found(path)
+        if place is not None:
+            holder, key = place
+            holder[key] = _as_before(holder[key], entry)
+            return
+        holder = self._document
+        for depth, part in enumerate(path[:-1]):
+            nearest = self._found(path[: depth + 1])
+            if nearest is None:
+                self._new_table(holder, part, path)
+                nearest = self._found(path[: depth + 1])
+            assert nearest is not None
+            holder = nearest[0][nearest[1]]
+        if not path or not isinstance(path[-1], str):
+            raise InputError(f"{key_text(path)} is not in the file: nothing can be put there")
+        holder.add(path[-1], entry)
+
+    def append(self, table: str, fields: Mapping[str, Any]) -> None:
+        """Add an entry to a ``[[table]]``."""
+        import tomlkit
+
+        new = tomlkit.table()
+        for key, entry in fields.items():
+            new.add(key, entry)
+        if table in self._document:
+            rows = self._document[table]
+            if hasattr(rows, "append") and not isinstance(rows, Mapping):
+                if not rows[-1].as_string().endswith("\n\n"):
+                    new.trivia.indent = "\n"
+                rows.append(new)
+                return
+            raise InputError(f"[{table}] is written as one table: make it [[{table}]] to add more")
+        rows = tomlkit.aot()
+        rows.append(new)
+        _end_with_blank_line(self._document)
+        self._document.append(table, rows)
+
+    def remove(self, path: KeyPath) -> None:
+        """Take out what stands at a key path, and its table if that is then empty.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is nothing.
+        """
+        place = self._found(path)
+        if place is None:
+            raise UnknownNameError(f"{key_text(path)} is not in the file")
+        holder, key = place
+        del holder[key]
+        if len(path) > 1 and not len(holder) and holder is not self._document:
+            self.remove(path[:-1])
+
+    def remove_named(self, table: str, name: str) -> None:
+        """Take out the entry of a ``[[table]]`` that has this name.
+
+        Raises
+        ------
+        UnknownNameError
+            With the names that there are.
+        """
+        names = {canonical(str(row.get("name", ""))): k for k, row in self.entries(table)}
+        if canonical(name) not in names:
+            known = [str(row.get("name", "")) for _, row in self.entries(table)]
+            raise UnknownNameError(f'there is no "{name}" {choices(table, known, name)}')
+        self.remove((table, names[canonical(name)]))
+
+    def _found(self, path: Sequence[str | int]) -> tuple[Any, Any] | None:
+        """The holder of what stands at a path and its own key there."""
+        holder: Any = None
+        key: Any = None
+        entry: Any = self._document
+        for part in path:
+            if part == 0 and isinstance(entry, Mapping):
+                continue  # the only table of its kind
+            own = _own_key(entry, part)
+            if own is None:
+                return None
+            holder, key = entry, own
+            entry = holder[own]
+        return None if holder is None else (holder, key)
+
+    def _new_table(self, holder: Any, name: str | int, path: KeyPath) -> None:
+        import tomlkit
+
+        if holder is not self._document or not isinstance(name, str):
+            raise InputError(f"{key_text(path)} is not in the file: nothing can be put there")
+        _end_with_blank_line(self._document)
+        self._document.append(name, tomlkit.table())
+
+
+def _own_key(entry: Any, part: str | int) -> Any:
+    """The key of a table, or place of a list, that is meant; ``None`` if there is none."""
+    if isinstance(part, int):
+        listed = isinstance(entry, Sequence) and not isinstance(entry, str)
+        return part if listed and part < len(entry) else None
+    if not isinstance(entry, Mapping):
+        return None
+    if part in entry:
+        return part
+    words = [canonical(word) for word in part.split()]
+    orders = [words, words[::-1]] if len(words) == 2 else [words]
+    for key in entry:
+        if [canonical(word) for word in str(key).split()] in orders:
+            return str(key)
+    return None
+
+
+def _as_before(old: Any, entry: Any) -> Any:
+    """A whole number stays written as one; a pair keeps what of it is the same."""
+    plain = old.unwrap() if hasattr(old, "unwrap") else old
+    if isinstance(entry, float) and isinstance(plain, int) and entry.is_integer():
+        return int(entry)
+    return entry
+
+
+def _end_with_blank_line(document: Any) -> None:
+    import tomlkit
+
+    text = document.as_string()
+    if text and not text.endswith("\n\n"):
+        document.add(tomlkit.nl())
+        if not text.endswith("\n"):
+            document.add(tomlkit.nl())

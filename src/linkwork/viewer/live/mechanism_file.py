@@ -1,0 +1,138 @@
+"""The one file that a live page reads and writes, and what others do to it meanwhile."""
+
+from __future__ import annotations
+
+import hashlib
+from enum import Enum
+from pathlib import Path
+
+from linkwork.foundation.errors import InputError, MechanismFileError
+from linkwork.textfile.toml_text import bytes_of, text_of
+from linkwork.textfile.writer import save_text
+
+__all__ = ["FileConflictError", "MechanismFile", "OnDisk"]
+
+_MOST_COPIES = 100  # names tried for a copy beside the file
+
+
+class FileConflictError(InputError):
+    """The file on disk is not the one that was read."""
+
+
+class OnDisk(Enum):
+    """The file on disk, beside the version that is being edited."""
+
+    SAME = "same"
+    CHANGED = "changed"
+    MISSING = "missing"
+
+
+class MechanismFile:
+    """A mechanism file on disk, and which version of it is being edited.
+
+    Parameters
+    ----------
+    path : str or Path
+        A link is followed once, here.
+
+    Raises
+    ------
+    MechanismFileError
+        If there is no such file, or it cannot be read.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.name = str(path)
+        self._path = Path(path).resolve()
+        self._stamp = self._stamp_now()
+        self.text = self.read()
+        self.accept(self.text)
+
+    def read(self) -> str:
+        """The text on disk; the version being edited is still the one accepted last."""
+        return text_of(bytes_of(self._path, self.name), self.name)
+
+    def accept(self, text: str) -> None:
+        """A text of this file is what is being edited from now on."""
+        self.text = text
+        self._known = self._reported = _digest(text.encode())
+
+    def news(self) -> OnDisk | None:
+        """What another program did since this was asked last; ``None``: nothing.
+
+        The content decides, not the date.
+        """
+        stamp = self._stamp_now()
+        if stamp == self._stamp:
+            return None
+        self._stamp = stamp
+        digest = self._digest_now()
+        if digest == self._reported:
+            return None
+        self._reported = digest
+        return self._state(digest)
+
+    def _state(self, digest: bytes) -> OnDisk:
+        if digest == self._known:
+            return OnDisk.SAME
+        return OnDisk.CHANGED if digest else OnDisk.MISSING
+
+    def _digest_now(self) -> bytes:
+        """Of the content on disk; empty if there is no file."""
+        try:
+            return _digest(bytes_of(self._path, self.name))
+        except MechanismFileError:
+            return b"" if self._stamp_now() is None else b"unreadable"
+
+    def write(self, text: str, *, overwrite: bool = False) -> None:
+        """Write the file, wholly or not at all.
+
+        Raises
+        ------
+        FileConflictError
+            If another program changed or removed it meanwhile, unless ``overwrite``.
+        InputError
+            If it cannot be written; what is on disk is then unchanged.
+        """
+        state = self._state(self._digest_now())  # whatever the date says
+        if state is not OnDisk.SAME and not overwrite:
+            what = "has been removed" if state is OnDisk.MISSING else "has been changed"
+            raise FileConflictError(
+                f'"{self.name}" {what} by another program since it was read here: reload it, '
+                "or save again and overwrite it"
+            )
+        save_text(text, self._path)
+        self._stamp = self._stamp_now()
+        self.accept(text)
+
+    def keep_beside(self, text: str) -> Path:
+        """Write a text that was not saved beside the file, over nothing that is there.
+
+        Raises
+        ------
+        InputError
+            If it cannot be written.
+        """
+        for k in range(1, _MOST_COPIES):
+            number = "" if k == 1 else f"-{k}"
+            beside = self._path.with_name(f"{self._path.stem}.unsaved{number}.toml")
+            try:
+                with beside.open("x", encoding="utf-8", newline="") as file:
+                    file.write(text)
+                return beside
+            except FileExistsError:
+                continue
+            except OSError as error:
+                raise InputError(f'"{beside}" cannot be written: {error.strerror}') from None
+        raise InputError(f'"{beside}" and all before it exist already: remove some of them')
+
+    def _stamp_now(self) -> tuple[int, int, int] | None:
+        try:
+            found = self._path.stat()
+        except OSError:
+            return None
+        return found.st_mtime_ns, found.st_size, found.st_ino
+
+
+def _digest(data: bytes) -> bytes:
+    return hashlib.blake2b(data).digest()

@@ -1,0 +1,244 @@
+"""The live page on this machine's own address: one file, one page, one connection."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+import signal
+import socket
+import threading
+from collections.abc import Awaitable, Callable, Iterator, MutableMapping
+from contextlib import contextmanager, suppress
+from typing import Any
+
+from linkwork.foundation.errors import InputError, MissingPackageError
+from linkwork.viewer.live.desk import Desk
+from linkwork.viewer.live.events import Event, Refused
+from linkwork.viewer.live.guard import SUBPROTOCOL, Guard
+from linkwork.viewer.live.messages import LARGEST_MESSAGE, MessageError, decoded, encoded
+from linkwork.viewer.live.placeholder import PAGES
+from linkwork.viewer.live.workbench import Workbench
+
+__all__ = ["LiveServer"]
+
+Scope = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
+Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
+
+_LOOPBACK = "127.0.0.1"
+_MOST_WAITING = 100  # requests or events; a page that sends or reads no slower is held back
+_OCCUPIED = 4009  # close code: another page is connected
+_MOST_CONNECTIONS = 32
+_LARGEST_HEAD = 16_384  # bytes
+
+
+class LiveServer:
+    """Serves one workbench to one page at a time.
+
+    Parameters
+    ----------
+    workbench : Workbench
+    port : int
+        0 takes any that is free.
+
+    Raises
+    ------
+    InputError
+        If the port is taken.
+    """
+
+    def __init__(self, workbench: Workbench, port: int = 0) -> None:
+        self._socket = _listening(port)
+        self.port: int = self._socket.getsockname()[1]
+        self.token = secrets.token_urlsafe(32)
+        self._guard = Guard(port=self.port, token=self.token, paths=PAGES)
+        self._workbench = workbench
+        self._page: asyncio.Queue[str] | None = None
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._desk = Desk(workbench, self._tell)
+        self._server: Any = None
+        self._ended = False
+
+    @property
+    def address(self) -> str:
+        """To be opened in a browser; what stands behind # is never sent to any server."""
+        return f"http://{_LOOPBACK}:{self.port}/#{self.token}"
+
+    def run(self) -> None:
+        """Serve until :meth:`stop`, Ctrl-C or SIGTERM.
+
+        Raises
+        ------
+        MissingPackageError
+            Without uvicorn or websockets.
+        """
+        try:
+            self._desk.prepare()  # solved while the browser starts
+            self._server = _uvicorn(self._app)
+            if not self._ended:
+                with self._ended_by_signals():
+                    self._server.run(sockets=[self._socket])
+        except KeyboardInterrupt:
+            pass  # that is how people end it
+        finally:
+            self._desk.close()
+            self._socket.close()
+
+    def stop(self) -> None:
+        """End :meth:`run` from another thread."""
+        self._ended = True
+        if self._server is not None:
+            self._server.should_exit = True
+
+    @contextmanager
+    def _ended_by_signals(self) -> Iterator[None]:
+        """SIGTERM and a closed terminal end the server as Ctrl-C does, so that nothing is lost."""
+        before: dict[int, Any] = {}
+        if threading.current_thread() is threading.main_thread():
+            # uvicorn ends at a SIGTERM by itself, then raises it once more for others
+            before[signal.SIGTERM] = signal.signal(signal.SIGTERM, _interrupt)
+            if hangup := getattr(signal, "SIGHUP", None):
+                before[hangup] = signal.signal(hangup, lambda *_: self.stop())
+        try:
+            yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+    async def _app(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """An ASGI application, as uvicorn calls it."""
+        if scope["type"] == "websocket":
+            await self._connection(scope, receive, send)
+        elif scope["type"] == "http":
+            await self._answer(scope, send)
+
+    async def _answer(self, scope: Scope, send: Send) -> None:
+        """One of the fixed pages; a body is never read."""
+        headers = self._guard.security_headers
+        refusal = self._guard.refused(scope["method"], scope["raw_path"], scope["headers"])
+        if refusal is None:
+            status, (kind, content) = 200, PAGES[scope["path"]]
+        else:
+            status, kind, content = refusal.status, "text/plain", refusal.message.encode()
+            headers["connection"] = "close"
+        headers |= {"content-type": kind, "content-length": str(len(content))}
+        lines = [(name.encode(), entry.encode()) for name, entry in headers.items()]
+        await send({"type": "http.response.start", "status": status, "headers": lines})
+        await send({"type": "http.response.body", "body": content})
+
+    async def _connection(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """A page with the token, from its connection to its end."""
+        await receive()  # the wish to connect
+        refusal = self._guard.connection_refused(
+            scope["path"], scope["headers"], scope["subprotocols"]
+        )
+        if refusal is not None:
+            await send({"type": "websocket.close"})  # before it is accepted: the answer is 403
+            return
+        await send({"type": "websocket.accept", "subprotocol": SUBPROTOCOL})
+        if self._page is not None:
+            message = encoded(Refused(message=_OCCUPIED_MESSAGE))
+            await send({"type": "websocket.send", "text": message})
+            await send({"type": "websocket.close", "code": _OCCUPIED})
+            return
+        self._page, self._loop = asyncio.Queue(), asyncio.get_running_loop()
+        sending = asyncio.create_task(self._send(send, self._page))
+        try:
+            self._desk.open()
+            await self._receive(receive, self._page)
+        finally:
+            self._page = None  # the workbench stays as it is for the next page
+            sending.cancel()
+
+    async def _receive(self, receive: Receive, telling: asyncio.Queue[str]) -> None:
+        """Requests until the page is gone."""
+        while True:
+            while max(self._desk.waiting, telling.qsize()) > _MOST_WAITING:
+                await asyncio.sleep(0.02)
+            message = await receive()
+            if message["type"] == "websocket.disconnect":
+                return
+            text = message.get("text")
+            try:
+                if text is None:
+                    raise MessageError("messages are text, this one is binary")
+                self._desk.ask(*decoded(text))
+            except MessageError as error:
+                telling.put_nowait(encoded(Refused(message=str(error)), error.id))
+
+    @staticmethod
+    async def _send(send: Send, telling: asyncio.Queue[str]) -> None:
+        with suppress(OSError):  # the page is gone
+            while True:
+                await send({"type": "websocket.send", "text": await telling.get()})
+
+    def _tell(self, events: list[Event], number: int | None) -> None:
+        """Called by the desk: hand events over to the network's thread."""
+        loop = self._loop
+        if loop is None:
+            return
+        messages = [encoded(event, number) for event in events]
+        try:
+            loop.call_soon_threadsafe(self._put, messages)
+        except RuntimeError:  # the loop is closed: there is nobody to tell
+            return
+
+    def _put(self, messages: list[str]) -> None:
+        if self._page is not None:
+            for message in messages:
+                self._page.put_nowait(message)
+
+
+_OCCUPIED_MESSAGE = (
+    "another page shows this file already, and two could not edit it together: "
+    "close that one, then load this one again"
+)
+
+
+def _listening(port: int) -> socket.socket:
+    """A socket that already takes connections, on this machine's own address only."""
+    found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    try:
+        found.bind((_LOOPBACK, port))
+        found.listen(_MOST_CONNECTIONS)
+    except (OSError, OverflowError) as error:
+        found.close()
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(
+            f"port {port} cannot be used: {reason}; leave --port out to take one that is free"
+        ) from None
+    return found
+
+
+def _uvicorn(app: Callable[..., Any]) -> Any:
+    """A server that writes no log, so that no token can get into one."""
+    try:
+        import uvicorn
+        import websockets  # noqa: F401 - uvicorn's way to hold the connection
+    except ImportError:
+        raise MissingPackageError(
+            'the live page needs uvicorn and websockets: pip install "linkwork[view]"'
+        ) from None
+    config = uvicorn.Config(
+        app,
+        interface="asgi3",
+        http="h11",
+        ws="websockets-sansio",
+        lifespan="off",
+        log_config=None,
+        log_level="critical",
+        access_log=False,
+        proxy_headers=False,
+        server_header=False,
+        date_header=False,
+        ws_max_size=LARGEST_MESSAGE,
+        ws_per_message_deflate=False,
+        limit_concurrency=_MOST_CONNECTIONS,
+        h11_max_incomplete_event_size=_LARGEST_HEAD,
+        timeout_graceful_shutdown=1,
+    )
+    return uvicorn.Server(config)
+
+
+def _interrupt(*_: object) -> None:
+    raise KeyboardInterrupt

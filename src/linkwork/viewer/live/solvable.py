@@ -1,0 +1,60 @@
+"""What the live page needs of a mechanism; it is given from outside, for showing never solves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Protocol
+
+from linkwork.equations.writing import EquationSheet
+from linkwork.mechanism.description import Description
+from linkwork.numerics.newton import NewtonOptions
+from linkwork.results.configurations import Configurations
+from linkwork.results.iterates import Iterates
+from linkwork.results.motion import Motion
+from linkwork.results.nearest_assembly import NearestAssembly
+from linkwork.results.position import Position
+
+__all__ = ["Read", "Solvable"]
+
+At = float | Mapping[str, float] | None
+
+
+class Solvable(Protocol):
+    """A mechanism that can be solved, as :class:`linkwork.Mechanism` is."""
+
+    @property
+    def description(self) -> Description:
+        """What the file says."""
+
+    def equations(self) -> EquationSheet:
+        """The closure equations."""
+
+    def solve(self, at: At = None, *, configuration: str | None = None) -> Position:
+        """One position."""
+
+    def sweep(
+        self, *, step: float | None = None, progress: Callable[[float], None] | None = None
+    ) -> Motion:
+        """The whole cycle with proofs; ``progress`` may raise to give it up."""
+
+    def sweep_beside(self, neighbour: Motion | None = None) -> Motion:
+        """The cycle near that of a neighbouring design, fast and without proofs."""
+
+    def configurations(self, at: At = None) -> Configurations:
+        """Every way to put it together."""
+
+    def iterates(
+        self,
+        guess: Mapping[str, float] | None = None,
+        at: At = None,
+        *,
+        options: NewtonOptions | None = None,
+    ) -> Iterates:
+        """Newton-Raphson from a guess, step by step."""
+
+    def nearest_assembly(self, at: At = None) -> NearestAssembly:
+        """As near to closing as it gets."""
+
+
+#: From the text of a file and its name for messages; raises ``MechanismFileError``.
+Read = Callable[[str, str], Solvable]

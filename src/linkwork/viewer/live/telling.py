@@ -1,0 +1,297 @@
+"""Results and files as events: numbers in plain lists, ``None`` where there is none."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+
+import numpy as np
+
+from linkwork.equations.notation import PlainText
+from linkwork.equations.writing import EquationSheet
+from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.errors import MechanismError, key_text
+from linkwork.mechanism.description import Description
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loops import Loops
+from linkwork.mechanism.quantities import Quantity, quantities
+from linkwork.results.configurations import Configurations
+from linkwork.results.iterates import Iterate, Iterates
+from linkwork.results.motion import Motion
+from linkwork.results.nearest_assembly import NearestAssembly
+from linkwork.results.position import Position
+from linkwork.viewer.live import events as tell
+
+__all__ = [
+    "cannot_close",
+    "changeable_numbers",
+    "configurations_found",
+    "driven_inputs",
+    "form_of",
+    "links_of",
+    "loop_texts",
+    "motion_found",
+    "newton_shown",
+    "position_found",
+    "problems_found",
+    "sketched_points",
+    "unknowns_of",
+]
+
+Numbers = dict[str, float | None]
+
+_LIVE_ROWS = 181
+
+
+def motion_found(motion: Motion, *, live: bool, message: str = "") -> tell.MotionFound:
+    """The cycle; every column without its rates. On the way, some of its rows will do."""
+    tables = (motion.unknowns, motion.links, motion.sliders, motion.outputs)
+    name, unit = next(iter(motion.input_units.items()))
+    found, rows = motion.found, _rows_shown(motion, live)
+    return tell.MotionFound(
+        live=live,
+        rows=len(rows),
+        missing=int((motion.asked & ~found).sum()),
+        certified=int(motion.certified.sum()),
+        inputs={name: tuple(values[rows].tolist()) for name, values in motion.inputs.items()},
+        points={
+            point: (_column(x.value[rows]), _column(y.value[rows]))
+            for point, (x, y) in motion.points.items()
+        },
+        columns={n: _column(s.value[rows]) for table in tables for n, s in table.items()},
+        status=tuple(motion.status[row].name for row in rows),
+        limits=tuple(
+            tell.LimitFound(
+                what=limit.kind.word,
+                input=limit.input,
+                located=limit.located,
+                sentence=limit.told(name, unit),
+            )
+            for limit in motion.limits
+        ),
+        worst_residual=_number(motion.worst),
+        message=message or motion.message,
+    )
+
+
+def _rows_shown(motion: Motion, live: bool) -> IndexArray:
+    """Which rows are told: all of them, or about so many that all limits are among them."""
+    every = np.arange(len(motion))
+    if not live:
+        return every
+    stride = -(-len(motion) // _LIVE_ROWS)
+    at_limits = np.array([bool(what) for what in motion.limit], dtype=bool)
+    shown: IndexArray = every[(every % stride == 0) | (every == every[-1]) | at_limits]
+    return shown
+
+
+def position_found(position: Position) -> tell.PositionFound:
+    """One position, or why there is none."""
+    return tell.PositionFound(
+        status=position.status.name,
+        message=position.message,
+        input=dict(position.input),
+        unknowns=_numbers(position.unknowns),
+        links=_numbers(position.links),
+        sliders=_numbers(position.sliders),
+        outputs=_numbers(position.outputs),
+        points=_points(position.points),
+        residual=_number(position.residual),
+        iterations=position.iterations,
+        condition=_number(position.condition),
+        certified=position.certificate.certified,
+    )
+
+
+def cannot_close(
+    nearest: NearestAssembly, message: str, remedies: Mapping[str, float]
+) -> tell.CannotClose:
+    """The least-squares picture of a mechanism that stays open."""
+    return tell.CannotClose(
+        message=message,
+        input=dict(nearest.input),
+        gap=nearest.gap,
+        gaps=dict(nearest.gaps),
+        unknowns=dict(nearest.unknowns),
+        points=_points(nearest.points),
+        open_ends=tuple(
+            tell.OpenEnd(link=e.link, point=e.point, joint=e.joint, end=e.end)
+            for e in nearest.apart
+        ),
+        remedies=dict(remedies),
+    )
+
+
+def configurations_found(found: Configurations) -> tell.ConfigurationsFound:
+    """Every way, with its picture."""
+    return tell.ConfigurationsFound(
+        input=dict(found.input),
+        ways=tuple(
+            tell.Way(
+                name=way.configuration, unknowns=dict(way.unknowns), points=_points(way.points)
+            )
+            for way in found
+        ),
+        completeness=found.message,
+    )
+
+
+def newton_shown(shown: Iterates) -> tell.NewtonShown:
+    """The iterates and their end."""
+    position = shown.position
+    trouble = None if position.failure is None else position.failure.trouble
+    return tell.NewtonShown(
+        iterates=tuple(map(_iterate, shown.iterates)),
+        status=position.status.name,
+        trouble="" if trouble is None else trouble.name,
+        message=position.message,
+        input=dict(position.input),
+        unknowns=_numbers(position.unknowns),
+        points=_points(position.points),
+    )
+
+
+def _iterate(each: Iterate) -> tell.NewtonIterate:
+    return tell.NewtonIterate(
+        equations=each.equations,
+        k=each.k,
+        unknowns=_numbers(each.unknowns),
+        residuals=_row(each.residuals),
+        norm=_number(each.norm),
+        jacobian=tuple(map(_row, each.jacobian)),
+        step=None if each.step is None else _number(each.step),
+        points=_points(each.points),
+    )
+
+
+def problems_found(error: MechanismError) -> tell.ProblemsFound:
+    """What the reader says is wrong."""
+    return tell.ProblemsFound(
+        where=error.where,
+        problems=tuple(
+            tell.ProblemShown(line=p.line, key=key_text(p.key), message=p.message)
+            for p in error.problems
+        ),
+    )
+
+
+def changeable_numbers(
+    description: Description, kinds: Mapping[str, str]
+) -> Iterator[tell.ChangeableNumber]:
+    """Every number of a file that has a name, then the lengths measured in its sketch.
+
+    ``kinds``: angle, length or number for every variable of the equations.
+    """
+    for quantity in quantities(description):
+        written = quantity.written(description)
+        yield tell.ChangeableNumber(
+            name=quantity.name,
+            value=description.numbers(written),
+            unit=_unit(description, quantity, kinds),
+            table=quantity.table,
+            formula=written if isinstance(written, str) else "",
+        )
+    if isinstance(description, Linkage):
+        for measured in description.shapes.measured:
+            yield tell.ChangeableNumber(
+                name=" ".join(measured.points),
+                value=measured.length,
+                unit=description.length,
+                table="measured",
+            )
+
+
+def _unit(description: Description, quantity: Quantity, kinds: Mapping[str, str]) -> str:
+    """The unit of a number; of a named dimension nothing is known."""
+    if quantity.table in ("lengths", "points", "sliders"):
+        return description.length
+    angle = quantity.table == "angles" or kinds.get(quantity.key) == "angle"
+    if angle:
+        return description.angle.value
+    return description.length if kinds.get(quantity.key) == "length" else ""
+
+
+def unknowns_of(sheet: EquationSheet, description: Description) -> tuple[tell.Unknown, ...]:
+    """The unknowns with their guess, everyday units."""
+    units = {"angle": description.angle.value, "length": description.length}
+    scale = {"angle": description.angle.radians}
+    equations = sheet.equations
+    return tuple(
+        tell.Unknown(
+            name=unknown.name,
+            unit=units.get(unknown.kind, ""),
+            guess=float(start) / scale.get(unknown.kind, 1.0),
+        )
+        for unknown, start in zip(equations.unknowns, equations.start, strict=False)
+    )
+
+
+def driven_inputs(sheet: EquationSheet, description: Description) -> tuple[tell.DrivenInput, ...]:
+    """What is driven over which rows."""
+    found = []
+    for which, variable in zip(description.inputs, sheet.equations.inputs, strict=True):
+        rows = description.rows(which)
+        found.append(
+            tell.DrivenInput(
+                name=variable.name,
+                unit={"angle": description.angle.value, "length": description.length}.get(
+                    variable.kind, ""
+                ),
+                drive=which.drives[0],
+                start=float(rows[0]),
+                stop=float(rows[-1]),
+                rows=len(rows),
+                speed="" if which.speed is None else str(which.speed),
+            )
+        )
+    return tuple(found)
+
+
+def sketched_points(description: Description) -> dict[str, tuple[float, float]]:
+    """The points of a sketch, which can be moved; none where they follow from equations."""
+    if not isinstance(description, Linkage):
+        return {}
+    places = {point: description.sketched(point) for point in description.points}
+    return {point: (float(z.real), float(z.imag)) for point, z in places.items()}
+
+
+def links_of(description: Description) -> tuple[tell.Link, ...]:
+    """The links that a file names."""
+    links: Mapping[str, tuple[str, ...]] = getattr(description, "links", {})
+    return tuple(tell.Link(name=name, points=tuple(points)) for name, points in links.items())
+
+
+def loop_texts(sheet: EquationSheet) -> tuple[str, ...]:
+    """The equations in textbook notation."""
+    plain = PlainText()
+    loops = tuple(sheet.loop(loop, plain) for loop in sheet.equations.loops)
+    return loops or tuple(f"{row} = 0" for row in sheet.real_rows(plain))
+
+
+def form_of(description: Description) -> str:
+    """Which kind of file it is."""
+    if isinstance(description, Linkage):
+        return "points-and-links"
+    return "loops" if isinstance(description, Loops) else "plain-equations"
+
+
+def _column(values: Array) -> tuple[float | None, ...]:
+    numbers: list[float] = values.tolist()
+    return tuple(numbers) if np.isfinite(values).all() else _row(numbers)
+
+
+def _row(values: Iterable[float]) -> tuple[float | None, ...]:
+    return tuple(map(_number, values))
+
+
+def _number(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def _numbers(table: Mapping[str, float]) -> Numbers:
+    return {name: _number(value) for name, value in table.items()}
+
+
+def _points(table: Mapping[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
+    """Points that are somewhere."""
+    return {p: (x, y) for p, (x, y) in table.items() if math.isfinite(x) and math.isfinite(y)}

@@ -1,0 +1,91 @@
+"""The messages of the live page as TypeScript types: said once, in Python."""
+
+from __future__ import annotations
+
+import dataclasses
+import typing
+from collections.abc import Iterator
+from typing import Any
+
+from linkwork.viewer.live.events import EVENTS
+from linkwork.viewer.live.messages import kind_of
+from linkwork.viewer.live.requests import EDITS, REQUESTS
+
+__all__ = ["typescript_types"]
+
+_PLAIN = {str: "string", float: "number", int: "number", bool: "boolean", type(None): "null"}
+_HEAD = """\
+// Written by scripts/message-types from the dataclasses in
+// linkwork.viewer.live.requests and linkwork.viewer.live.events: change those.
+"""
+
+
+def typescript_types() -> str:
+    """A module with an interface for every message, and the unions ``Request`` and ``Event``.
+
+    Fields that Python has a default for may be left out of a request; an event has them all.
+    """
+    parts = [_HEAD]
+    for message in REQUESTS:
+        own = [f'kind: "{kind_of(message)}"', "id?: number"]
+        parts.append(_interface(message, own, asked=True))
+    for message in EVENTS:
+        own = [f'kind: "{kind_of(message)}"', "answers: number | null"]
+        parts.append(_interface(message, own, asked=False))
+    parts += [_interface(part, [], asked=False) for part in _parts_of_events()]
+    unions = (("Edit", EDITS), ("Request", REQUESTS), ("Event", EVENTS))
+    # spelled differently from the browser's own Event and Request
+    parts += [f"export type Live{name} =\n{_one_of(messages)};\n" for name, messages in unions]
+    return "\n".join(parts)
+
+
+def _interface(message: type, own: list[str], *, asked: bool) -> str:
+    types = typing.get_type_hints(message)
+    lines = [*own]
+    for field in dataclasses.fields(message):
+        optional = asked and field.default is not dataclasses.MISSING
+        lines.append(f"{field.name}{'?' if optional else ''}: {_type(types[field.name])}")
+    body = "".join(f"  {line};\n" for line in lines)
+    return f"export interface {message.__name__} {{\n{body}}}\n"
+
+
+def _one_of(messages: tuple[type, ...]) -> str:
+    return "\n".join(f"  | {message.__name__}" for message in messages)
+
+
+def _type(kind: Any) -> str:
+    """The TypeScript type of a field's type."""
+    origin, parts = typing.get_origin(kind), typing.get_args(kind)
+    if kind in _PLAIN:
+        return _PLAIN[kind]
+    if dataclasses.is_dataclass(kind):
+        return str(typing.cast(type, kind).__name__)
+    if origin is dict:
+        return f"Record<string, {_type(parts[1])}>"
+    if origin is tuple and parts[-1] is Ellipsis:
+        return f"readonly ({_type(parts[0])})[]"
+    if origin is tuple:
+        return f"readonly [{', '.join(map(_type, parts))}]"
+    if set(EDITS) <= set(parts):
+        return "LiveEdit"
+    if parts:
+        return " | ".join(map(_type, parts))
+    raise TypeError(f"{kind} has no type in TypeScript")
+
+
+def _parts_of_events() -> Iterator[type]:
+    """The dataclasses inside events, each once."""
+    found: dict[type, None] = {}
+
+    def look(kind: Any) -> None:
+        if dataclasses.is_dataclass(kind) and isinstance(kind, type):
+            if kind not in EVENTS:
+                found[kind] = None
+            for inner in typing.get_type_hints(kind).values():
+                look(inner)
+        for part in typing.get_args(kind):
+            look(part)
+
+    for event in EVENTS:
+        look(event)
+    yield from found

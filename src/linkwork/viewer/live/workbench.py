@@ -1,0 +1,386 @@
+"""A mechanism file being edited: every change is read, solved and told, nothing is ever lost."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import singledispatchmethod
+from pathlib import Path
+
+from linkwork.foundation.errors import InputError, MechanismError
+from linkwork.foundation.status import Status
+from linkwork.numerics.newton import NewtonOptions
+from linkwork.results.motion import Motion
+from linkwork.textfile.text_edits import TextEdits
+from linkwork.viewer.live import events as tell
+from linkwork.viewer.live import requests as ask
+from linkwork.viewer.live import telling
+from linkwork.viewer.live.edits import Before, Followed, applied
+from linkwork.viewer.live.history import History
+from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
+from linkwork.viewer.live.messages import kind_of
+from linkwork.viewer.live.solvable import Read, Solvable
+
+__all__ = ["GivenUpError", "Workbench"]
+
+_MOST_ROWS = 3601  # of a cycle that is solved while somebody waits
+_FEWER_ROWS = 721
+_MOST_ITERATIONS = 200
+
+Events = list[tell.Event]
+
+
+class GivenUpError(Exception):
+    """A cycle was given up because a newer change makes it worthless."""
+
+
+@dataclass(kw_only=True)
+class _Drag:
+    """A change on the way: the text it changes, and the mechanism it began with."""
+
+    kind: str
+    text: TextEdits
+    before: Before
+    what: str = ""
+    latest: str | None = None
+
+
+class Workbench:
+    """One mechanism file, its text, its history and its motion.
+
+    Parameters
+    ----------
+    file : MechanismFile
+    read : callable
+        Makes a mechanism that can be solved from a text; ``linkwork.loads``.
+    hurried : callable, optional
+        Whether somebody waits for a newer change: a cycle is then given up.
+
+    Raises
+    ------
+    MechanismFileError
+        If the file is no mechanism.
+    """
+
+    def __init__(
+        self, file: MechanismFile, read: Read, hurried: Callable[[], bool] = lambda: False
+    ) -> None:
+        self._file, self._read = file, read
+        self.hurried = hurried
+        self._mechanism: Solvable = read(file.text, file.name)
+        self._history = History(file.text)
+        self._motion: Motion | None = None
+        self._solution: Events = []  # the cycle of the mechanism as it is, once solved
+        self._owed = False  # a cycle was given up, and no other has been told since
+        self._drag: _Drag | None = None
+        self._conflict: tell.FileChanged | None = None
+
+    @property
+    def text(self) -> str:
+        """The text as it is now, a change on the way included."""
+        on_the_way = None if self._drag is None else self._drag.latest
+        return self._history.text if on_the_way is None else on_the_way
+
+    @property
+    def unsaved(self) -> bool:
+        """Whether the text is another one than was read or written last."""
+        return self.text != self._file.text
+
+    def opened(self) -> Events:
+        """Everything that a page needs to begin."""
+        self._end_drag()
+        conflict = [] if self._conflict is None else [self._conflict]
+        return [self._state(), *self._solved(), *conflict]
+
+    def handle(self, request: ask.Request) -> Events:
+        """Do what is asked and tell what came of it; wrong requests are answered, never raised."""
+        try:
+            if not _goes_on(request, self._drag):
+                self._end_drag()
+            return self._handle(request)
+        except MechanismError as error:
+            events: Events = [telling.problems_found(error), *self._after_refusal(request)]
+        except InputError as error:
+            events = [tell.Refused(message=str(error)), *self._after_refusal(request)]
+        return [*events, *(self._solved() if self._owed else [])]
+
+    def poll(self) -> Events:
+        """What another program did to the file; its changes are taken over if none is unsaved."""
+        news = self._file.news()
+        if news is None:
+            return []
+        name = self._file.name
+        if news is OnDisk.SAME:
+            self._conflict = None
+            return [self._changed(f'"{name}" is again as it was when it was read here')]
+        if news is OnDisk.MISSING:
+            message = f'"{name}" has been removed: save it to write it again'
+            self._conflict = self._changed(message, missing=True)
+            return [self._conflict]
+        if self.unsaved:
+            message = (
+                f'"{name}" has been changed by another program, and changes made here are not '
+                "saved: reload the file, or save and overwrite it"
+            )
+            self._conflict = self._changed(message)
+            return [self._conflict]
+        return self._taken_over()
+
+    def keep_unsaved(self) -> Path | None:
+        """Write a text that was not saved beside the file; ``None`` if all is saved.
+
+        Raises
+        ------
+        InputError
+            If it cannot be written.
+        """
+        return self._file.keep_beside(self.text) if self.unsaved else None
+
+    # Requests
+
+    @singledispatchmethod
+    def _handle(self, request: ask.Request) -> Events:
+        if isinstance(request, ask.EDITS):
+            return self._edited(request)  # type: ignore[arg-type]
+        raise TypeError(f"{type(request).__name__} is no request")
+
+    def _edited(self, edit: ask.Edit) -> Events:
+        """One change, on the way or final."""
+        live = bool(getattr(edit, "live", False))
+        drag = self._drag
+        if drag is None:
+            drag = _Drag(kind=_same_thing(edit), text=TextEdits(self.text), before=self._before())
+        self._drag = drag
+        try:
+            followed = applied(edit, drag.text, drag.before)
+            text = drag.text.text
+            told = self._accepted(text, _words(edit), live=live)
+        except InputError:
+            drag.text = TextEdits(self.text)  # without the traces of what failed
+            raise
+        if live:
+            drag.latest, drag.what = text, _words(edit)
+        return [*_followed(edit, followed), *told]
+
+    def _after_refusal(self, request: ask.Request) -> Events:
+        """A drag that ends with a refusal stays at the last change that was none; tell that."""
+        drag = self._drag
+        if drag is None or getattr(request, "live", False):
+            return []
+        self._end_drag()
+        return [] if drag.latest is None else self.opened()
+
+    @_handle.register
+    def _(self, request: ask.Together) -> Events:
+        text, before = TextEdits(self.text), self._before()
+        for edit in request.edits:
+            applied(edit, text, before)
+        return self._accepted(text.text, "; ".join(map(_words, request.edits)))
+
+    @_handle.register
+    def _(self, request: ask.SetText) -> Events:
+        return self._accepted(request.text, "text")
+
+    @_handle.register
+    def _(self, request: ask.Undo) -> Events:
+        if self._history.undone() is None:
+            raise InputError("there is nothing to take back")
+        return self._went()
+
+    @_handle.register
+    def _(self, request: ask.Redo) -> Events:
+        if self._history.redone() is None:
+            raise InputError("there is nothing to do again")
+        return self._went()
+
+    @_handle.register
+    def _(self, request: ask.Save) -> Events:
+        self._file.write(self.text, overwrite=request.overwrite)
+        self._conflict = None
+        return [tell.Saved(file=self._file.name), self._state()]
+
+    @_handle.register
+    def _(self, request: ask.Reload) -> Events:
+        return self._reloaded()
+
+    @_handle.register
+    def _(self, request: ask.SolveAt) -> Events:
+        at = request.at or None
+        position = self._mechanism.solve(at, configuration=request.configuration)
+        events: Events = [telling.position_found(position)]
+        if not position.status.ok:
+            failure = position.failure
+            remedies = {} if failure is None else {r.length: r.needed for r in failure.remedies}
+            events += self._open(at, position.message, remedies)
+        return events
+
+    @_handle.register
+    def _(self, request: ask.ListConfigurations) -> Events:
+        return [telling.configurations_found(self._mechanism.configurations(request.at or None))]
+
+    @_handle.register
+    def _(self, request: ask.NewtonSteps) -> Events:
+        if not 1 <= request.max_steps <= _MOST_ITERATIONS:
+            raise InputError(f"max_steps must be from 1 to {_MOST_ITERATIONS}")
+        options = NewtonOptions(max_steps=request.max_steps)
+        if request.full_steps:
+            options = replace(options, largest_turn=math.inf)
+        shown = self._mechanism.iterates(request.guess, request.at or None, options=options)
+        return [telling.newton_shown(shown)]
+
+    # The text and what is solved from it
+
+    def _before(self) -> Before:
+        """The mechanism as it is, with its points where the start closes."""
+        position = self._mechanism.solve()
+        places = {} if not position.status.ok else dict(position.points)
+        return Before(description=self._mechanism.description, places=places)
+
+    def _accepted(self, text: str, what: str, *, live: bool = False) -> Events:
+        """Read a text; it becomes the file's if it is a mechanism, and nothing changes if not."""
+        self._mechanism, self._solution = self._read(text, self._file.name), []
+        if live:
+            return self._solved(live=True)
+        self._drag = None
+        self._history.add(text, what)
+        return [self._state(), *self._solved()]
+
+    def _end_drag(self) -> None:
+        """What was dragged and never let go counts as done."""
+        drag, self._drag = self._drag, None
+        if drag is not None and drag.latest is not None:
+            self._history.add(drag.latest, drag.what)
+            self._solution = []
+
+    def _went(self) -> Events:
+        text = self._history.text
+        self._mechanism, self._solution = self._read(text, self._file.name), []
+        return [self._state(), *self._solved()]
+
+    def _reloaded(self) -> Events:
+        text = self._file.read()
+        events = self._accepted(text, "reload")
+        self._file.accept(text)
+        self._conflict = None
+        return [self._state(), *events[1:]]
+
+    def _taken_over(self) -> Events:
+        """The file on disk is another one, and nothing is lost by reading it."""
+        self._end_drag()
+        try:
+            events = self._reloaded()
+        except MechanismError as error:
+            return [telling.problems_found(error)]
+        return [self._changed(f'"{self._file.name}" has been read again', reloaded=True), *events]
+
+    def _changed(
+        self, message: str, *, reloaded: bool = False, missing: bool = False
+    ) -> tell.FileChanged:
+        return tell.FileChanged(
+            message=message, reloaded=reloaded, unsaved=self.unsaved, missing=missing
+        )
+
+    def _solved(self, *, live: bool = False) -> Events:
+        """The cycle; where there is none, the gap that is left; without input, one position."""
+        if self._solution:
+            return self._solution
+        if not self._mechanism.description.inputs:
+            return self._handle(ask.SolveAt(at={}))
+        try:
+            motion, message = self._swept(live)
+        except GivenUpError:
+            self._owed = True
+            return []
+        self._motion, self._owed = motion, False
+        events: Events = [telling.motion_found(motion, live=live, message=message)]
+        if all(status is Status.NO_START for status in motion.status):
+            failure = motion.failure
+            remedies = {} if failure is None else {r.length: r.needed for r in failure.remedies}
+            events += self._open(None, motion.message, remedies)
+        self._solution = [] if live else events
+        return events
+
+    def _swept(self, live: bool) -> tuple[Motion, str]:
+        mechanism = self._mechanism
+        if live:
+            return mechanism.sweep_beside(self._motion), ""
+        description = mechanism.description
+        rows = [description.rows(which) for which in description.inputs]
+        count = max(map(len, rows))
+        if count <= _MOST_ROWS or len(rows) > 1:
+            return mechanism.sweep(progress=self._give_up), ""
+        step = (rows[0][-1] - rows[0][0]) / (_FEWER_ROWS - 1)
+        message = f"shown at {_FEWER_ROWS} of the {count} rows of the file"
+        return mechanism.sweep(step=float(step), progress=self._give_up), message
+
+    def _give_up(self, fraction: float) -> None:
+        if self.hurried():
+            raise GivenUpError
+
+    def _open(
+        self, at: Mapping[str, float] | None, message: str, remedies: Mapping[str, float]
+    ) -> Events:
+        return [telling.cannot_close(self._mechanism.nearest_assembly(at), message, remedies)]
+
+    def _state(self) -> tell.FileState:
+        description, sheet = self._mechanism.description, self._mechanism.equations()
+        kinds = {v.name: v.kind for v in sheet.equations.variables}
+        return tell.FileState(
+            file=self._file.name,
+            title=description.name,
+            text=self.text,
+            form=telling.form_of(description),
+            unsaved=self.unsaved,
+            undo=self._history.undo_what,
+            redo=self._history.redo_what,
+            length_unit=description.length,
+            angle_unit=description.angle.value,
+            configuration=description.configuration,
+            numbers=tuple(telling.changeable_numbers(description, kinds)),
+            unknowns=telling.unknowns_of(sheet, description),
+            inputs=telling.driven_inputs(sheet, description),
+            points=telling.sketched_points(description),
+            links=telling.links_of(description),
+            traced=description.trace,
+            equations=telling.loop_texts(sheet),
+        )
+
+
+def _same_thing(edit: ask.Request) -> str:
+    """What is being dragged: two changes of the same thing are one."""
+    match edit:
+        case ask.SetNumber():
+            return f"number {edit.name}"
+        case ask.MovePoint():
+            return f"point {edit.point} {edit.lengths_follow}"
+        case _:
+            return kind_of(type(edit))
+
+
+def _goes_on(request: ask.Request, drag: _Drag | None) -> bool:
+    """Whether a request leaves a change on the way as it is, or is part of it."""
+    if drag is None or isinstance(request, ask.SolveAt | ask.ListConfigurations | ask.NewtonSteps):
+        return True
+    return isinstance(request, ask.EDITS) and _same_thing(request) == drag.kind
+
+
+def _words(edit: ask.Edit) -> str:
+    """A change in a few words, for the history."""
+    match edit:
+        case ask.SetNumber():
+            value = edit.value if isinstance(edit.value, str) else f"{edit.value:.12g}"
+            return f"{edit.name} = {value}"
+        case ask.MovePoint():
+            return f"move {edit.point}"
+        case ask.ChooseConfiguration():
+            return f"configuration {edit.name}".strip()
+        case _:
+            name = getattr(edit, "name", None) or getattr(edit, "point", "")
+            return f"{kind_of(type(edit)).replace('_', ' ')} {name}".strip()
+
+
+def _followed(edit: ask.Edit, followed: Followed) -> Events:
+    if not isinstance(edit, ask.MovePoint):
+        return []
+    return [tell.PointMoved(point=edit.point, followed=followed.followed, stayed=followed.stayed)]

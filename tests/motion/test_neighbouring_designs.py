@@ -1,0 +1,214 @@
+"""Cycles of neighbouring designs, mechanisms that cannot close, and Newton step by step."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import linkwork as lw
+from linkwork.foundation.certification import Certification
+from linkwork.motion import renewed
+
+
+def four_bar(**lengths: float) -> lw.Mechanism:
+    """A crank-rocker of crank a, rod b, rocker c and ground 100."""
+    sizes = {"a": 40.0, "b": 120.0, "c": 80.0} | lengths
+    return lw.linkage(
+        name="four-bar",
+        points={"O2": (0, 0), "A": (35, 20), "B": (146, 66), "O4": (100, 0)},
+        links={
+            "ground": ("O2", "O4"),
+            "crank": ("O2", "A"),
+            "rod": ("A", "B"),
+            "rocker": ("O4", "B"),
+        },
+        lengths={"O2 A": sizes["a"], "A B": sizes["b"], "O4 B": sizes["c"]},
+        inputs=lw.Input(link="crank"),
+    )
+
+
+# Beside a cycle that is known
+
+
+@settings(max_examples=30)
+@given(st.floats(38.0, 42.0), st.floats(117.0, 123.0), st.floats(78.0, 82.0))
+def test_a_neighbours_cycle_is_the_one_that_following_finds(a: float, b: float, c: float) -> None:
+    design = four_bar(a=a, b=b, c=c)
+    beside = renewed(design.model, four_bar().sweep())
+    assert beside is not None
+    followed = design.sweep()
+    np.testing.assert_allclose(beside.q, followed.q, rtol=0, atol=1e-9)  # both to rounding
+    np.testing.assert_allclose(beside["rocker.d1"], followed["rocker.d1"], rtol=0, atol=1e-9)
+    assert set(beside.certification) == {Certification.NOT_ASKED}
+    assert beside.branch == followed.branch
+    assert beside.worst < 1e-12
+
+
+@pytest.mark.parametrize("name", ["jansen-leg", "rapier-drive", "planetary-gear", "klann-leg"])
+def test_the_cycle_itself_is_its_own_neighbour(name: str) -> None:
+    design = lw.example(name)
+    cycle = design.sweep()
+    beside = renewed(design.model, cycle)
+    assert beside is not None
+    np.testing.assert_allclose(beside.q, cycle.q, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "length", "sizes"),
+    [
+        ("jansen-leg", "A B", np.linspace(39.0, 37.5, 7)),
+        ("jansen-leg", "A B", np.linspace(37.0, 38.5, 7)),
+        ("jansen-leg", "P C", np.linspace(36.0, 34.8, 7)),
+        ("four-bar", "O2 A", np.linspace(58.0, 64.0, 13)),
+    ],
+)
+def test_dead_points_move_with_a_dimension_as_following_finds_them(
+    name: str, length: str, sizes: np.ndarray
+) -> None:
+    base = lw.example(name)
+
+    def design(size: float) -> lw.Mechanism:
+        return base.changed(lengths={**base.description.lengths, length: float(size)})
+
+    cycle = design(sizes[0]).sweep()
+    bounded = 0
+    for size in sizes[1:]:
+        now = design(size)
+        beside, followed = renewed(now.model, cycle), now.sweep(certify=False)
+        assert beside is not None
+        rows = followed.asked
+        lost = followed.found[rows] & ~beside.found
+        assert not (beside.found & ~followed.found[rows]).any()
+        assert lost.sum() <= 2  # right at a dead point, on either side
+        both = beside.found & followed.found[rows]
+        # beside dead points rounding is enlarged by their condition
+        np.testing.assert_allclose(beside.q[both], followed.q[rows][both], rtol=0, atol=1e-8)
+        assert len(beside.limits) == len(followed.limits)
+        for limit in beside.limits:
+            assert not limit.located
+            low, high = sorted(limit.bracket)
+            assert low < limit.input < high
+            away = [abs(limit.input - other.input) % 360 for other in followed.limits]
+            assert min(min(a, 360 - a) for a in away) < 1.0  # of a table by one degree
+        bounded += bool(beside.limits)
+        cycle = beside
+    assert bounded > 3
+
+
+def test_nothing_is_renewed_where_a_dead_point_has_come_between() -> None:
+    locked = four_bar(a=70.0)
+    cycle = four_bar().sweep()
+    assert renewed(locked.model, cycle) is None
+    beside = locked.sweep_beside(cycle)
+    followed = locked.sweep()
+    assert [limit.input for limit in beside.limits] == pytest.approx(
+        [limit.input for limit in followed.limits], abs=1e-6
+    )
+    assert beside.status == followed.status
+
+
+def test_nothing_is_renewed_from_a_cycle_of_another_table() -> None:
+    design = four_bar()
+    assert renewed(design.model, lw.example("slider-crank").sweep()) is None
+    assert renewed(design.model, design.sweep(step=2)) is None
+    assert design.sweep_beside().found.all()
+
+
+def test_a_row_that_would_jump_to_the_other_branch_is_not_renewed() -> None:
+    cycle = four_bar().sweep()
+    moved = np.array(cycle.q)
+    moved[100:200] = -moved[100:200]  # near the crossed positions
+    assert renewed(four_bar().model, replace(cycle, q=moved)) is None
+
+
+# As near to closing as it gets
+
+
+@given(st.floats(1.0, 9.0))
+def test_the_gap_of_a_dyad_is_what_its_two_bars_leave_between_circles(rocker: float) -> None:
+    open_ = four_bar(c=rocker).nearest_assembly(60)
+    crank = 40 * complex(math.cos(math.pi / 3), math.sin(math.pi / 3))
+    wanted = (120 - rocker) - abs(100 - crank)
+    assert wanted > 0
+    assert open_.gap == pytest.approx(wanted, rel=1e-6)
+    (vector,) = open_.gaps.values()
+    assert math.hypot(*vector) == pytest.approx(open_.gap, rel=1e-12)
+    assert open_.points["A"] == pytest.approx((crank.real, crank.imag))
+    (end,) = open_.apart
+    assert math.dist(end.end, end.joint) == pytest.approx(open_.gap, rel=1e-9)
+    inside = {"rod": ("A", 120.0), "rocker": ("O4", rocker)}
+    start, length = inside[end.link]
+    assert math.dist(open_.points[start], end.end) == pytest.approx(length, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["four-bar", "rapier-drive", "jansen-leg", "whitworth"])
+def test_what_closes_has_no_gap(name: str) -> None:
+    design = lw.example(name)
+    nearest, position = design.nearest_assembly(), design.solve()
+    assert nearest.gap < 1e-9
+    assert nearest.apart == ()
+    for point, place in position.points.items():
+        assert nearest.points[point] == pytest.approx(place, abs=1e-6)
+
+
+def test_later_loops_are_closed_though_an_earlier_one_is_open() -> None:
+    leg = lw.example("jansen-leg")
+    broken = leg.changed(lengths={**leg.description.lengths, "A C": 5.0})
+    nearest = broken.nearest_assembly()
+    gaps = {loop: math.hypot(*vector) for loop, vector in nearest.gaps.items()}
+    assert gaps["O A B P"] < 1e-9
+    assert gaps["O A C P"] > 1.0
+    assert nearest.gap == pytest.approx(math.hypot(*gaps.values()))
+
+
+# Step by step
+
+
+def test_the_iterates_are_those_of_solve_with_its_steps() -> None:
+    design = lw.example("rapier-drive")
+    shown = design.iterates()
+    trails = design.solve(from_guess=True, with_steps=True).steps
+    steps = [step for trail in trails for step in trail.steps]
+    assert [each.k for each in shown.iterates] == [step.k for step in steps]
+    for each, step in zip(shown.iterates, steps, strict=True):
+        assert each.unknowns == step.unknowns
+        assert each.norm == pytest.approx(step.residual, rel=1e-12)
+        assert each.step == step.step
+
+
+def test_jacobians_are_slopes_of_the_residuals() -> None:
+    design = four_bar()
+    guess = {"rod": 20.0, "rocker": 100.0}
+    at = 60.0
+    first = design.iterates(guess, at).iterates[0]
+    h = 1e-6
+    for column, name in enumerate(guess):
+        for row in range(2):
+            ends = [
+                design.iterates(guess | {name: guess[name] + math.degrees(s * h)}, at)
+                .iterates[0]
+                .residuals[row]
+                for s in (1.0, -1.0)
+            ]
+            slope = (ends[0] - ends[1]) / (2 * h)
+            assert first.jacobian[row][column] == pytest.approx(slope, abs=1e-6)
+
+
+def test_points_of_an_iterate_follow_its_unknowns() -> None:
+    each = four_bar().iterates({"rod": 90.0, "rocker": 45.0}, 0.0).iterates[0]
+    assert each.points["A"] == pytest.approx((40, 0))
+    ends = ((40, 120), (100 + 80 / math.sqrt(2), 80 / math.sqrt(2)))  # by the rod, by the rocker
+    assert any(each.points["B"] == pytest.approx(end) for end in ends)
+
+
+def test_a_guess_needs_names_and_numbers() -> None:
+    with pytest.raises(lw.UnknownNameError) as caught:
+        four_bar().iterates({"coupler": 1.0})
+    assert str(caught.value) == '"coupler" is not an unknown of four-bar (unknowns: rod, rocker)'
+    with pytest.raises(lw.InputError, match="the guess of rod must be a finite number, got nan"):
+        four_bar().iterates({"rod": math.nan})
