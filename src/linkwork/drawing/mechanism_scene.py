@@ -32,7 +32,7 @@ from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
-__all__ = ["SceneOptions", "scene_of"]
+__all__ = ["SceneOptions", "scene_of", "symbols", "traced"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,7 +104,7 @@ def scene_of(
     """
     chosen = options or SceneOptions()
     pose = Pose.of(position, motion)
-    names = _traced(pose, traces)
+    names = traced(pose, traces)
     further: list[Further] = []
     if motion is not None and chosen.further:
         further = further_positions(pose, motion, chosen.further)
@@ -115,7 +115,7 @@ def scene_of(
     marks, limit_names = limit_marks(further, motion, measures)
     primitives: list[Primitive] = [
         *faint_symbols(further, measures),
-        *_symbols(pose, found, names, measures),
+        *symbols(pose, found, names, measures),
         *marks,
     ]
     if chosen.arrows:
@@ -136,7 +136,7 @@ def scene_of(
     )
 
 
-def _symbols(
+def symbols(
     pose: Pose, found: list[Track], names: tuple[str, ...], measures: Measures
 ) -> Iterator[Primitive]:
     """One position from the ground up to its pins, with the paths of points."""
@@ -160,7 +160,16 @@ def _contact_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
     yield from curve_symbols(pose, measures)
 
 
-def _traced(pose: Pose, wanted: Sequence[str] | None) -> tuple[str, ...]:
+def traced(pose: Pose, wanted: Sequence[str] | None) -> tuple[str, ...]:
+    """The points whose paths are shown: those wanted, else those of the mechanism's ``[trace]``.
+
+    Raises
+    ------
+    InputError
+        If a path is wanted without a motion.
+    UnknownNameError
+        If there is no such point.
+    """
     if wanted is None:
         return pose.skeleton.traced if pose.paths else ()
     for name in wanted:
