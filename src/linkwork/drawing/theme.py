@@ -11,12 +11,12 @@ to colorblind people, 2002.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from linkwork.drawing.scene import Primitive, Role
 from linkwork.foundation.frozen import FrozenDict
 
-__all__ = ["LIGHT", "Style", "Theme"]
+__all__ = ["DARK", "LIGHT", "Style", "Theme"]
 
 _BLUE, _GREEN, _ORANGE = "#0072B2", "#009E73", "#E69F00"
 _VERMILLION, _PURPLE, _SKY = "#D55E00", "#CC79A7", "#56B4E9"
@@ -104,5 +104,40 @@ LIGHT = Theme(
             Role.LABEL: Style(fill=_INK),
             Role.LIMIT_NAME: Style(fill=_GREY),
         }
+    ),
+)
+
+
+def _inverted(styles: Mapping[Role, Style], colours: Mapping[str, str]) -> Mapping[Role, Style]:
+    """The same styles with other colours for ink, greys and paper."""
+    return FrozenDict.of(
+        {
+            role: replace(
+                style,
+                line=colours.get(style.line, style.line),
+                fill=colours.get(style.fill, style.fill),
+            )
+            for role, style in styles.items()
+        }
+    )
+
+
+#: The same colours on dark paper, the dark ones of Okabe and Ito lightened.
+DARK = Theme(
+    background="#14171A",
+    ink="#ECEFF1",
+    faint="#8D979E",
+    driven="#FF8A4C",
+    tones=("#5BA8E0", "#35C295", "#E29CC3", "#F0B93A", "#8BCDF2"),
+    styles=_inverted(
+        LIGHT.styles,
+        {
+            _INK: "#ECEFF1",
+            _GREY: "#A7B0B6",
+            _PAPER: "#14171A",
+            _VERMILLION: "#FF8A4C",
+            "#EDEDED": "#2A3036",
+            "#E6E6E6": "#2F363C",
+        },
     ),
 )
