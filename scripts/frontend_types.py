@@ -1,7 +1,7 @@
 """The TypeScript types of the front end's data, from the Python dataclasses.
 
-    python scripts/frontend_types.py          writes frontend/src/page_data.ts
-    python scripts/frontend_types.py --check  says whether it is current
+python scripts/frontend_types.py          writes frontend/src/page_data.ts
+python scripts/frontend_types.py --check  says whether it is current
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def main(arguments: list[str]) -> int:
     text = module_text()
     if arguments == ["--check"]:
         if not TARGET.exists() or TARGET.read_text(encoding="utf-8") != text:
-            print("frontend/src/page_data.ts is not current: run scripts/frontend types")
+            sys.stderr.write("frontend/src/page_data.ts is not current: run scripts/frontend types\n")
             return 1
         return 0
     TARGET.write_text(text, encoding="utf-8")

@@ -23,6 +23,7 @@ _COMMANDS = (
     "configurations",
     "circuits",
     "draw",
+    "animate",
     "study",
     "examples",
     "schema",

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["FORMATS", "figure", "render", "write"]
+__all__ = ["FORMATS", "Brush", "figure", "house_settings", "render", "write"]
 
 #: File formats by suffix.
 FORMATS = ("png", "svg", "pdf")
@@ -93,7 +93,7 @@ def render(
     if kind not in FORMATS:
         raise InputError(f'there is no format "{kind}" (formats: {", ".join(FORMATS)})')
     buffer = io.BytesIO()
-    with _house_settings():
+    with house_settings():
         match scene:
             case Chart():
                 page = chart_figure(scene, theme)
@@ -114,13 +114,13 @@ def figure(scene: Scene, ax: Axes | None = None, *, theme: Theme = LIGHT) -> Fig
         The figure that holds the drawing. In axes of the caller, line widths and fonts suit the
         size that the axes have now.
     """
-    with _house_settings():
+    with house_settings():
         if ax is None:
             ax = _page(scene, theme)
         else:
             _dress(ax, scene, theme, scene.box.grown(0.03 * scene.measures.size))
             ax.set_title("\n".join(filter(None, (scene.title, scene.caption))), fontsize=_TITLE)
-        brush = _Brush(ax, scene, theme)
+        brush = Brush(ax, scene, theme)
         for primitive in scene.primitives:
             brush.draw(primitive)
         found = ax.get_figure(root=True)
@@ -162,7 +162,7 @@ def _sheet_figure(sheet: Sheet, theme: Theme) -> Figure:
             spine.set_visible(True)
         text = "\n".join(name)
         ax.set_title(text, fontsize=_SMALL, color=theme.ink, loc="left", pad=3.0, parse_math=False)
-        brush = _Brush(ax, scene, theme)
+        brush = Brush(ax, scene, theme)
         for primitive in scene.primitives:
             brush.draw(primitive)
     return page
@@ -190,7 +190,7 @@ def _write_heading(page: Figure, heading: list[tuple[str, float, str]], left: fl
 
 
 @contextmanager
-def _house_settings() -> Iterator[None]:
+def house_settings() -> Iterator[None]:
     """Matplotlib's own defaults, whatever the user's settings are, while we draw."""
     try:
         import matplotlib
@@ -268,7 +268,7 @@ def _round_step(wanted: float) -> float:
     return max(step * power for step in (1, 2, 5) if step * power <= 1.4 * wanted)
 
 
-class _Brush:
+class Brush:
     """Translates primitives into artists of one axes."""
 
     def __init__(self, ax: Axes, scene: Scene, theme: Theme) -> None:

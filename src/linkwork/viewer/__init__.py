@@ -1,4 +1,4 @@
-"""Motions as pages that move: one offline HTML file, and the data that its front end reads."""
+"""Motions that move: one offline HTML file, films, and the data that the front end reads."""
 
 from __future__ import annotations
 
@@ -7,17 +7,38 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
+    from linkwork.viewer.animation import (
+        ANIMATION_FORMATS,
+        FilmOptions,
+        animation,
+        check_animation,
+    )
     from linkwork.viewer.offline_page import offline_page
-    from linkwork.viewer.page_building import page_data
+    from linkwork.viewer.page_building import drawn_page, motion_page
     from linkwork.viewer.page_data import PageData
 else:
     __getattr__ = loader(
         __name__,
         {
+            "animation": (
+                "ANIMATION_FORMATS",
+                "FilmOptions",
+                "animation",
+                "check_animation",
+            ),
             "offline_page": ("offline_page",),
-            "page_building": ("page_data"),
+            "page_building": ("drawn_page", "motion_page"),
             "page_data": ("PageData",),
         },
     )
 
-__all__ = ["PageData", "offline_page", "page_data"]
+__all__ = [
+    "ANIMATION_FORMATS",
+    "FilmOptions",
+    "PageData",
+    "animation",
+    "check_animation",
+    "drawn_page",
+    "motion_page",
+    "offline_page",
+]

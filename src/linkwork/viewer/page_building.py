@@ -33,7 +33,7 @@ from linkwork.viewer.page_data import (
 from linkwork.viewer.page_shapes import shapes_of, vectors_of
 from linkwork.viewer.play_order import play_order
 
-__all__ = ["FORMAT", "page_data"]
+__all__ = ["FORMAT", "drawn_page", "motion_page"]
 
 #: Of the page data: the front end refuses any other.
 FORMAT = 1
@@ -43,7 +43,7 @@ _COARSE = 0.001  # of a decade: how exactly residuals and radii are kept
 _RATE_DIGITS = 7  # of derivatives
 
 
-def page_data(
+def motion_page(
     motions: Mapping[str, Motion],
     *,
     equations: Sequence[tuple[str, str]] = (),
@@ -76,10 +76,10 @@ def page_data(
         moving_scene(motion, within=within, like=old)
         for motion, old in zip(shown.values(), before, strict=True)
     ]
-    return page_of(shown, scenes, equations)
+    return drawn_page(shown, scenes, equations)
 
 
-def page_of(
+def drawn_page(
     motions: Mapping[str, Motion],
     scenes: Sequence[MovingScene],
     equations: Sequence[tuple[str, str]] = (),
