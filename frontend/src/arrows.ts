@@ -6,7 +6,7 @@ import { pathOf, svg } from "./svg";
 import { toneClass } from "./theme";
 
 const HEAD = 2.4; // length of an arrow head, in pins
-const LONGEST = 0.22; // of the largest velocity, of the drawing's longer side
+const LONGEST = 0.16; // of the largest velocity, of the drawing's longer side
 
 interface Arrow {
   readonly group: SVGGElement;

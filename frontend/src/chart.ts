@@ -8,7 +8,7 @@ import { html, svg } from "./svg";
 const WIDTH = 420;
 const HEIGHT = 190;
 const LEFT = 52;
-const RIGHT = 12;
+const RIGHT = 20;
 const ABOVE = 12;
 const BELOW = 30;
 
@@ -72,7 +72,7 @@ export class Chart {
   private redraw(): void {
     const { input, order } = this.view;
     this.series = this.view.series.find((one) => one.name === this.chosen) ?? input;
-    this.x = scale(order.map((row) => input.values[row]!), LEFT, WIDTH - RIGHT);
+    this.x = scale(Array.from(input.values), LEFT, WIDTH - RIGHT);
     this.y = scale(order.map((row) => this.series.values[row]!), HEIGHT - BELOW, ABOVE, 0.06);
     this.plot.replaceChildren();
     const name = `${labelled(this.series)} over ${labelled(input)}`;
@@ -108,14 +108,40 @@ export class Chart {
     const wide = (this.x.high - this.x.low) / 2;
     const pieces: string[] = [];
     let before = Number.NaN;
-    const way = data.closed ? [...order, order[0]!] : order;
-    for (const row of way) {
+    let last = 0;
+    const to = (letter: string, value: number, row: number): number =>
+      pieces.push(`${letter}${this.x.at(value).toFixed(2)} ${this.y.at(this.series.values[row]!).toFixed(2)}`);
+    for (const row of data.closed ? [...order, order[0]!] : order) {
       const value = input.values[row]!;
-      const broken = !(Math.abs(value - before) <= wide);
-      pieces.push(`${broken ? "M" : "L"}${this.x.at(value).toFixed(2)} ${this.y.at(this.series.values[row]!).toFixed(2)}`);
+      const onward = Math.abs(value - before) <= wide;
+      if (!onward && Number.isFinite(before)) {
+        // The curve goes on at the other side, a turn further: end it at the edge.
+        const turned = before + Math.sign(before - value) * this.step(order, input);
+        const end = this.rowAt(turned, this.series.values[last]!);
+        if (end !== null) to("L", turned, end);
+      }
+      to(onward ? "L" : "M", value, row);
       before = value;
+      last = row;
     }
     return pieces.join("");
+  }
+
+  /** The row of the table at an input value whose value is next to another; null without one. */
+  private rowAt(value: number, beside: number): number | null {
+    let best: number | null = null;
+    let least = 0.2 * (this.y.high - this.y.low);
+    this.view.input.values.forEach((one, row) => {
+      if (!(Math.abs(one - value) <= 1e-6 * (this.x.high - this.x.low))) return;
+      const far = Math.abs(this.series.values[row]! - beside);
+      if (far < least) [best, least] = [row, far];
+    });
+    return best;
+  }
+
+  /** The usual distance of input values. */
+  private step(order: readonly number[], input: Series): number {
+    return Math.abs(input.values[order[1] ?? 0]! - input.values[order[0]!]!);
   }
 
   private limit(row: number, text: string): void {

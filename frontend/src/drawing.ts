@@ -8,6 +8,9 @@ import { toneClass } from "./theme";
 /** The frame of a shape that changes its form. */
 const OWN_COURSE = -2;
 
+/** Of names on the screen [px]. */
+const SMALLEST = 12.5;
+
 type Moved = (row: number) => void;
 
 const LABELS = new Set(["label", "link_name", "limit_name"]);
@@ -39,6 +42,14 @@ export class Drawing {
     this.shapes = svg("g", {}, this.element);
     this.overlay = svg("g", { class: "lw-overlay" }, this.element);
     this.handles = svg("g", { class: "lw-handles" }, this.element);
+  }
+
+  /** Names grow in small drawings, so that they can be read. */
+  fit(): void {
+    const matrix = this.element.getScreenCTM();
+    if (matrix === null) return;
+    const grow = SMALLEST / (this.data.text * matrix.a);
+    this.element.style.setProperty("--grow", String(Math.min(1.6, Math.max(1, grow))));
   }
 
   /** Draw another motion. */
@@ -133,7 +144,6 @@ export class Drawing {
       "text",
       {
         ...this.look(part),
-        "font-size": part.height,
         "text-anchor": (["start", "middle", "end"] as const)[part.align + 1]!,
         x: dx,
         y: -dy,
@@ -141,6 +151,7 @@ export class Drawing {
       this.shapes,
     );
     element.textContent = part.text;
+    element.style.fontSize = `calc(var(--grow, 1) * ${part.height}px)`;
     const place = (row: number): void => {
       const { x, y, angle } = this.view.pose(part.frame, row);
       const [cos, sin] = [Math.cos(angle), Math.sin(angle)];

@@ -63,6 +63,7 @@ class Page implements Mounted {
   private drawn = -1;
   private spoken = 0;
   private readonly gone = new AbortController();
+  private readonly sized = new ResizeObserver(() => this.drawing.fit());
 
   constructor(
     element: HTMLElement,
@@ -93,7 +94,7 @@ class Page implements Mounted {
     for (const name of this.plotted()) {
       this.charts.push(new Chart(charts, name, (index) => this.hold(index)));
     }
-    this.table = new RowTable(side);
+    this.table = new RowTable(side, 1e-10 * (data.view[2]! - data.view[0]!));
     this.equations(side);
     this.live = html("div", { class: "lw-unseen", role: "status", "aria-live": "polite" }, this.root);
     this.player.onChange(() => this.draw());
@@ -119,6 +120,7 @@ class Page implements Mounted {
 
   destroy(): void {
     this.gone.abort();
+    this.sized.disconnect();
     cancelAnimationFrame(this.frame);
     this.root.remove();
   }
@@ -242,6 +244,7 @@ class Page implements Mounted {
     const options = { signal: this.gone.signal };
     document.addEventListener("keydown", (event) => this.key(event), options);
     this.drag(this.drawing.element);
+    this.sized.observe(this.drawing.element);
   }
 
   private key(event: KeyboardEvent): void {

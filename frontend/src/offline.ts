@@ -1,13 +1,20 @@
 // The entry of the offline page: its data stand in the page.
 
-import { mount, type PageData } from "./mount";
+import { mount, type Mounted, type PageData } from "./mount";
 import { inflated } from "./unpack";
+
+declare global {
+  interface Window {
+    /** For whoever wants to steer the page by a script. */
+    linkwork: Mounted;
+  }
+}
 
 async function start(): Promise<void> {
   const holder = document.getElementById("linkwork-data")!;
   const content = holder.textContent ?? "";
   const text = holder.dataset.encoding === "json" ? content : await inflated(content);
-  mount(document.getElementById("linkwork")!, JSON.parse(text) as PageData);
+  window.linkwork = mount(document.getElementById("linkwork")!, JSON.parse(text) as PageData);
 }
 
 start().catch((error: unknown) => {

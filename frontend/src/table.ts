@@ -17,7 +17,11 @@ export class RowTable {
   private readonly box: HTMLElement;
   private readonly proof: HTMLElement;
 
-  constructor(parent: Element) {
+  /** `rounding` is the largest length that counts as 0. */
+  constructor(
+    parent: Element,
+    private readonly rounding: number,
+  ) {
     this.box = html("div", { class: "lw-table" }, parent);
     this.proof = html("dl", { class: "lw-proof" }, parent);
   }
@@ -37,13 +41,14 @@ export class RowTable {
 
   private quantities(view: MotionView): void {
     const input = view.input;
+    const least = (unit: string): number => (unit === "deg" || unit === "rad" ? 1e-9 : this.rounding);
     const body = this.table(["", "value", `by ${input.shown}`]);
     for (const one of view.series) {
       const line = html("tr", {}, body);
       html("th", { scope: "row" }, line, one.shown);
-      this.cell(line, (row) => shortNumber(one.values[row]!) + unitText(one.unit));
+      this.cell(line, (row) => shortNumber(one.values[row]!, 6, least(one.unit)) + unitText(one.unit));
       const first = one.first;
-      this.cell(line, (row) => (first ? `${shortNumber(first[row]!, 4)} ${one.firstUnit}` : ""));
+      this.cell(line, (row) => (first ? `${shortNumber(first[row]!, 4, least(one.unit))} ${one.firstUnit}` : ""));
     }
   }
 
@@ -54,8 +59,8 @@ export class RowTable {
     for (const point of moving) {
       const line = html("tr", {}, body);
       html("th", { scope: "row" }, line, point.shown);
-      this.cell(line, (row) => shortNumber(point.x[row]!));
-      this.cell(line, (row) => shortNumber(point.y[row]!));
+      this.cell(line, (row) => shortNumber(point.x[row]!, 6, this.rounding));
+      this.cell(line, (row) => shortNumber(point.y[row]!, 6, this.rounding));
     }
   }
 

@@ -268,18 +268,35 @@ class Mechanism:
         """Draw one position to a PNG, SVG or PDF file; see :meth:`scene`."""
         drawing.write(self.scene(at, configuration=configuration), Path(path))
 
+    def cycle(
+        self,
+        *,
+        configuration: str | None = None,
+        certify: bool = True,
+        progress: Callable[[float], None] | None = None,
+    ) -> Motion:
+        """The motion that is shown where one is wanted: :meth:`sweep`, and on through dead points
+        where the input does not reach all of its range.
+        """
+        motion = self.sweep(configuration=configuration, certify=certify, progress=progress)
+        if motion.found.all() or not motion.found.any():
+            return motion
+        return self.sweep(
+            configuration=configuration, through=True, certify=certify, progress=progress
+        )
+
     def cycles(
         self, *, certify: bool = True, progress: Callable[[float], None] | None = None
     ) -> dict[str, Motion]:
-        """The motion around every circuit, by the circuit's name; that of the guess first.
+        """The motion on every circuit, by the circuit's name; that of the guess first.
 
-        Rows are those of the input's range, and limits; see :meth:`sweep` with ``through``.
+        See :meth:`cycle`.
         """
         found = {}
         circuits = self.circuits(certify=False)
         for k, circuit in enumerate(circuits):
             branch = circuit.branches[0].name
-            found[circuit.name] = self.sweep(configuration=branch, through=True, certify=certify)
+            found[circuit.name] = self.cycle(configuration=branch, certify=certify)
             if progress is not None:
                 progress((k + 1) / len(circuits))
         return found
@@ -323,7 +340,7 @@ class Mechanism:
         if all_circuits:
             motions = self.cycles(progress=progress)
         else:
-            motions = {"motion": self.sweep(through=True) if motion is None else motion}
+            motions = {"motion": self.cycle() if motion is None else motion}
         content = viewer.animation(
             motions, kind, options=options, equations=self.equations().mathml(), progress=progress
         )

@@ -96,9 +96,7 @@ def _motions(
         with progress("following circuits") as tell:
             return mechanism.cycles(certify=certify, progress=tell)
     with progress("sweeping") as tell:
-        motion = mechanism.sweep(
-            configuration=configuration, through=True, certify=certify, progress=tell
-        )
+        motion = mechanism.cycle(configuration=configuration, certify=certify, progress=tell)
     return {configuration or "motion": motion}
 
 

@@ -22,7 +22,7 @@ def play_order(motion: Motion) -> tuple[CountArray, bool]:
     lists further branches after it. Runs of neighbouring rows are put together where their ends
     meet; runs that meet nothing follow each other.
     """
-    places = np.stack([motion.trace(name) for name in motion.points], axis=1)
+    places = _places(motion)
     runs = _runs(places, motion.found)
     near = _MEETING * max((_largest_step(places[run]) for run in runs), default=0.0)
     chain = [runs.pop(0)]
@@ -47,6 +47,16 @@ def play_order(motion: Motion) -> tuple[CountArray, bool]:
     if closed:
         order = np.roll(order, -int(np.argmin(order)))
     return order, bool(closed and len(order) > 2)
+
+
+def _places(motion: Motion) -> ComplexArray:
+    """Where everything is, shape (N, m): points, and the tips of links that may turn about one."""
+    points = [motion.trace(name) for name in motion.points]
+    known = np.concatenate(points)[np.isfinite(np.concatenate(points))]
+    size = float(np.abs(known - known[:1]).max(initial=0.0)) or 1.0
+    radians = motion.units.angle.radians
+    tips = [size * np.exp(1j * series.value * radians) for series in motion.links.values()]
+    return np.stack([*points, *tips], axis=1)
 
 
 def _passed_once(order: CountArray, places: ComplexArray) -> BoolArray:
