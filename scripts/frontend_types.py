@@ -57,7 +57,9 @@ def main(arguments: list[str]) -> int:
     text = module_text()
     if arguments == ["--check"]:
         if not TARGET.exists() or TARGET.read_text(encoding="utf-8") != text:
-            sys.stderr.write("frontend/src/page_data.ts is not current: run scripts/frontend types\n")
+            sys.stderr.write(
+                "frontend/src/page_data.ts is not current: run scripts/frontend types\n"
+            )
             return 1
         return 0
     TARGET.write_text(text, encoding="utf-8")

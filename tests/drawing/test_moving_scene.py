@@ -7,8 +7,9 @@ import pytest
 
 import linkwork as lw
 from linkwork.drawing import SceneOptions, reach_of, scene_of
-from linkwork.drawing.moving_scene import corners, moving_scene
+from linkwork.drawing.moving_scene import moving_scene
 from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, Scene, Text
+from linkwork.drawing.shape_corners import corners
 
 _DRAWN = [n for n in lw.examples() if lw.example(n).model.compiled.points.names]
 _FURTHEST = 1e-6  # of the drawn size: rows and positions agree to rounding

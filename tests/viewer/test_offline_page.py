@@ -47,9 +47,11 @@ def _number(text: str) -> float:
 
 
 def _cells(page: Any, name: str) -> list[str]:
-    return page.locator("tr", has=page.get_by_role("rowheader", name=name, exact=True)).first.locator(
-        "td"
-    ).all_inner_texts()
+    return (
+        page.locator("tr", has=page.get_by_role("rowheader", name=name, exact=True))
+        .first.locator("td")
+        .all_inner_texts()
+    )
 
 
 def _pin(page: Any, name: str, motion: lw.Motion) -> tuple[float, float]:
@@ -63,8 +65,12 @@ def test_table_shows_the_numbers_of_the_library(open_page: Open, jansen: lw.Moti
     page = open_page({"motion": jansen})
     for row in (0, 123, 360):
         page.evaluate(f"linkwork.goToRow({row % 360})")
-        assert _number(_cells(page, "foot")[0]) == pytest.approx(jansen["foot"][row % 360], rel=1e-5)
-        assert _number(_cells(page, "foot")[1]) == pytest.approx(jansen["foot.d1"][row % 360], rel=1e-3)
+        assert _number(_cells(page, "foot")[0]) == pytest.approx(
+            jansen["foot"][row % 360], rel=1e-5
+        )
+        assert _number(_cells(page, "foot")[1]) == pytest.approx(
+            jansen["foot.d1"][row % 360], rel=1e-3
+        )
         assert _number(_cells(page, "F")[0]) == pytest.approx(jansen["F.x"][row % 360], rel=1e-5)
     assert page.locator('[data-fact="position"]').inner_text() == "position found"
     assert "a true position lies within" in page.locator('[data-fact="proof"]').inner_text()
@@ -183,7 +189,9 @@ def test_scrubbing_and_clicking_a_plot_choose_the_row(open_page: Open, jansen: l
     assert _row(page) == 200
     plot = page.locator(".lw-chart svg").first
     box = plot.bounding_box()
-    plot.click(position={"x": box["width"] * (52 + 0.25 * (420 - 72)) / 420, "y": box["height"] / 2})
+    plot.click(
+        position={"x": box["width"] * (52 + 0.25 * (420 - 72)) / 420, "y": box["height"] / 2}
+    )
     assert _row(page) == pytest.approx(90, abs=25)
     dot = page.locator(".lw-dot").first.bounding_box()
     line = page.locator(".lw-now").first.bounding_box()

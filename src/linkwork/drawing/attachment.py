@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.drawing.pose import Pose
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.arrays import Array, ComplexArray, CountArray
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.results.motion import Motion
 
@@ -64,7 +64,7 @@ class Frames:
         """The origin of a frame, shape (N,), or 0 if it stands still."""
         return self.points[frame.origin] if frame.origin else 0j
 
-    def local(self, frame: Frame, shape: ComplexArray, rows: object) -> ComplexArray:
+    def local(self, frame: Frame, shape: ComplexArray, rows: CountArray) -> ComplexArray:
         """Coordinates in a frame of a shape (R, m) that is given in ``rows``."""
         origin, angle = np.asarray(self.origin(frame)), np.asarray(self.angle(frame))
         if origin.ndim:
@@ -73,9 +73,9 @@ class Frames:
             shape = shape * np.exp(-1j * angle[rows])[..., None]
         return shape
 
-    def placed(self, frame: Frame, local: ComplexArray, rows: object) -> ComplexArray:
+    def placed(self, frame: Frame, local: ComplexArray, rows: CountArray) -> ComplexArray:
         """A shape (m,) of a frame in R rows, shape (R, m)."""
-        count = len(np.atleast_1d(np.asarray(rows)))
+        count = len(rows)
         found = np.broadcast_to(local, (count, len(local)))
         angle, origin = np.asarray(self.angle(frame)), np.asarray(self.origin(frame))
         if angle.ndim:
@@ -87,7 +87,7 @@ class Frames:
     def holding(
         self,
         shape: ComplexArray,
-        rows: object,
+        rows: CountArray,
         size: float,
         *,
         first: str = "",

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.text import Text
 
 __all__ = ["film"]
 
@@ -71,7 +72,7 @@ def film(
             yield np.array(pixels[:, :, :3])
 
 
-def _page(moving: MovingScene, theme: Theme, dpi: float) -> tuple[Figure, Axes, Artist]:
+def _page(moving: MovingScene, theme: Theme, dpi: float) -> tuple[Figure, Axes, Text]:
     """A page without axes: the title, the caption, and the drawing under them."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

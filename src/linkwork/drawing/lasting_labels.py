@@ -60,9 +60,8 @@ def labels_as_before(pose: Pose, measures: Measures, before: Sequence[Text]) -> 
     for choice in point_names(pose, measures):
         text = had[choice.places[0].of]
         off = complex(*text.offset) * choice.places[0].height / text.height
-        found.append(
-            min(choice.places, key=lambda place, off=off: abs(complex(*place.offset) - off))
-        )
+        away = [abs(complex(*place.offset) - off) for place in choice.places]
+        found.append(choice.places[int(np.argmin(away))])
     return found
 
 

@@ -25,8 +25,6 @@ from linkwork.drawing.mechanism_scene import symbols, traced
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import (
     Arc,
-    Disc,
-    Hatch,
     Polygon,
     Polyline,
     Primitive,
@@ -35,12 +33,13 @@ from linkwork.drawing.scene import (
     Text,
     xy,
 )
+from linkwork.drawing.shape_corners import corners, same_sizes, with_corners
 from linkwork.drawing.trace_path import trace_symbols
 from linkwork.foundation.arrays import BoolArray, ComplexArray, CountArray
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
 
-__all__ = ["Moving", "MovingScene", "corners", "moving_scene"]
+__all__ = ["Moving", "MovingScene", "moving_scene"]
 
 _SAMPLED = 9  # rows at which names must not collide
 _ARC_PIECES = 32  # of an arc that changes its sweep
@@ -100,11 +99,11 @@ class MovingScene:
         if part.frame is None:
             assert part.course is not None
             own = part.course[row]
-            return _with_corners(part.shape, own) if np.isfinite(own[0]) else None
+            return with_corners(part.shape, own) if np.isfinite(own[0]) else None
         if part.frame == STILL:
             return part.shape
-        local = self.frames.local(part.frame, corners(part.shape)[None], [self.row])[0]
-        return _with_corners(part.shape, self.frames.placed(part.frame, local, [row])[0])
+        local = self.frames.local(part.frame, corners(part.shape)[None], np.array([self.row]))[0]
+        return with_corners(part.shape, self.frames.placed(part.frame, local, np.array([row]))[0])
 
     @property
     def view(self) -> Box:
@@ -119,7 +118,7 @@ class MovingScene:
                 around = part.course[rows]
             else:
                 outline = np.array([complex(*place) for place in part.shape.outline])
-                local = self.frames.local(part.frame, outline[None], [self.row])[0]
+                local = self.frames.local(part.frame, outline[None], np.array([self.row]))[0]
                 around = self.frames.placed(part.frame, local, rows)
             places = around[np.isfinite(around)]
             if len(places):
@@ -252,7 +251,7 @@ def _one_attached(
 ) -> Moving:
     found = [corners(one) for one in along.values()]
     alike = len(along) == len(rows) and len({len(one) for one in found}) == 1
-    if alike and _same_sizes(along.values(), measures.size):
+    if alike and same_sizes(along.values(), measures.size):
         frame = frames.holding(
             np.stack(found),
             rows,
@@ -269,22 +268,6 @@ def _closed(shape: Primitive) -> bool:
     """Whether it does not matter from which corner the corners are numbered."""
     line = isinstance(shape, Polyline) and len(shape.points) == 2 and not shape.head
     return line or isinstance(shape, Polygon)
-
-
-def _same_sizes(shapes: object, size: float) -> bool:
-    """Whether radii, sweeps and heads stay the same."""
-    numbers = np.array([_sizes(shape) for shape in shapes])  # type: ignore[attr-defined]
-    return bool(np.ptp(numbers, axis=0).max(initial=0.0) <= 1e-7 * size)
-
-
-def _sizes(shape: Primitive) -> tuple[float, ...]:
-    match shape:
-        case Disc():
-            return (shape.radius,)
-        case Arc():
-            return shape.radius, shape.sweep * shape.radius, shape.head
-        case _:
-            return ()
 
 
 def _own_course(
@@ -364,9 +347,11 @@ def _arrows_as_before(like: MovingScene, frames: Frames, row: int) -> Iterator[M
     """The arrows of another motion, where they were on what is driven."""
     for part in like.parts:
         if part.shape.role is Role.INPUT and part.frame is not None:
-            local = like.frames.local(part.frame, corners(part.shape)[None], [like.row])[0]
-            places = frames.placed(part.frame, local, [row])[0]
-            yield replace(part, shape=_with_corners(part.shape, places))
+            local = like.frames.local(part.frame, corners(part.shape)[None], np.array([like.row]))[
+                0
+            ]
+            places = frames.placed(part.frame, local, np.array([row]))[0]
+            yield replace(part, shape=with_corners(part.shape, places))
 
 
 def _driving(pose: Pose, arrow: Primitive, frames: Frames) -> Frame:
@@ -408,41 +393,3 @@ def _names_as_before(like: MovingScene, pose: Pose, measures: Measures) -> Itera
 def _name(text: Text, pose: Pose) -> Moving:
     still = text.of in pose.skeleton.fixed
     return Moving(shape=text, frame=STILL if still else Frame(text.of))
-
-
-def corners(shape: Primitive) -> ComplexArray:
-    """The points x + iy that say where a primitive is, shape (m,)."""
-    match shape:
-        case Polyline() | Polygon():
-            places = shape.points
-        case Disc():
-            places = (shape.centre,)
-        case Arc():
-            turned = shape.radius * np.exp(1j * shape.start)
-            places = (shape.centre, xy(complex(*shape.centre) + turned))
-        case Hatch():
-            places = tuple(end for stroke in shape.strokes for end in stroke)
-        case Text():
-            places = (shape.anchor,)
-        case _:
-            raise TypeError(f"{type(shape).__name__} is not known to move")
-    return np.array([complex(*place) for place in places])
-
-
-def _with_corners(shape: Primitive, places: ComplexArray) -> Primitive:
-    """The primitive with other :func:`corners`."""
-    found = tuple(map(xy, places))
-    match shape:
-        case Polyline() | Polygon():
-            return replace(shape, points=found)
-        case Disc():
-            return replace(shape, centre=found[0])
-        case Arc():
-            start = float(np.angle(places[1] - places[0]))
-            return replace(shape, centre=found[0], start=start)
-        case Hatch():
-            return replace(shape, strokes=tuple(zip(found[::2], found[1::2], strict=True)))
-        case Text():
-            return replace(shape, anchor=found[0])
-        case _:
-            raise TypeError(f"{type(shape).__name__} is not known to move")

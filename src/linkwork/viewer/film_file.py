@@ -8,6 +8,7 @@ import subprocess
 import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 from linkwork.foundation.arrays import AnyArray
@@ -128,14 +129,14 @@ def _film_of_ffmpeg(pictures: Iterable[AnyArray], fps: float) -> bytes:
         return target.read_bytes()
 
 
-def _pillow() -> type:
+def _pillow() -> ModuleType:
     try:
         from PIL import Image
     except ImportError:
         raise MissingPackageError(
             'GIF, APNG and WebP need Pillow: pip install "linkwork[plot]"'
         ) from None
-    return Image  # type: ignore[return-value]
+    return Image
 
 
 def _ffmpeg() -> str:

@@ -77,7 +77,8 @@ def _bytes(whole: CountArray) -> bytes:
     last[~table.any(axis=1)] = 0
     place = np.arange(table.shape[1])
     table[place < last[:, None]] |= 0x80
-    return table[place <= last[:, None]].tobytes()
+    content: bytes = table[place <= last[:, None]].tobytes()
+    return content
 
 
 def _whole(content: bytes) -> CountArray:

@@ -32,8 +32,8 @@ def shapes_of(
     motion: Motion, scene: MovingScene
 ) -> tuple[tuple[TurnData, ...], tuple[FrameData, ...], tuple[Part, ...]]:
     """What turns, the frames that carry something, and all shapes from the bottom to the top."""
-    frames = list(dict.fromkeys(p.frame for p in scene.parts if p.frame not in (None, STILL)))
-    carriers = [frame for frame in frames if frame is not None]
+    used = dict.fromkeys(part.frame for part in scene.parts)
+    carriers = [frame for frame in used if frame is not None and frame != STILL]
     turns = list(dict.fromkeys(frame.turn for frame in carriers if frame.turn))
     points = list(motion.points)
     return (
@@ -62,7 +62,7 @@ def _part(part: Moving, scene: MovingScene, carriers: list[Frame]) -> Part:
         """x, y, x, y, … in the frame of the part."""
         line = np.array([complex(*place) for place in places])
         if part.frame is not None and len(line):
-            line = scene.frames.local(part.frame, line[None], [scene.row])[0]
+            line = scene.frames.local(part.frame, line[None], np.array([scene.row]))[0]
         return _flat(line, scene.scene.measures.size)
 
     text = shape if isinstance(shape, Text) else None

@@ -397,7 +397,7 @@ def test_a_store_that_was_taken_away_meanwhile_is_not_written_to(
         lock(file, how)  # type: ignore[arg-type]
 
     monkeypatch.setattr(fcntl, "flock", late)
-    with pytest.raises(InputError, match="^another run is writing to"):
+    with pytest.raises(InputError, match=r"^another run is writing to"):
         run_study(study(*FEW), store, workers=1)
 
 
