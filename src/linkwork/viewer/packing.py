@@ -39,10 +39,8 @@ def packed(values: Array, found: BoolArray, *, step: float | None = None) -> Pac
     whole = np.rint(kept / chosen)
     if np.abs(whole).max(initial=0.0) > _LARGEST / 2 ** max(_ORDERS):
         raise ValueError(f"step {chosen:g} is too fine for values up to {largest:g}")
-    order, content = min(
-        ((order, _bytes(_differences(whole.astype(np.int64), order))) for order in _ORDERS),
-        key=lambda pair: len(pair[1]),
-    )
+    order, differences = _smallest(whole.astype(np.int64))
+    content = _bytes(differences)
     return PackedColumn(step=chosen, order=order, content=base64.b64encode(content).decode())
 
 
@@ -56,10 +54,22 @@ def unpacked(column: PackedColumn, found: BoolArray) -> Array:
     return values
 
 
-def _differences(whole: CountArray, order: int) -> CountArray:
-    for _ in range(order):
+def _smallest(whole: CountArray) -> tuple[int, CountArray]:
+    """The differences that need fewest bytes, and their order."""
+    best, least, order = whole, _length(whole), 0
+    for k in _ORDERS[1:]:
         whole = np.diff(whole, prepend=0)
-    return whole
+        length = _length(whole)
+        if length < least:
+            best, least, order = whole, length, k
+        elif k > order + 1:
+            break
+    return order, best
+
+
+def _length(whole: CountArray) -> float:
+    """About how many bytes numbers need."""
+    return float(np.log2(2.0 * np.abs(whole) + 1.0).sum()) / 7 + len(whole)
 
 
 def _bytes(whole: CountArray) -> bytes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from importlib.metadata import version
 
 import numpy as np
@@ -13,7 +14,7 @@ from linkwork.drawing.drawn_box import reach_of
 from linkwork.drawing.moving_scene import MovingScene, moving_scene
 from linkwork.drawing.scene import Role
 from linkwork.drawing.theme import DARK, LIGHT, Theme
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion, Series
 from linkwork.results.quantity import Rate
@@ -91,7 +92,7 @@ def drawn_page(
     lead = next(iter(first.inputs))
     return PageData(
         format=FORMAT,
-        version=version("linkwork"),
+        version=_version(),
         title=first.mechanism,
         length_unit=first.units.length,
         derivative_unit=first.derivative_unit,
@@ -109,6 +110,11 @@ def drawn_page(
         dark=_theme(DARK),
         equations=tuple(Equation(label=label, mathml=mathml) for label, mathml in equations),
     )
+
+
+@lru_cache
+def _version() -> str:
+    return version("linkwork")
 
 
 def _motion(name: str, motion: Motion, scene: MovingScene) -> MotionData:
@@ -166,34 +172,34 @@ def _columns(motion: Motion) -> Iterator[Column]:
             unit=motion.units.of(kind),
             group=group,
             values=packed(series.value, found),
-            first=_rate(series.first, motion),
+            first=_rate(series.first, found),
             first_unit=Rate.FIRST.unit(kind, motion.units, motion.derivative_unit),
         )
 
 
 def _points(motion: Motion) -> Iterator[PointData]:
-    still = set(motion.skeleton.fixed)
+    still, found = set(motion.skeleton.fixed), motion.found
     for name, (x, y) in motion.points.items():
         yield PointData(
             name=name,
             shown=printed_name(name),
             drawn=name not in still,
-            x=packed(x.value, motion.found),
-            y=packed(y.value, motion.found),
-            dx=_rate(x.first, motion),
-            dy=_rate(y.first, motion),
+            x=packed(x.value, found),
+            y=packed(y.value, found),
+            dx=_rate(x.first, found),
+            dy=_rate(y.first, found),
         )
 
 
-def _rate(values: Array, motion: Motion) -> PackedColumn:
+def _rate(values: Array, found: BoolArray) -> PackedColumn:
     """A derivative, to seven digits; infinite ones (at dead points) count as 0."""
-    finite = np.where(np.isfinite(values), values, 0.0)[motion.found]
+    finite = np.where(np.isfinite(values), values, 0.0)[found]
     largest = float(np.abs(finite).max(initial=0.0))
     # Beside a dead point derivatives grow without bound: digits are counted from the usual ones.
     usual = min(largest, 1e3 * float(np.median(np.abs(finite)))) or largest
     step = 10.0 ** np.floor(np.log10(usual) - _RATE_DIGITS) if usual else 1.0
     clipped = np.clip(np.where(np.isfinite(values), values, 0.0), -1e4 * usual, 1e4 * usual)
-    return packed(clipped, motion.found, step=float(step))
+    return packed(clipped, found, step=float(step))
 
 
 def _evidence(motion: Motion) -> RowEvidence:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 
 from linkwork.foundation.arrays import BoolArray, ComplexArray, CountArray
@@ -61,11 +59,11 @@ def _places(motion: Motion) -> ComplexArray:
 
 def _passed_once(order: CountArray, places: ComplexArray) -> BoolArray:
     """Which rows stay: where runs meet in the same position, the row that is listed first."""
-    span = float(np.abs(places[order] - places[order[0]]).max())
+    there = places[order]
+    span = float(np.abs(there - there[0]).max())
     kept = np.ones(len(order), dtype=bool)
-    for k, (one, other) in enumerate(pairwise(order)):
-        if _apart(places[one], places[other]) <= _SAME * span:
-            kept[k if one > other else k + 1] = False
+    for k in np.flatnonzero(np.abs(np.diff(there, axis=0)).max(axis=1) <= _SAME * span):
+        kept[k if order[k] > order[k + 1] else k + 1] = False
     return kept
 
 
