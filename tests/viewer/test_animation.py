@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import shutil
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -33,10 +34,7 @@ def test_films_repeat_one_cycle(kind: str, motion: lw.Motion) -> None:
         pictures.append(np.asarray(film.convert("RGB"), dtype=int))
         if kind != "webp":
             assert film.info["duration"] == 50
-    changed = [
-        (np.abs(a - b).max(axis=2) > 60).mean()
-        for a, b in zip(pictures, pictures[1:], strict=False)
-    ]
+    changed = [(np.abs(a - b).max(axis=2) > 60).mean() for a, b in pairwise(pictures)]
     assert min(changed) > 0.002  # the mechanism moves,
     assert max(changed) < 0.2  # and the page stands still
 
