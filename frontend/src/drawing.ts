@@ -83,9 +83,14 @@ export class Drawing {
     for (const move of this.moved) move(row);
   }
 
-  /** Show or hide paths, names or arrows of inputs. */
+  /** Show or hide paths or names. */
   toggle(what: "paths" | "names", on: boolean): void {
     this.element.classList.toggle(`without-${what}`, !on);
+  }
+
+  /** Let what moves step back behind the vectors. */
+  dim(on: boolean): void {
+    this.element.classList.toggle("lw-dimmed", on);
   }
 
   /** The place of the plane under a point of the screen. */
@@ -126,6 +131,7 @@ export class Drawing {
   private changing(part: Part): void {
     const course = this.view.course(part);
     const path = svg("path", this.look(part), this.shapes);
+    path.classList.add("lw-changing");
     const closed = part.kind === "area";
     this.moved.push((row) => {
       const there = course.shown[row] === 1;

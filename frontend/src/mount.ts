@@ -38,10 +38,12 @@ let mounted = 0;
 
 /** Show a motion in an element. */
 export function mount(element: HTMLElement, data: PageData, hooks: Hooks = {}): Mounted {
-  if (data.format !== FORMAT) {
-    throw new Error(`this front end reads page data of format ${FORMAT}, not ${data.format}`);
-  }
-  return new Page(element, data, hooks);
+  return new Page(element, checked(data), hooks);
+}
+
+function checked(data: PageData): PageData {
+  if (data.format === FORMAT) return data;
+  throw new Error(`this front end reads page data of format ${FORMAT}, not ${data.format}`);
 }
 
 class Page implements Mounted {
@@ -107,7 +109,7 @@ class Page implements Mounted {
 
   update(data: PageData): void {
     const index = this.player.at;
-    this.data = data;
+    this.data = checked(data);
     this.views = [];
     this.style.textContent = themeRules(data, `#${this.root.id}`);
     this.show(Math.min(this.motion, data.motions.length - 1), index);
@@ -214,6 +216,7 @@ class Page implements Mounted {
     this.arrows.forEach((arrows, k) => {
       toggle(box, ["Vectors", "Velocities"][k]!, false, (on) => {
         arrows.shown = on;
+        if (k === 0) this.drawing.dim(on);
         arrows.draw(this.drawn);
       });
     });

@@ -65,3 +65,71 @@ def test_moving_scene_agrees_with_the_scene_of_a_row(name: str) -> None:
         at = {name: float(values[row]) for name, values in motion.inputs.items()}
         position = mechanism.solve(at or None)
         assert _differences(moving.at(int(row)), scene_of(position, motion, options=options)) == {}
+
+
+@pytest.mark.parametrize(
+    ("name", "lengths"),
+    [
+        ("jansen-leg", {"O A": 14.0}),
+        ("landing-gear", {}),
+        ("planetary-gear", {}),
+    ],
+)
+def test_scene_drawn_like_another_is_the_one_drawn_afresh(
+    name: str, lengths: dict[str, float]
+) -> None:
+    mechanism = lw.example(name)
+    before = moving_scene(mechanism.sweep(certify=False))
+    changed = mechanism.changed(lengths={**mechanism.description.lengths, **lengths})
+    motion = changed.sweep(certify=False)
+    quick, afresh = moving_scene(motion, like=before), moving_scene(motion)
+    assert [part.frame for part in quick.parts] != []
+    for row in np.flatnonzero(motion.found)[::25]:
+        assert _differences(quick.at(int(row)), afresh.at(int(row))) == {}
+    assert [p.shape.of for p in quick.parts if isinstance(p.shape, Text)] == [
+        p.shape.of for p in afresh.parts if isinstance(p.shape, Text)
+    ]
+
+
+def test_names_keep_their_place_beside_their_points() -> None:
+    moving = moving_scene(lw.example("jansen-leg").sweep(certify=False))
+    offsets = [
+        {text.of: (text.offset, text.align) for text in moving.at(row).select(Text)}
+        for row in (0, 100, 200)
+    ]
+    assert offsets[0] == offsets[1] == offsets[2]
+    assert len(offsets[0]) == 8
+
+
+def test_names_of_a_moving_scene_seldom_meet() -> None:
+    """Over the whole cycle, not only in the rows that were looked at."""
+    moving = moving_scene(lw.example("jansen-leg").sweep(certify=False))
+    meeting = 0
+    for row in range(0, 360, 3):
+        boxes = [text.box for text in moving.at(row).select(Text)]
+        meeting += sum(a.overlap(b) > 0 for k, a in enumerate(boxes) for b in boxes[:k])
+    assert meeting <= 0.05 * 120
+
+
+def test_view_holds_every_row() -> None:
+    moving = moving_scene(lw.example("jansen-leg").sweep(certify=False))
+    view = moving.view
+    for row in range(0, 360, 7):
+        for primitive in moving.at(row).primitives:
+            for x, y in () if isinstance(primitive, Text) else primitive.outline:
+                assert view.distance((x, y)) <= _FURTHEST * moving.scene.measures.size
+
+
+def test_only_what_bends_has_a_course_of_its_own() -> None:
+    rigid = moving_scene(lw.example("planetary-gear").sweep(certify=False))
+    assert [part for part in rigid.parts if part.frame is None] == []
+    excavator = moving_scene(lw.example("excavator").sweep(certify=False))
+    own = {part.shape.of for part in excavator.parts if part.frame is None}
+    assert own == {"boom_ram", "stick_ram", "bucket_ram"}
+
+
+def test_rows_without_a_position_are_refused() -> None:
+    moving = moving_scene(lw.example("rapier-drive-limited").sweep(certify=False))
+    assert not moving.found[180]
+    with pytest.raises(lw.InputError, match="row 180 of the motion has no position to draw"):
+        moving.at(180)

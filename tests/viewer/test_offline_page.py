@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from linkwork.drawing import render
 from linkwork.drawing.moving_scene import moving_scene
 from linkwork.drawing.scene import Disc, Role
 from linkwork.viewer import motion_page, offline_page
+from linkwork.viewer.offline_page import page_json
 
 Open = Callable[..., Any]
 
@@ -296,3 +298,23 @@ def test_names_of_a_mechanism_cannot_break_the_page(open_page: Open) -> None:
     page = open_page({"motion": motion})
     assert page.title() == nasty
     assert page.get_by_role("heading", level=1).inner_text() == nasty
+
+
+def test_other_data_take_the_place_of_the_old_ones(open_page: Open, jansen: lw.Motion) -> None:
+    page = open_page({"motion": jansen})
+    page.evaluate("linkwork.goToRow(50)")
+    lengths = {**lw.example("jansen-leg").description.lengths, "O A": 14.0}
+    changed = lw.example("jansen-leg").changed(lengths=lengths).cycle()
+    page.evaluate(f"linkwork.update({page_json(motion_page({'motion': changed}))})")
+    assert _row(page) == 50
+    assert _number(_cells(page, "foot")[0]) == pytest.approx(changed["foot"][50], rel=1e-5)
+    assert _number(_cells(page, "foot")[0]) != pytest.approx(jansen["foot"][50], rel=1e-3)
+
+
+def test_pages_of_another_format_are_refused(open_page: Open, jansen: lw.Motion) -> None:
+    data = page_json(replace(motion_page({"motion": jansen}), format=99))
+    page = open_page({"motion": jansen})
+    said = page.evaluate(
+        f"(() => {{ try {{ linkwork.update({data}) }} catch (e) {{ return e.message }} }})()"
+    )
+    assert said == "this front end reads page data of format 1, not 99"

@@ -119,7 +119,9 @@ def _shown(course: ComplexArray) -> PackedColumn:
 
 
 def vectors_of(motion: Motion) -> Iterator[VectorData]:
-    """The vectors that loops are made of: along links, cylinders, and the lines of sliders."""
+    """The vectors that loops are made of: along links, cylinders, and the lines of sliders; named
+    by their two points.
+    """
     skeleton, points = motion.skeleton, list(motion.points)
     driven = {part.name for part in skeleton.driven}
     free = [bar.name for bar in skeleton.bars if bar.name not in driven]
@@ -135,7 +137,7 @@ def vectors_of(motion: Motion) -> Iterator[VectorData]:
     for name, start, end in pairs:
         if start in points and end in points:
             yield VectorData(
-                name=printed_name(name),
+                name=printed_name(start) + printed_name(end),
                 start=points.index(start),
                 end=points.index(end),
                 tone=tone.get(name, 0 if name != GROUND else -1),
