@@ -28,13 +28,13 @@ export function stepTowards(
 ): Step {
   const count = way.length / 2;
   const distance = (k: number): number => Math.hypot(way[2 * k]! - x, way[2 * k + 1]! - y);
-  const here = distance(from.at);
-  const onward = search(count, closed, from.at, 1, here, distance);
-  const back = search(count, closed, from.at, -1, here, distance);
+  const search = { way, count, closed, from: from.at, distance };
+  const onward = nearest(search, 1);
+  const back = nearest(search, -1);
   const [best, other] = onward.distance <= back.distance ? [onward, back] : [back, onward];
+  const alike = other.distance - best.distance <= Math.max(spacing(search, best), spacing(search, other));
   let chosen = best;
-  const near = Math.abs(best.distance - other.distance) <= 0.05 * Math.max(here, 1e-12);
-  if (near && other.steps !== 0 && Math.sign(other.steps) === from.sense) chosen = other;
+  if (alike && other.steps !== 0 && Math.sign(other.steps) === from.sense) chosen = other;
   if (chosen.steps === 0) return from;
   return {
     at: wrapped(from.at + chosen.steps, count),
@@ -42,25 +42,41 @@ export function stepTowards(
   };
 }
 
-/** The nearest place in one direction, not further than where the distance has grown for long. */
-function search(
-  count: number,
-  closed: boolean,
-  from: number,
-  sense: number,
-  here: number,
-  distance: (k: number) => number,
-): Nearest {
+interface Search {
+  readonly way: Float64Array;
+  readonly count: number;
+  readonly closed: boolean;
+  readonly from: number;
+  readonly distance: (k: number) => number;
+}
+
+/**
+ * The nearest place in one direction, not further than where the distance has grown for long. Once
+ * it has grown, a later place must be nearer by more than rows are apart: on the way back from a dead
+ * point every place is met again.
+ */
+function nearest(search: Search, sense: number): Nearest {
+  const { count, closed, from, distance } = search;
   const patience = Math.max(6, Math.round(count / 12));
-  let best: Nearest = { steps: 0, distance: here };
+  let best: Nearest = { steps: 0, distance: distance(from) };
   for (let away = 1; away < count; away++) {
     const k = from + sense * away;
     if (!closed && (k < 0 || k >= count)) break;
     const far = distance(wrapped(k, count));
-    if (far < best.distance) best = { steps: sense * away, distance: far };
-    else if (away - Math.abs(best.steps) > patience) break;
+    const behind = away - Math.abs(best.steps);
+    const needed = behind === 1 ? best.distance : best.distance - spacing(search, best);
+    if (far < needed) best = { steps: sense * away, distance: far };
+    else if (behind > patience) break;
   }
   return best;
+}
+
+/** How far rows are apart where a place was found. */
+function spacing({ way, count, from }: Search, { steps }: Nearest): number {
+  const at = wrapped(from + steps, count);
+  const apart = (other: number): number =>
+    Math.hypot(way[2 * at]! - way[2 * other]!, way[2 * at + 1]! - way[2 * other + 1]!);
+  return Math.max(apart(wrapped(at + 1, count)), apart(wrapped(at - 1, count)));
 }
 
 function wrapped(k: number, count: number): number {

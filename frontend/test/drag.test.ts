@@ -45,6 +45,16 @@ describe("dragging along a way", () => {
     expect(Math.sin(Math.cos((2 * Math.PI * step.at) / 360))).toBeCloseTo(Math.sin(-0.9), 1);
   });
 
+  it("goes on through a dead point backwards, too", () => {
+    const way = rocker(360);
+    let step: Step = { at: 210, sense: -1 };
+    for (const angle of [-0.9, -0.97, -1.05, -0.97, -0.9]) {
+      step = stepTowards(way, true, step, Math.sin(angle), Math.cos(angle));
+    }
+    expect(step.at).toBeLessThan(180);
+    expect(step.at).toBeGreaterThan(120);
+  });
+
   it("stays where it is nearest already", () => {
     expect(stepTowards(circle(360), true, { at: 90, sense: -1 }, 0, 5)).toEqual({ at: 90, sense: -1 });
   });

@@ -92,7 +92,11 @@ def test_scene_drawn_like_another_is_the_one_drawn_afresh(
 
 
 def test_names_keep_their_place_beside_their_points() -> None:
-    moving = moving_scene(lw.example("jansen-leg").sweep(certify=False))
+    motion = lw.example("jansen-leg").sweep(certify=False)
+    moving = moving_scene(motion)
+    for name in motion.points:
+        (text,) = moving.at(100).select(Text, Role.LABEL, name)
+        assert complex(*text.anchor) == pytest.approx(motion.trace(name)[100], abs=1e-9)
     offsets = [
         {text.of: (text.offset, text.align) for text in moving.at(row).select(Text)}
         for row in (0, 100, 200)

@@ -293,7 +293,7 @@ def test_pages_are_small(jansen: lw.Motion) -> None:
 
 
 def test_names_of_a_mechanism_cannot_break_the_page(open_page: Open) -> None:
-    nasty = "</script><script>document.title='broken'</script> & \"<b>"
+    nasty = "</title></script><script>document.title='broken'</script> & \"<b>"
     motion = lw.example("four-bar").changed(name=nasty).cycle()
     page = open_page({"motion": motion})
     assert page.title() == nasty
