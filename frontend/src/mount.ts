@@ -220,6 +220,7 @@ class Page implements Mounted {
         arrows.draw(this.drawn);
       });
     });
+    html("p", { class: "lw-hint" }, box, "Drag a pin or a link. Space plays, arrow keys step.");
   }
 
   /** What is plotted at first: outputs before unknowns, lengths before angles. */
