@@ -14,6 +14,7 @@ from typing import Any
 
 import linkwork as lw
 from linkwork.drawing.moving_scene import moving_scene
+from linkwork.mechanism.linkage import Linkage
 from linkwork.viewer import motion_page, offline_page
 
 __all__ = ["measure"]
@@ -34,7 +35,9 @@ def measure(repeats: int = 9) -> bool:
     one, every = len(text.encode()), len(everything.encode())
     print(f"  size: {one / 1000:.0f} kB with one circuit, {every / 1000:.0f} kB with all")
     before = moving_scene(motion)
-    changed = mechanism.changed(lengths={**mechanism.description.lengths, "O A": 15.5}).cycle()  # type: ignore[union-attr]
+    assert isinstance(mechanism.description, Linkage)
+    lengths = {**mechanism.description.lengths, "O A": 15.5}
+    changed = mechanism.changed(lengths=lengths).cycle()
     took = []
     for _ in range(repeats):
         began = time.perf_counter()
