@@ -6,7 +6,6 @@ import base64
 import html
 import json
 import zlib
-from dataclasses import asdict
 from importlib import resources
 
 from linkwork.viewer.page_data import PageData
@@ -50,7 +49,9 @@ def offline_page(page: PageData) -> str:
 
 def page_json(page: PageData) -> str:
     """The data as JSON; what has its usual empty value is kept, so that types hold."""
-    return json.dumps(asdict(page), ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    return json.dumps(
+        page, default=vars, ensure_ascii=False, separators=(",", ":"), allow_nan=False
+    )
 
 
 def _shortest(text: str) -> tuple[str, str]:
