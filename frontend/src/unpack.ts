@@ -2,6 +2,9 @@
 
 import type { PackedColumn } from "./page_data";
 
+/** The order of a column that holds plain floats. */
+const PLAIN = -1;
+
 /** The bytes of a base64 text. */
 export function bytesOf(base64: string): Uint8Array {
   const text = atob(base64);
@@ -29,7 +32,9 @@ export function wholeNumbers(bytes: Uint8Array): number[] {
 
 /** The numbers of the rows that were found, in order. */
 export function dense(column: PackedColumn): Float64Array {
-  const whole = Float64Array.from(wholeNumbers(bytesOf(column.content)));
+  const bytes = bytesOf(column.content);
+  if (column.order === PLAIN) return new Float64Array(bytes.buffer as ArrayBuffer);
+  const whole = Float64Array.from(wholeNumbers(bytes));
   for (let again = 0; again < column.order; again++) {
     for (let k = 1; k < whole.length; k++) whole[k]! += whole[k - 1]!;
   }

@@ -20,6 +20,12 @@ describe("packed columns", () => {
     expect(Array.from(dense(column))).toEqual([0.5, 2, 4.5, 8]);
   });
 
+  it("reads plain floats as they are", () => {
+    const floats = new Float64Array([0.1, -1e300, 3]);
+    const content = Buffer.from(floats.buffer).toString("base64");
+    expect(Array.from(dense({ step: 1, order: -1, content }))).toEqual([0.1, -1e300, 3]);
+  });
+
   it("leaves rows without a position open", () => {
     const column = { step: 1, order: 0, content: base64([2, 4]) };
     expect(Array.from(unpacked(column, [true, false, true]))).toEqual([1, NaN, 2]);

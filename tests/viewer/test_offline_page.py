@@ -15,8 +15,9 @@ import linkwork as lw
 from linkwork.drawing import render
 from linkwork.drawing.moving_scene import moving_scene
 from linkwork.drawing.scene import Disc, Role
-from linkwork.viewer import motion_page, offline_page
+from linkwork.viewer import drawn_page, motion_page, offline_page
 from linkwork.viewer.offline_page import page_json
+from linkwork.viewer.packing import unpressed
 
 Open = Callable[..., Any]
 
@@ -305,7 +306,9 @@ def test_other_data_take_the_place_of_the_old_ones(open_page: Open, jansen: lw.M
     page.evaluate("linkwork.goToRow(50)")
     lengths = {**lw.example("jansen-leg").description.lengths, "O A": 14.0}
     changed = lw.example("jansen-leg").changed(lengths=lengths).cycle()
-    page.evaluate(f"linkwork.update({page_json(motion_page({'motion': changed}))})")
+    drawn = moving_scene(changed, like=moving_scene(jansen))
+    data = drawn_page({"motion": changed}, [drawn], pack=unpressed)
+    page.evaluate(f"linkwork.update({page_json(data)})")
     assert _row(page) == 50
     assert _number(_cells(page, "foot")[0]) == pytest.approx(changed["foot"][50], rel=1e-5)
     assert _number(_cells(page, "foot")[0]) != pytest.approx(jansen["foot"][50], rel=1e-3)

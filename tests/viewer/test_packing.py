@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwork.viewer.packing import packed, unpacked
+from linkwork.viewer.packing import packed, unpacked, unpressed
 
 _NUMBERS = st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=60)
 
@@ -45,3 +45,10 @@ def test_whole_numbers_are_kept_exactly() -> None:
 def test_a_step_that_is_too_fine_is_refused() -> None:
     with pytest.raises(ValueError, match=r"step 1e-12 is too fine for values up to 1e\+06"):
         packed(np.array([1e6]), np.ones(1, dtype=bool), step=1e-12)
+
+
+@given(_NUMBERS)
+def test_plain_columns_come_back_exactly(numbers: list[float]) -> None:
+    values = np.array(numbers)
+    found = np.ones(len(values), dtype=bool)
+    assert unpacked(unpressed(values, found), found).tolist() == values.tolist()

@@ -18,7 +18,7 @@ from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion, Series
 from linkwork.results.quantity import Rate
-from linkwork.viewer.packing import packed
+from linkwork.viewer.packing import Pack, packed
 from linkwork.viewer.page_data import (
     Column,
     Equation,
@@ -84,8 +84,14 @@ def drawn_page(
     motions: Mapping[str, Motion],
     scenes: Sequence[MovingScene],
     equations: Sequence[tuple[str, str]] = (),
+    *,
+    pack: Pack = packed,
 ) -> PageData:
-    """The data of a page from motions that are drawn already."""
+    """The data of a page from motions that are drawn already.
+
+    ``pack`` writes the columns: :func:`~linkwork.viewer.packing.unpressed` is quick, for a page
+    that is renewed while a dimension is dragged, and needs eight times the room.
+    """
     first, measures = next(iter(motions.values())), scenes[0].scene.measures
     view = Box.around(corner for scene in scenes for corner in scene.view.corners)
     view = view.grown(_MARGIN * measures.size)
@@ -103,7 +109,7 @@ def drawn_page(
         pin=measures.pin,
         text=measures.text,
         motions=tuple(
-            _motion(name, motion, scene)
+            _motion(name, motion, scene, pack)
             for (name, motion), scene in zip(motions.items(), scenes, strict=True)
         ),
         light=_theme(LIGHT),
@@ -117,24 +123,24 @@ def _version() -> str:
     return version("linkwork")
 
 
-def _motion(name: str, motion: Motion, scene: MovingScene) -> MotionData:
+def _motion(name: str, motion: Motion, scene: MovingScene, pack: Pack) -> MotionData:
     order, closed = play_order(motion)
     everyone = np.ones(len(order), dtype=bool)
-    turns, frames, parts = shapes_of(motion, scene)
+    turns, frames, parts = shapes_of(motion, scene, pack)
     return MotionData(
         name=name,
         summary=_summary(motion),
         rows=len(motion),
-        order=packed(order.astype(float), everyone, step=1.0),
+        order=pack(order.astype(float), everyone, step=1.0),
         closed=closed,
-        columns=tuple(_columns(motion)),
-        points=tuple(_points(motion)),
+        columns=tuple(_columns(motion, pack)),
+        points=tuple(_points(motion, pack)),
         turns=turns,
         frames=frames,
         parts=parts,
         vectors=tuple(vectors_of(motion)),
         driven=tuple(part.name for part in motion.skeleton.driven),
-        evidence=_evidence(motion),
+        evidence=_evidence(motion, pack),
         limits=tuple(_limits(motion)),
     )
 
@@ -148,7 +154,7 @@ def _summary(motion: Motion) -> str:
     return f"{text}, {proved} proved" if proved else text
 
 
-def _columns(motion: Motion) -> Iterator[Column]:
+def _columns(motion: Motion, pack: Pack) -> Iterator[Column]:
     found = motion.found
     for name, values in motion.inputs.items():
         yield Column(
@@ -156,7 +162,7 @@ def _columns(motion: Motion) -> Iterator[Column]:
             shown=printed_name(name),
             unit=motion.input_units[name],
             group="input",
-            values=packed(values, found),
+            values=pack(values, found),
             first=None,
             first_unit="",
         )
@@ -171,27 +177,27 @@ def _columns(motion: Motion) -> Iterator[Column]:
             shown=printed_name(name),
             unit=motion.units.of(kind),
             group=group,
-            values=packed(series.value, found),
-            first=_rate(series.first, found),
+            values=pack(series.value, found),
+            first=_rate(series.first, found, pack),
             first_unit=Rate.FIRST.unit(kind, motion.units, motion.derivative_unit),
         )
 
 
-def _points(motion: Motion) -> Iterator[PointData]:
+def _points(motion: Motion, pack: Pack) -> Iterator[PointData]:
     still, found = set(motion.skeleton.fixed), motion.found
     for name, (x, y) in motion.points.items():
         yield PointData(
             name=name,
             shown=printed_name(name),
             drawn=name not in still,
-            x=packed(x.value, found),
-            y=packed(y.value, found),
-            dx=_rate(x.first, found),
-            dy=_rate(y.first, found),
+            x=pack(x.value, found),
+            y=pack(y.value, found),
+            dx=_rate(x.first, found, pack),
+            dy=_rate(y.first, found, pack),
         )
 
 
-def _rate(values: Array, found: BoolArray) -> PackedColumn:
+def _rate(values: Array, found: BoolArray, pack: Pack) -> PackedColumn:
     """A derivative, to seven digits; infinite ones (at dead points) count as 0."""
     finite = np.where(np.isfinite(values), values, 0.0)[found]
     largest = float(np.abs(finite).max(initial=0.0))
@@ -199,32 +205,32 @@ def _rate(values: Array, found: BoolArray) -> PackedColumn:
     usual = min(largest, 1e3 * float(np.median(np.abs(finite)))) or largest
     step = 10.0 ** np.floor(np.log10(usual) - _RATE_DIGITS) if usual else 1.0
     clipped = np.clip(np.where(np.isfinite(values), values, 0.0), -1e4 * usual, 1e4 * usual)
-    return packed(clipped, found, step=float(step))
+    return pack(clipped, found, step=float(step))
 
 
-def _evidence(motion: Motion) -> RowEvidence:
+def _evidence(motion: Motion, pack: Pack) -> RowEvidence:
     found, every = motion.found, np.ones(len(motion), dtype=bool)
     status, status_texts = _numbered([s.value for s in motion.status])
     proof, proof_texts = _numbered([c.value for c in motion.certification])
     branch, branch_names = _numbered(motion.branch)
     return RowEvidence(
-        found=packed(found.astype(float), every, step=1.0),
-        status=packed(status, every, step=1.0),
+        found=pack(found.astype(float), every, step=1.0),
+        status=pack(status, every, step=1.0),
         status_texts=status_texts,
-        certification=packed(proof, every, step=1.0),
+        certification=pack(proof, every, step=1.0),
         certification_texts=proof_texts,
-        certified=packed(motion.certified.astype(float), every, step=1.0),
-        residual_log10=_log10(motion.residual, motion),
-        radius_log10=_log10(motion.radius, motion),
-        iterations=packed(motion.iterations.astype(float), found, step=1.0),
-        branch=packed(branch, every, step=1.0),
+        certified=pack(motion.certified.astype(float), every, step=1.0),
+        residual_log10=_log10(motion.residual, motion, pack),
+        radius_log10=_log10(motion.radius, motion, pack),
+        iterations=pack(motion.iterations.astype(float), found, step=1.0),
+        branch=pack(branch, every, step=1.0),
         branch_names=branch_names,
     )
 
 
-def _log10(values: Array, motion: Motion) -> PackedColumn:
+def _log10(values: Array, motion: Motion, pack: Pack) -> PackedColumn:
     known = np.where(np.isfinite(values) & (values > 0), values, 1e-99)
-    return packed(np.log10(known), motion.found, step=_COARSE)
+    return pack(np.log10(known), motion.found, step=_COARSE)
 
 
 def _numbered(texts: Iterable[str]) -> tuple[Array, tuple[str, ...]]:

@@ -29,7 +29,8 @@ __all__ = [
 @dataclass(frozen=True, kw_only=True)
 class PackedColumn:
     """Numbers of the rows that were found: whole multiples of ``step``, differenced ``order``
-    times, zigzag integers of seven bits a byte, in base64.
+    times, zigzag integers of seven bits a byte, in base64. Order -1: plain floats of eight bytes,
+    the lowest first.
     """
 
     step: float

@@ -14,7 +14,7 @@ from linkwork.drawing.scene import XY, Arc, Disc, Hatch, Polygon, Polyline, Prim
 from linkwork.foundation.arrays import BoolArray, ComplexArray
 from linkwork.mechanism.linkage import GROUND
 from linkwork.results.motion import Motion
-from linkwork.viewer.packing import packed
+from linkwork.viewer.packing import Pack
 from linkwork.viewer.page_data import FrameData, PackedColumn, Part, TurnData, VectorData
 
 __all__ = ["OWN_COURSE", "shapes_of", "vectors_of"]
@@ -29,7 +29,7 @@ _KINDS: dict[type[Primitive], str] = {
 
 
 def shapes_of(
-    motion: Motion, scene: MovingScene
+    motion: Motion, scene: MovingScene, pack: Pack
 ) -> tuple[tuple[TurnData, ...], tuple[FrameData, ...], tuple[Part, ...]]:
     """What turns, the frames that carry something, and all shapes from the bottom to the top."""
     used = dict.fromkeys(part.frame for part in scene.parts)
@@ -38,8 +38,7 @@ def shapes_of(
     points = list(motion.points)
     return (
         tuple(
-            TurnData(name=name, angle=packed(scene.frames.turns[name], scene.found))
-            for name in turns
+            TurnData(name=name, angle=pack(scene.frames.turns[name], scene.found)) for name in turns
         ),
         tuple(
             FrameData(
@@ -48,11 +47,11 @@ def shapes_of(
             )
             for frame in carriers
         ),
-        tuple(_part(part, scene, carriers) for part in scene.parts),
+        tuple(_part(part, scene, carriers, pack) for part in scene.parts),
     )
 
 
-def _part(part: Moving, scene: MovingScene, carriers: list[Frame]) -> Part:
+def _part(part: Moving, scene: MovingScene, carriers: list[Frame], pack: Pack) -> Part:
     shape = part.shape
     number = OWN_COURSE
     if part.frame is not None:
@@ -79,8 +78,8 @@ def _part(part: Moving, scene: MovingScene, carriers: list[Frame]) -> Part:
         offset=text.offset if text else (),
         height=text.height if text else 0.0,
         align=text.align if text else 0,
-        course=() if part.course is None else tuple(_course(part.course, scene.found)),
-        shown=None if part.course is None else _shown(part.course),
+        course=() if part.course is None else tuple(_course(part.course, scene.found, pack)),
+        shown=None if part.course is None else _shown(part.course, pack),
     )
 
 
@@ -107,15 +106,15 @@ def _flat(line: ComplexArray, size: float) -> tuple[float, ...]:
     return tuple(float(number) + 0.0 for number in np.round(pairs, digits))
 
 
-def _course(course: ComplexArray, found: BoolArray) -> Iterator[PackedColumn]:
+def _course(course: ComplexArray, found: BoolArray, pack: Pack) -> Iterator[PackedColumn]:
     for corner in course.T:
-        yield packed(corner.real, found)
-        yield packed(corner.imag, found)
+        yield pack(corner.real, found)
+        yield pack(corner.imag, found)
 
 
-def _shown(course: ComplexArray) -> PackedColumn:
+def _shown(course: ComplexArray, pack: Pack) -> PackedColumn:
     there = np.isfinite(course[:, 0].real)
-    return packed(there.astype(float), np.ones(len(there), dtype=bool), step=1.0)
+    return pack(there.astype(float), np.ones(len(there), dtype=bool), step=1.0)
 
 
 def vectors_of(motion: Motion) -> Iterator[VectorData]:
