@@ -8,7 +8,14 @@ from __future__ import annotations
 
 import sys
 
-from benchmarks import chain_growth, configuration_time, cycle_time, design_time, process_start
+from benchmarks import (
+    chain_growth,
+    configuration_time,
+    cycle_time,
+    design_time,
+    page_time,
+    process_start,
+)
 from benchmarks.single_thread import run_alone
 
 MEASUREMENTS = {
@@ -17,6 +24,7 @@ MEASUREMENTS = {
     "configurations": configuration_time.measure,
     "chain": chain_growth.measure,
     "designs": design_time.measure,
+    "page": page_time.measure,
 }
 PROGRAMS = {"peers": "benchmarks.peers", "scaling": "benchmarks.scaling"}
 

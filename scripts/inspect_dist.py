@@ -17,6 +17,8 @@ PACKAGE_DATA = (
     "linkwork/library/*.toml",
     "linkwork/mechanism/*.toml",
     "linkwork/textfile/*.json",
+    "linkwork/viewer/static/*.css",
+    "linkwork/viewer/static/*.js",
 )
 SDIST_PARTS = ("LICENSE", "README.md", "docs", "examples", "pyproject.toml", "src", "tests")
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from linkwork import batch, drawing, export, motion, textfile
+from linkwork import batch, drawing, export, motion, textfile, viewer
 from linkwork import equations as closure
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.mechanism.description import Description
@@ -322,6 +322,84 @@ class Mechanism:
             at, configuration=configuration, vectors=vectors, traces=traces, options=options
         )
         drawing.write(scene, Path(path), theme=colours)
+
+    def cycle(
+        self,
+        *,
+        configuration: str | None = None,
+        certify: bool = True,
+        progress: Callable[[float], None] | None = None,
+    ) -> Motion:
+        """The motion that is shown where one is wanted: :meth:`sweep`, and on through dead points
+        where the input does not reach all of its range.
+        """
+        motion = self.sweep(configuration=configuration, certify=certify, progress=progress)
+        if motion.found.all() or not motion.found.any():
+            return motion
+        return self.sweep(
+            configuration=configuration, through=True, certify=certify, progress=progress
+        )
+
+    def cycles(
+        self, *, certify: bool = True, progress: Callable[[float], None] | None = None
+    ) -> dict[str, Motion]:
+        """The motion on every circuit, by the circuit's name; that of the guess first.
+
+        See :meth:`cycle`.
+        """
+        found = {}
+        circuits = self.circuits(certify=False)
+        for k, circuit in enumerate(circuits):
+            branch = circuit.branches[0].name
+            found[circuit.name] = self.cycle(configuration=branch, certify=certify)
+            if progress is not None:
+                progress((k + 1) / len(circuits))
+        return found
+
+    def animate(
+        self,
+        path: str | Path,
+        motion: Motion | None = None,
+        *,
+        all_circuits: bool = False,
+        options: viewer.FilmOptions | None = None,
+        progress: Callable[[float], None] | None = None,
+    ) -> None:
+        """Write the motion to a file that moves.
+
+        A page (.html) works offline, in any browser, without Linkwork: play, drag the crank,
+        plots, numbers with their proof. Films are .gif, .apng, .webp (with Pillow) and .mp4
+        (with ffmpeg).
+
+        Parameters
+        ----------
+        path : str or Path
+            The suffix chooses the format.
+        motion : Motion, optional
+            A sweep of this mechanism; that of the guess around its circuit unless given.
+        all_circuits : bool
+            Let a page show all circuits, to choose from.
+        options : FilmOptions, optional
+            Pictures a second, rows, size of a film.
+
+        Raises
+        ------
+        InputError
+            If the suffix names no known format, or there is nothing to draw.
+        MissingPackageError
+            Without what writes the format.
+        """
+        kind = viewer.check_animation(path, options)
+        if all_circuits and (motion is not None or kind != "html"):
+            raise InputError("all circuits are shown by a page of the mechanism's own: a .html")
+        if all_circuits:
+            motions = self.cycles(progress=progress)
+        else:
+            motions = {"motion": self.cycle() if motion is None else motion}
+        content = viewer.animation(
+            motions, kind, options=options, equations=self.equations().mathml(), progress=progress
+        )
+        Path(path).write_bytes(content)
 
     def to_excel(self, path: str | Path, motion: Motion | None = None) -> tuple[str, ...]:
         """Write a sweep as an Excel workbook whose formulas solve it again.

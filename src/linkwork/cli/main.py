@@ -25,6 +25,7 @@ _COMMANDS = (
     "draw",
     "plot",
     "view",
+    "animate",
     "study",
     "examples",
     "schema",

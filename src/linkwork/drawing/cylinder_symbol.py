@@ -11,6 +11,8 @@ from linkwork.mechanism.skeleton import Strut
 
 __all__ = ["cylinder_symbols"]
 
+_HELD = 1e-9  # of its length: a cylinder that moves less is held
+
 
 def cylinder_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
     """Every cylinder, its barrel at the first of its two points."""
@@ -51,5 +53,6 @@ def _barrel_end(length: Travel) -> float:
 def _piston(length: Travel, foot: float, mouth: float) -> float:
     """Where the piston stands, from the base: it runs through the barrel with the stroke."""
     stroke = length.high - length.low
-    share = (length.now - length.low) / stroke if stroke else 0.5
+    held = stroke <= _HELD * length.high  # a cylinder at rest: its stroke is rounding
+    share = 0.5 if held else (length.now - length.low) / stroke
     return foot + (mouth - foot) * (0.12 + 0.76 * share)

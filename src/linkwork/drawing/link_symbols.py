@@ -22,6 +22,7 @@ __all__ = [
 ]
 
 _IN_LINE = 1e-6  # a link is drawn as a bar if its points stray less, relative to its length
+_ON_SIDE = 1e-9  # twice the area of a triangle, relative to the length squared: its corner is none
 
 #: A piece of a line hidden by a slot or block: position of its middle, vector to its end.
 Gap = tuple[complex, complex]
@@ -89,14 +90,16 @@ def convex_outline(points: Iterable[complex]) -> list[complex]:
     ends = max(product(ordered, ordered), key=lambda pair: abs(pair[1] - pair[0]))
     if in_line([ends[0], *ordered, ends[1]]):
         return list(ends)
-    lower, upper = _half_outline(ordered), _half_outline(ordered[::-1])
+    # Corners on a side, up to rounding, are left out in every position of a link.
+    flat = _ON_SIDE * abs(ends[1] - ends[0]) ** 2
+    lower, upper = _half_outline(ordered, flat), _half_outline(ordered[::-1], flat)
     return lower[:-1] + upper[:-1]
 
 
-def _half_outline(ordered: list[complex]) -> list[complex]:
+def _half_outline(ordered: list[complex], flat: float) -> list[complex]:
     chain: list[complex] = []
     for z in ordered:
-        while len(chain) > 1 and _left_of(chain[-2], chain[-1], z) <= 0:
+        while len(chain) > 1 and _left_of(chain[-2], chain[-1], z) <= flat:
             chain.pop()
         chain.append(z)
     return chain

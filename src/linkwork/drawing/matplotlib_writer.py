@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["FORMATS", "figure", "house_settings", "render", "write"]
+__all__ = ["FORMATS", "Brush", "figure", "house_settings", "render", "write"]
 
 #: File formats by suffix.
 FORMATS = ("png", "svg", "pdf")
@@ -136,7 +136,7 @@ def figure(scene: Scene, ax: Axes | None = None, *, theme: Theme = LIGHT) -> Fig
         else:
             _dress(ax, scene, theme, scene.box.grown(0.03 * scene.measures.size))
             ax.set_title("\n".join(filter(None, (scene.title, scene.caption))), fontsize=_TITLE)
-        brush = _Brush(ax, scene, theme)
+        brush = Brush(ax, scene, theme)
         for primitive in scene.primitives:
             brush.draw(primitive)
         found = ax.get_figure(root=True)
@@ -178,7 +178,7 @@ def _sheet_figure(sheet: Sheet, theme: Theme) -> Figure:
             spine.set_visible(True)
         text = "\n".join(name)
         ax.set_title(text, fontsize=_SMALL, color=theme.ink, loc="left", pad=4.0, parse_math=False)
-        brush = _Brush(ax, scene, theme)
+        brush = Brush(ax, scene, theme)
         for primitive in scene.primitives:
             brush.draw(primitive)
     return page
@@ -286,7 +286,7 @@ def _round_step(wanted: float) -> float:
     return max(step * power for step in (1, 2, 5) if step * power <= 1.4 * wanted)
 
 
-class _Brush:
+class Brush:
     """Translates primitives into artists of one axes."""
 
     def __init__(self, ax: Axes, scene: Scene, theme: Theme) -> None:

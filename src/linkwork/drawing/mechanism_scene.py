@@ -37,7 +37,7 @@ from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
-__all__ = ["SceneOptions", "scene_of"]
+__all__ = ["SceneOptions", "scene_of", "symbols", "traced"]
 
 _BEHIND = 0.62  # how faint the mechanism is behind its vectors
 _FIRM = (Role.GROUND, Role.HATCH, Role.TRACE, Role.PIN, Role.POINT, Role.TRACED)
@@ -81,7 +81,7 @@ def scene_of(
     """
     chosen = options or SceneOptions()
     pose = Pose.of(position, motion, bare=bool(chosen.vectors))
-    names = _traced(pose, traces)
+    names = traced(pose, traces)
     _check_motion(chosen, names, motion)
     further: list[Further] = []
     if motion is not None and chosen.further and pose.points:
@@ -92,7 +92,7 @@ def scene_of(
     found = tracks(pose, measures, tones(pose))
     sense = -1.0 if motion is not None and (motion.speed or 0.0) < 0 else 1.0
     marks, limit_names = limit_marks(further, motion, measures)
-    own = list(_symbols(pose, found, () if chosen.speed else names, measures))
+    own = list(symbols(pose, found, () if chosen.speed else names, measures))
     primitives: list[Primitive] = [
         *faint_symbols(further, measures),
         *(map(_faded, own) if chosen.vectors else own),
@@ -151,7 +151,7 @@ def _check_motion(chosen: SceneOptions, names: tuple[str, ...], motion: Motion |
         raise InputError("there is no path to colour by speed: name the points to trace")
 
 
-def _symbols(
+def symbols(
     pose: Pose, found: list[Track], names: tuple[str, ...], measures: Measures
 ) -> Iterator[Primitive]:
     """One position from the ground up to its pins, with the paths of points."""
@@ -175,7 +175,16 @@ def _contact_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
     yield from curve_symbols(pose, measures)
 
 
-def _traced(pose: Pose, wanted: Sequence[str] | None) -> tuple[str, ...]:
+def traced(pose: Pose, wanted: Sequence[str] | None) -> tuple[str, ...]:
+    """The points whose paths are shown: those wanted, else those of the mechanism's ``[trace]``.
+
+    Raises
+    ------
+    InputError
+        If a path is wanted without a motion.
+    UnknownNameError
+        If there is no such point.
+    """
     if wanted is None:
         return pose.skeleton.traced if pose.paths else ()
     for name in wanted:

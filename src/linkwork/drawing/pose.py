@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -62,6 +62,19 @@ class Pose:
         radians = position.units.angle.radians
         angles = {name: value * radians for name, value in position.links.items()}
         return cls(skeleton=position.skeleton, points=points, paths=paths, angles=angles)
+
+    @classmethod
+    def at_row(cls, motion: Motion, row: int) -> Pose:
+        """The pose of a row that was found, in the motion that it belongs to."""
+        paths = {name: _path(motion, name) for name in motion.points}
+        return cls(skeleton=motion.skeleton, points={}, paths=paths).moved_to(motion, row)
+
+    def moved_to(self, motion: Motion, row: int) -> Pose:
+        """The pose of another row of the same motion."""
+        points = {name: complex(path[row]) for name, path in self.paths.items()}
+        radians = motion.units.angle.radians
+        angles = {name: float(series.value[row]) * radians for name, series in motion.links.items()}
+        return replace(self, points=points, angles=angles)
 
     def angle(self, link: str) -> float:
         """The angle of a link [rad]; ground has none."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from linkwork.equations.mathml import MathML, math_element
 from linkwork.equations.model import LawEquation, LoopEquation, LoopEquations, Variable
 from linkwork.equations.notation import Latex, Notation, PlainText
 from linkwork.equations.term_writing import Signed, TermWriter, joined
@@ -245,6 +246,17 @@ class EquationSheet:
         body = f"  \\begin{{bmatrix}}\n{rows}\n  \\end{{bmatrix}}\n"
         body += f"  \\begin{{bmatrix}} {unknowns} \\end{{bmatrix}} = -F"
         return f"\\[\n{body}\n\\]\n"
+
+    # MathML
+
+    def mathml(self) -> list[tuple[str, str]]:
+        """Every equation as its label and a ``<math>`` element for a page."""
+        notation, equations = MathML(), self.equations
+        rows = [self.loop(loop, notation) for loop in equations.loops]
+        rows += [f"{row} = 0" for row in self.real_rows(notation)[2 * len(rows) :]]
+        return [
+            (label, math_element(row)) for label, row in zip(equations.labels, rows, strict=True)
+        ]
 
     # Data
 

@@ -1,0 +1,20 @@
+// Bundles the front end: node build.mjs FOLDER. The same sources give the same bytes.
+import { build } from "esbuild";
+import { mkdir } from "node:fs/promises";
+import { join, resolve } from "node:path";
+
+const folder = resolve(process.argv[2] ?? "../src/linkwork/viewer/static");
+await mkdir(folder, { recursive: true });
+const common = {
+  bundle: true,
+  minify: true,
+  charset: "utf8",
+  target: ["es2022"],
+  legalComments: "none",
+  logLevel: "warning",
+};
+await Promise.all([
+  build({ ...common, entryPoints: ["src/offline.ts"], format: "iife", outfile: join(folder, "offline.js") }),
+  build({ ...common, entryPoints: ["src/mount.ts"], format: "esm", outfile: join(folder, "linkwork.js") }),
+  build({ ...common, entryPoints: ["src/linkwork.css"], outfile: join(folder, "linkwork.css") }),
+]);

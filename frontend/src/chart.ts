@@ -1,0 +1,210 @@
+// A quantity over the input, with a mark at the row that is shown. A circuit that turns back at
+// dead points is one closed curve.
+
+import type { MotionView, Series } from "./motion";
+import { degreeTicks, shortNumber, ticks, trimmed } from "./numbers";
+import { html, svg } from "./svg";
+
+const WIDTH = 420;
+const HEIGHT = 190;
+const LEFT = 52;
+const RIGHT = 20;
+const ABOVE = 12;
+const BELOW = 30;
+
+interface Scale {
+  readonly low: number;
+  readonly high: number;
+  readonly at: (value: number) => number;
+}
+
+export class Chart {
+  readonly element: HTMLElement;
+  private readonly select: HTMLSelectElement;
+  private readonly plot: SVGSVGElement;
+  private view!: MotionView;
+  private chosen: string;
+  private x!: Scale;
+  private y!: Scale;
+  private dot!: SVGCircleElement;
+  private line!: SVGLineElement;
+  private value!: HTMLElement;
+  private series!: Series;
+
+  constructor(
+    parent: Element,
+    wanted: string,
+    private readonly goTo: (index: number) => void,
+  ) {
+    this.chosen = wanted;
+    this.element = html("figure", { class: "lw-chart" }, parent);
+    const head = html("figcaption", {}, this.element);
+    this.select = html("select", { "aria-label": "Quantity to plot" }, head);
+    this.value = html("output", { class: "lw-value" }, head);
+    this.plot = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img" }, this.element);
+    this.select.addEventListener("change", () => {
+      this.chosen = this.select.value;
+      this.redraw();
+    });
+    this.listen();
+  }
+
+  show(view: MotionView): void {
+    this.view = view;
+    const names = view.series.slice(1);
+    this.select.replaceChildren();
+    for (const one of names) html("option", { value: one.name }, this.select, labelled(one));
+    if (!names.some((one) => one.name === this.chosen)) this.chosen = names[0]?.name ?? "";
+    this.select.value = this.chosen;
+    this.redraw();
+  }
+
+  draw(row: number): void {
+    const value = this.series.values[row]!;
+    const input = this.view.input.values[row]!;
+    this.dot.setAttribute("cx", String(this.x.at(input)));
+    this.dot.setAttribute("cy", String(this.y.at(value)));
+    this.line.setAttribute("x1", String(this.x.at(input)));
+    this.line.setAttribute("x2", String(this.x.at(input)));
+    this.value.textContent = `${shortNumber(value)}${unitText(this.series.unit)}`;
+  }
+
+  private redraw(): void {
+    const { input, order } = this.view;
+    this.series = this.view.series.find((one) => one.name === this.chosen) ?? input;
+    this.x = scale(Array.from(input.values), LEFT, WIDTH - RIGHT);
+    this.y = scale(order.map((row) => this.series.values[row]!), HEIGHT - BELOW, ABOVE, 0.06);
+    this.plot.replaceChildren();
+    const name = `${labelled(this.series)} over ${labelled(input)}`;
+    this.plot.setAttribute("aria-label", name);
+    this.axes(input);
+    svg("path", { class: "lw-curve", d: this.curve() }, this.plot);
+    for (const limit of this.view.data.limits) this.limit(limit.row, limit.text);
+    this.line = svg("line", { class: "lw-now", y1: ABOVE, y2: HEIGHT - BELOW }, this.plot);
+    this.dot = svg("circle", { class: "lw-dot", r: 4.5 }, this.plot);
+  }
+
+  private axes(input: Series): void {
+    const across = (input.unit === "deg" ? degreeTicks : ticks)(this.x.low, this.x.high, 6);
+    const digits = (value: number): string => trimmed(shortNumber(value, 5));
+    for (const value of across) {
+      const x = this.x.at(value);
+      svg("line", { class: "lw-grid", x1: x, x2: x, y1: ABOVE, y2: HEIGHT - BELOW }, this.plot);
+      svg("text", { x, y: HEIGHT - BELOW + 14, "text-anchor": "middle" }, this.plot).textContent = digits(value);
+    }
+    const up = (this.series.unit === "deg" ? degreeTicks : ticks)(this.y.low, this.y.high, 4);
+    for (const value of up) {
+      const y = this.y.at(value);
+      svg("line", { class: "lw-grid", x1: LEFT, x2: WIDTH - RIGHT, y1: y, y2: y }, this.plot);
+      svg("text", { x: LEFT - 6, y: y + 3.5, "text-anchor": "end" }, this.plot).textContent = digits(value);
+    }
+    const where = { x: WIDTH - RIGHT, y: HEIGHT - 3, "text-anchor": "end", class: "lw-axis" };
+    svg("text", where, this.plot).textContent = labelled(input);
+  }
+
+  /** The curve in the order of the motion, broken where the input begins a new turn. */
+  private curve(): string {
+    const { input, order, data } = this.view;
+    const wide = (this.x.high - this.x.low) / 2;
+    const pieces: string[] = [];
+    let before = Number.NaN;
+    let last = 0;
+    const to = (letter: string, value: number, row: number): number =>
+      pieces.push(`${letter}${this.x.at(value).toFixed(2)} ${this.y.at(this.series.values[row]!).toFixed(2)}`);
+    for (const row of data.closed ? [...order, order[0]!] : order) {
+      const value = input.values[row]!;
+      const onward = Math.abs(value - before) <= wide;
+      if (!onward && Number.isFinite(before)) {
+        // The curve goes on at the other side, a turn further: end it at the edge.
+        const turned = before + Math.sign(before - value) * this.step(order, input);
+        const end = this.rowAt(turned, this.series.values[last]!);
+        if (end !== null) to("L", turned, end);
+      }
+      to(onward ? "L" : "M", value, row);
+      before = value;
+      last = row;
+    }
+    return pieces.join("");
+  }
+
+  /** The row of the table at an input value whose value is next to another; null without one. */
+  private rowAt(value: number, beside: number): number | null {
+    let best: number | null = null;
+    let least = 0.2 * (this.y.high - this.y.low);
+    this.view.input.values.forEach((one, row) => {
+      if (!(Math.abs(one - value) <= 1e-6 * (this.x.high - this.x.low))) return;
+      const far = Math.abs(this.series.values[row]! - beside);
+      if (far < least) [best, least] = [row, far];
+    });
+    return best;
+  }
+
+  /** The usual distance of input values. */
+  private step(order: readonly number[], input: Series): number {
+    return Math.abs(input.values[order[1] ?? 0]! - input.values[order[0]!]!);
+  }
+
+  private limit(row: number, text: string): void {
+    const mark = svg(
+      "circle",
+      {
+        class: "lw-limit",
+        cx: this.x.at(this.view.input.values[row]!),
+        cy: this.y.at(this.series.values[row]!),
+        r: 3.5,
+      },
+      this.plot,
+    );
+    svg("title", {}, mark).textContent = text;
+  }
+
+  private listen(): void {
+    let held = false;
+    const move = (event: PointerEvent): void => {
+      const matrix = this.plot.getScreenCTM();
+      if (matrix === null) return;
+      const place = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix.inverse());
+      this.goTo(this.nearest(place.x, place.y));
+    };
+    this.plot.addEventListener("pointerdown", (event) => {
+      held = true;
+      this.plot.setPointerCapture(event.pointerId);
+      move(event);
+    });
+    this.plot.addEventListener("pointermove", (event) => held && move(event));
+    for (const end of ["pointerup", "pointercancel"] as const) {
+      this.plot.addEventListener(end, () => (held = false));
+    }
+  }
+
+  /** The index of the row whose place on the curve is nearest; across counts more than up. */
+  private nearest(x: number, y: number): number {
+    const { input, order } = this.view;
+    let [best, least] = [0, Infinity];
+    order.forEach((row, k) => {
+      const far = Math.hypot(this.x.at(input.values[row]!) - x, 0.35 * (this.y.at(this.series.values[row]!) - y));
+      if (far < least) [best, least] = [k, far];
+    });
+    return best;
+  }
+}
+
+function scale(values: readonly number[], from: number, to: number, air = 0): Scale {
+  const known = values.filter(Number.isFinite);
+  let low = Math.min(...known);
+  let high = Math.max(...known);
+  const least = 1e-6 * Math.max(1, Math.abs(low), Math.abs(high));
+  if (!(high - low > least)) [low, high] = [low - 0.5, high + 0.5];
+  const room = air * (high - low);
+  [low, high] = [low - room, high + room];
+  return { low, high, at: (value) => from + ((value - low) / (high - low)) * (to - from) };
+}
+
+export function unitText(unit: string): string {
+  if (unit === "deg") return "°";
+  return unit ? ` ${unit}` : "";
+}
+
+function labelled(series: Series): string {
+  return series.unit ? `${series.shown} [${series.unit}]` : series.shown;
+}

@@ -1,0 +1,89 @@
+// Play, scrub, speed; which motion; what is shown.
+
+import type { MotionView } from "./motion";
+import { measured } from "./numbers";
+import { html, svg } from "./svg";
+
+const PLAY = "M7 4.5v15l12.5-7.5z";
+const PAUSE = "M6.5 5h4v14h-4zM13.5 5h4v14h-4z";
+
+export interface TransportHooks {
+  readonly play: (on: boolean) => void;
+  readonly go: (index: number) => void;
+  readonly speed: (factor: number) => void;
+}
+
+/** The row of buttons under the drawing. */
+export class Transport {
+  private readonly button: HTMLButtonElement;
+  private readonly icon: SVGPathElement;
+  private readonly bar: HTMLInputElement;
+  private readonly marks: HTMLElement;
+  private readonly readout: HTMLOutputElement;
+
+  constructor(parent: Element, hooks: TransportHooks) {
+    const row = html("div", { class: "lw-transport", role: "group", "aria-label": "Motion" }, parent);
+    this.button = html("button", { type: "button", class: "lw-play" }, row);
+    this.icon = svg("path", {}, svg("svg", { viewBox: "0 0 24 24", "aria-hidden": "true" }, this.button));
+    const track = html("div", { class: "lw-track" }, row);
+    this.bar = html("input", { type: "range", min: 0, step: 1, "aria-label": "Position of the motion" }, track);
+    this.marks = html("div", { class: "lw-marks" }, track);
+    this.readout = html("output", { class: "lw-readout" }, row);
+    this.speed(row, hooks);
+    this.button.addEventListener("click", () => hooks.play(this.button.dataset.state !== "playing"));
+    this.bar.addEventListener("input", () => hooks.go(Number(this.bar.value)));
+    this.playing(false);
+  }
+
+  show(view: MotionView): void {
+    const last = view.order.length - 1;
+    this.bar.max = String(last);
+    this.marks.replaceChildren();
+    for (const limit of view.data.limits) {
+      const at = view.order.indexOf(limit.row);
+      if (at < 0) continue;
+      const mark = html("span", { title: limit.text }, this.marks);
+      mark.style.left = `${(100 * at) / Math.max(1, last)}%`;
+    }
+  }
+
+  draw(view: MotionView, index: number, row: number): void {
+    const { input } = view;
+    const text = `${input.shown} = ${measured(input.values[row]!, input.unit)}`;
+    this.bar.value = String(index);
+    this.bar.setAttribute("aria-valuetext", `${text}, ${index + 1} of ${view.order.length}`);
+    this.readout.textContent = text;
+  }
+
+  playing(on: boolean): void {
+    if (this.button.dataset.state === (on ? "playing" : "paused")) return;
+    this.button.dataset.state = on ? "playing" : "paused";
+    this.button.setAttribute("aria-label", on ? "Pause" : "Play");
+    this.button.title = on ? "Pause (space)" : "Play (space)";
+    this.icon.setAttribute("d", on ? PAUSE : PLAY);
+  }
+
+  private speed(row: Element, hooks: TransportHooks): void {
+    const select = html("select", { class: "lw-speed", "aria-label": "Speed" }, row);
+    for (const factor of [0.1, 0.25, 0.5, 1, 2, 4]) {
+      const option = html("option", { value: factor }, select, `${factor}×`);
+      option.selected = factor === 1;
+    }
+    select.addEventListener("change", () => hooks.speed(Number(select.value)));
+  }
+}
+
+/** A switch with its name. */
+export function toggle(
+  parent: Element,
+  name: string,
+  on: boolean,
+  changed: (on: boolean) => void,
+): HTMLInputElement {
+  const label = html("label", { class: "lw-toggle" }, parent);
+  const box = html("input", { type: "checkbox" }, label);
+  box.checked = on;
+  label.append(name);
+  box.addEventListener("change", () => changed(box.checked));
+  return box;
+}

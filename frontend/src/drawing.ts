@@ -1,0 +1,191 @@
+// The mechanism in SVG. What one frame carries is one group; a new row only moves groups.
+
+import type { MotionView } from "./motion";
+import type { PageData, Part } from "./page_data";
+import { pathOf, strokesOf, svg } from "./svg";
+import { toneClass } from "./theme";
+
+/** The frame of a shape that changes its form. */
+const OWN_COURSE = -2;
+
+/** Of names on the screen [px]. */
+const SMALLEST = 12.5;
+
+type Moved = (row: number) => void;
+
+const LABELS = new Set(["label", "link_name", "limit_name"]);
+
+export class Drawing {
+  readonly element: SVGSVGElement;
+  /** Above everything: arrows that a row computes. */
+  readonly overlay: SVGGElement;
+  private readonly shapes: SVGGElement;
+  private readonly handles: SVGGElement;
+  private moved: Moved[] = [];
+  private view!: MotionView;
+
+  constructor(
+    private readonly data: PageData,
+    parent: Element,
+  ) {
+    const [left, bottom, right, top] = data.view as [number, number, number, number];
+    this.element = svg(
+      "svg",
+      {
+        class: "lw-drawing",
+        viewBox: `${left} ${-top} ${right - left} ${top - bottom}`,
+        role: "img",
+        preserveAspectRatio: "xMidYMid meet",
+      },
+      parent,
+    );
+    this.shapes = svg("g", {}, this.element);
+    this.overlay = svg("g", { class: "lw-overlay" }, this.element);
+    this.handles = svg("g", { class: "lw-handles" }, this.element);
+  }
+
+  /** Names grow in small drawings, so that they can be read. */
+  fit(): void {
+    const matrix = this.element.getScreenCTM();
+    if (matrix === null) return;
+    const grow = SMALLEST / (this.data.text * matrix.a);
+    this.element.style.setProperty("--grow", String(Math.min(1.6, Math.max(1, grow))));
+  }
+
+  /** Draw another motion. */
+  show(view: MotionView): void {
+    this.view = view;
+    this.shapes.replaceChildren();
+    this.handles.replaceChildren();
+    this.moved = [];
+    let group: SVGGElement | null = null;
+    let carried = Number.NaN;
+    for (const part of view.data.parts) {
+      if (part.kind === "text") {
+        this.text(part);
+        carried = Number.NaN;
+      } else if (part.frame === OWN_COURSE) {
+        this.changing(part);
+        carried = Number.NaN;
+      } else {
+        if (part.frame !== carried || group === null) {
+          group = this.group(part.frame);
+          carried = part.frame;
+        }
+        this.shape(part, group);
+      }
+    }
+    this.addHandles();
+  }
+
+  /** Move everything to a row that was found. */
+  draw(row: number): void {
+    for (const move of this.moved) move(row);
+  }
+
+  /** Show or hide paths or names. */
+  toggle(what: "paths" | "names", on: boolean): void {
+    this.element.classList.toggle(`without-${what}`, !on);
+  }
+
+  /** Let what moves step back behind the vectors. */
+  dim(on: boolean): void {
+    this.element.classList.toggle("lw-dimmed", on);
+  }
+
+  /** The place of the plane under a point of the screen. */
+  placeAt(event: { clientX: number; clientY: number }): [number, number] {
+    const matrix = this.element.getScreenCTM();
+    if (matrix === null) return [0, 0];
+    const place = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix.inverse());
+    return [place.x, -place.y];
+  }
+
+  private group(frame: number): SVGGElement {
+    const group = svg("g", { "data-frame": frame }, this.shapes);
+    if (frame >= 0) {
+      group.classList.add("lw-moving");
+      this.moved.push((row) => {
+        const { x, y, angle } = this.view.pose(frame, row);
+        group.setAttribute("transform", `translate(${x} ${-y}) rotate(${(-angle * 180) / Math.PI})`);
+      });
+    }
+    return group;
+  }
+
+  private shape(part: Part, group: SVGGElement): void {
+    const look = this.look(part);
+    if (part.kind === "disc") {
+      const [x, y] = part.points as [number, number];
+      svg("circle", { ...look, cx: x, cy: -y, r: part.radius }, group);
+      return;
+    }
+    const d = part.kind === "strokes" ? strokesOf(part.points) : pathOf(part.points, part.kind === "area");
+    svg("path", { ...look, d }, group);
+    if (part.head.length) {
+      const { class: name, ...rest } = look;
+      svg("path", { ...rest, class: `${name} filled lw-head`, d: pathOf(part.head, true) }, group);
+    }
+  }
+
+  private changing(part: Part): void {
+    const course = this.view.course(part);
+    const path = svg("path", this.look(part), this.shapes);
+    path.classList.add("lw-changing");
+    const closed = part.kind === "area";
+    this.moved.push((row) => {
+      const there = course.shown[row] === 1;
+      const corners = course.corners.map((corner) => corner[row]!);
+      path.setAttribute(
+        "d",
+        !there ? "" : part.kind === "strokes" ? strokesOf(corners) : pathOf(corners, closed),
+      );
+    });
+  }
+
+  private text(part: Part): void {
+    const [u, v] = part.points as [number, number];
+    const [dx, dy] = part.offset as [number, number];
+    const element = svg(
+      "text",
+      {
+        ...this.look(part),
+        "text-anchor": (["start", "middle", "end"] as const)[part.align + 1]!,
+        x: dx,
+        y: -dy,
+      },
+      this.shapes,
+    );
+    element.textContent = part.text;
+    element.style.fontSize = `calc(var(--grow, 1) * ${part.height}px)`;
+    const place = (row: number): void => {
+      const { x, y, angle } = this.view.pose(part.frame, row);
+      const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+      element.setAttribute("transform", `translate(${x + cos * u - sin * v} ${-(y + sin * u + cos * v)})`);
+    };
+    if (part.frame < 0) place(0);
+    else this.moved.push(place);
+  }
+
+  private look(part: Part): { class: string; "data-role": string; "data-of": string } {
+    const names = [`r-${part.role}`, toneClass(part.tone, this.data)];
+    if (part.kind === "area" || part.kind === "disc" || part.kind === "text") names.push("filled");
+    if (LABELS.has(part.role)) names.push("lw-name");
+    return { class: names.join(" "), "data-role": part.role, "data-of": part.of };
+  }
+
+  /** Round places to take hold of, larger than pins, above everything. */
+  private addHandles(): void {
+    const drawn = new Set(
+      this.view.data.parts.filter((part) => part.kind === "disc").map((part) => part.of),
+    );
+    this.view.points.forEach((point, k) => {
+      if (!point.moving || !drawn.has(point.name)) return;
+      const handle = svg("circle", { class: "lw-handle", "data-point": k, r: 3.2 * this.data.pin }, this.handles);
+      this.moved.push((row) => {
+        handle.setAttribute("cx", String(point.x[row]));
+        handle.setAttribute("cy", String(-point.y[row]!));
+      });
+    });
+  }
+}

@@ -1,0 +1,129 @@
+// A motion as arrays over its rows: what the drawing, the plots and the table read.
+
+import type { Column, MotionData, Part } from "./page_data";
+import { dense, unpacked } from "./unpack";
+
+/** A frame in one row: where its origin is, and how it is turned [rad]. */
+export interface Pose {
+  readonly x: number;
+  readonly y: number;
+  readonly angle: number;
+}
+
+export interface Series {
+  readonly name: string;
+  readonly shown: string;
+  readonly unit: string;
+  readonly group: string;
+  readonly values: Float64Array;
+  readonly first: Float64Array | null;
+  readonly firstUnit: string;
+}
+
+export interface Point {
+  readonly name: string;
+  readonly shown: string;
+  readonly moving: boolean;
+  readonly x: Float64Array;
+  readonly y: Float64Array;
+  readonly dx: Float64Array;
+  readonly dy: Float64Array;
+}
+
+export interface Course {
+  readonly corners: readonly Float64Array[];
+  readonly shown: Float64Array;
+}
+
+export class MotionView {
+  readonly found: readonly boolean[];
+  /** Found rows in the order in which the mechanism passes them. */
+  readonly order: readonly number[];
+  readonly series: readonly Series[];
+  readonly points: readonly Point[];
+  readonly turns: readonly Float64Array[];
+  readonly status: Float64Array;
+  readonly certification: Float64Array;
+  readonly certified: Float64Array;
+  readonly residual: Float64Array;
+  readonly radius: Float64Array;
+  readonly iterations: Float64Array;
+  readonly branch: Float64Array;
+
+  constructor(readonly data: MotionData) {
+    const evidence = data.evidence;
+    this.found = Array.from(dense(evidence.found), (is) => is === 1);
+    const own = (column: Parameters<typeof dense>[0]): Float64Array => unpacked(column, this.found);
+    this.order = Array.from(dense(data.order));
+    this.series = data.columns.map((column) => seriesOf(column, own));
+    this.points = data.points.map((point) => ({
+      name: point.name,
+      shown: point.shown,
+      moving: point.drawn,
+      x: own(point.x),
+      y: own(point.y),
+      dx: own(point.dx),
+      dy: own(point.dy),
+    }));
+    this.turns = data.turns.map((turn) => own(turn.angle));
+    this.status = dense(evidence.status);
+    this.certification = dense(evidence.certification);
+    this.certified = dense(evidence.certified);
+    this.residual = own(evidence.residual_log10).map((exponent) => 10 ** exponent);
+    this.radius = own(evidence.radius_log10).map((exponent) => 10 ** exponent);
+    this.iterations = own(evidence.iterations);
+    this.branch = dense(evidence.branch);
+  }
+
+  /** The leading input. */
+  get input(): Series {
+    return this.series[0]!;
+  }
+
+  /** Where a frame is in a row; -1 is the ground. */
+  pose(frame: number, row: number): Pose {
+    const at = this.data.frames[frame];
+    if (at === undefined) return { x: 0, y: 0, angle: 0 };
+    const origin = this.points[at.origin];
+    return {
+      x: origin?.x[row] ?? 0,
+      y: origin?.y[row] ?? 0,
+      angle: this.turns[at.turn]?.[row] ?? 0,
+    };
+  }
+
+  /** The coordinates of a shape that changes its form. */
+  course(part: Part): Course {
+    return {
+      corners: part.course.map((column) => unpacked(column, this.found)),
+      shown: dense(part.shown!),
+    };
+  }
+
+  /** The way of a place that a frame carries, over the rows in order: x and y in turn. */
+  wayOf(frame: number, local: readonly [number, number]): Float64Array {
+    const way = new Float64Array(2 * this.order.length);
+    this.order.forEach((row, k) => {
+      const { x, y, angle } = this.pose(frame, row);
+      const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+      way[2 * k] = x + cos * local[0] - sin * local[1];
+      way[2 * k + 1] = y + sin * local[0] + cos * local[1];
+    });
+    return way;
+  }
+}
+
+function seriesOf(
+  column: Column,
+  own: (packed: Column["values"]) => Float64Array,
+): Series {
+  return {
+    name: column.name,
+    shown: column.shown,
+    unit: column.unit,
+    group: column.group,
+    values: own(column.values),
+    first: column.first && own(column.first),
+    firstUnit: column.first_unit,
+  };
+}

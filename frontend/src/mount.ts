@@ -1,0 +1,349 @@
+// The front end: what a page, a live page and a notebook widget mount.
+
+import { Arrows } from "./arrows";
+import { Chart } from "./chart";
+import { toggle, Transport } from "./controls";
+import { stepTowards, type Step } from "./drag";
+import { Drawing } from "./drawing";
+import { MotionView } from "./motion";
+import { measured } from "./numbers";
+import type { PageData } from "./page_data";
+import { Player } from "./player";
+import { html } from "./svg";
+import { RowTable } from "./table";
+import { themeRules } from "./theme";
+
+export type { PageData } from "./page_data";
+
+/** The page data that this front end reads. */
+export const FORMAT = 1;
+
+export interface Hooks {
+  /** A row is shown. */
+  readonly row?: (motion: number, row: number) => void;
+  /** Do not start to move by itself. */
+  readonly still?: boolean;
+}
+
+/** What was mounted. */
+export interface Mounted {
+  /** Show other data of the same mechanism, in the same place of the motion. */
+  update(data: PageData): void;
+  /** Show a row of the table. */
+  goToRow(row: number): void;
+  destroy(): void;
+}
+
+let mounted = 0;
+
+/** Show a motion in an element. */
+export function mount(element: HTMLElement, data: PageData, hooks: Hooks = {}): Mounted {
+  return new Page(element, checked(data), hooks);
+}
+
+function checked(data: PageData): PageData {
+  if (data.format === FORMAT) return data;
+  throw new Error(`this front end reads page data of format ${FORMAT}, not ${data.format}`);
+}
+
+class Page implements Mounted {
+  private readonly root: HTMLElement;
+  private readonly style: HTMLStyleElement;
+  private readonly drawing: Drawing;
+  private readonly arrows: readonly Arrows[];
+  private readonly transport: Transport;
+  private readonly charts: Chart[] = [];
+  private readonly table: RowTable;
+  private readonly player: Player;
+  private readonly live: HTMLElement;
+  private choice: HTMLSelectElement | null = null;
+  private summary!: HTMLElement;
+  private views: (MotionView | undefined)[] = [];
+  private motion = 0;
+  private frame = 0;
+  private last = 0;
+  private drawn = -1;
+  private spoken = 0;
+  private readonly gone = new AbortController();
+  private readonly sized = new ResizeObserver(() => this.drawing.fit());
+
+  constructor(
+    element: HTMLElement,
+    private data: PageData,
+    private readonly hooks: Hooks,
+  ) {
+    this.root = html("div", { class: "lw", id: `lw-${++mounted}`, tabindex: -1 });
+    element.replaceChildren(this.root);
+    this.style = html("style", {}, this.root);
+    this.style.textContent = themeRules(data, `#${this.root.id}`);
+    this.heading();
+    const stage = html("section", { class: "lw-stage", "aria-label": "Drawing" }, this.root);
+    const canvas = html("div", { class: "lw-canvas" }, stage);
+    this.drawing = new Drawing(data, canvas);
+    this.arrows = [
+      new Arrows(data, this.drawing.overlay, "vectors"),
+      new Arrows(data, this.drawing.overlay, "velocities"),
+    ];
+    this.player = new Player(1, true);
+    this.transport = new Transport(stage, {
+      play: (on) => this.player.play(on),
+      go: (index) => this.hold(index),
+      speed: (factor) => (this.player.speed = factor),
+    });
+    this.toggles(stage);
+    const side = html("section", { class: "lw-side", "aria-label": "Numbers" }, this.root);
+    const charts = html("div", { class: "lw-charts" }, side);
+    for (const name of this.plotted()) {
+      this.charts.push(new Chart(charts, name, (index) => this.hold(index)));
+    }
+    this.table = new RowTable(side, 1e-10 * (data.view[2]! - data.view[0]!));
+    this.equations(side);
+    this.live = html("div", { class: "lw-unseen", role: "status", "aria-live": "polite" }, this.root);
+    this.player.onChange(() => this.draw());
+    this.listen();
+    this.show(0, 0);
+    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    if (!hooks.still && !calm) this.player.play(true);
+    this.frame = requestAnimationFrame((now) => this.tick(now));
+  }
+
+  update(data: PageData): void {
+    const index = this.player.at;
+    this.data = checked(data);
+    this.views = [];
+    this.style.textContent = themeRules(data, `#${this.root.id}`);
+    this.show(Math.min(this.motion, data.motions.length - 1), index);
+  }
+
+  goToRow(row: number): void {
+    const index = this.view.order.indexOf(row);
+    if (index >= 0) this.hold(index);
+  }
+
+  destroy(): void {
+    this.gone.abort();
+    this.sized.disconnect();
+    cancelAnimationFrame(this.frame);
+    this.root.remove();
+  }
+
+  private get view(): MotionView {
+    return (this.views[this.motion] ??= new MotionView(this.data.motions[this.motion]!));
+  }
+
+  /** Show a motion from one of its rows on. */
+  private show(motion: number, index: number): void {
+    this.motion = motion;
+    const view = this.view;
+    this.drawn = -1;
+    this.drawing.show(view);
+    for (const arrows of this.arrows) arrows.show(view);
+    this.transport.show(view);
+    for (const chart of this.charts) chart.show(view);
+    this.table.show(view);
+    this.summary.textContent = view.data.summary;
+    if (this.choice) this.choice.selectedIndex = motion;
+    this.player.restart(view.order.length, view.data.closed, index);
+  }
+
+  /** Another motion, from where the input is now if it comes by there. */
+  private choose(motion: number): void {
+    const here = this.view.input.values[this.view.order[this.player.at]!]!;
+    this.motion = motion;
+    const { input, order } = this.view;
+    let [best, least] = [0, Infinity];
+    order.forEach((row, k) => {
+      const far = Math.abs(input.values[row]! - here);
+      if (far < least) [best, least] = [k, far];
+    });
+    this.show(motion, best);
+    this.speak();
+  }
+
+  private hold(index: number): void {
+    this.player.playing = false;
+    this.player.go(index);
+  }
+
+  private draw(): void {
+    this.transport.playing(this.player.playing);
+    const row = this.view.order[this.player.at]!;
+    if (row !== this.drawn) {
+      this.drawn = row;
+      this.drawing.draw(row);
+      for (const arrows of this.arrows) arrows.draw(row);
+      for (const chart of this.charts) chart.draw(row);
+      this.transport.draw(this.view, this.player.at, row);
+      this.table.draw(row);
+      this.root.dataset.row = String(row);
+      this.hooks.row?.(this.motion, row);
+    }
+    if (!this.player.playing) this.speakSoon();
+  }
+
+  private tick(now: number): void {
+    const passed = Math.min(0.1, (now - this.last) / 1000);
+    this.last = now;
+    this.player.advance(passed);
+    this.frame = requestAnimationFrame((next) => this.tick(next));
+  }
+
+  private heading(): void {
+    const head = html("header", { class: "lw-head" }, this.root);
+    html("h1", {}, head, this.data.title);
+    if (this.data.motions.length > 1) {
+      const label = html("label", { class: "lw-choice" }, head, "Circuit ");
+      this.choice = html("select", {}, label);
+      this.data.motions.forEach((motion, k) => html("option", { value: k }, this.choice!, motion.name));
+      this.choice.addEventListener("change", () => this.choose(this.choice!.selectedIndex));
+    }
+    this.summary = html("p", { class: "lw-summary" }, head);
+    const theme = html("button", { type: "button", class: "lw-theme", "aria-label": "Light or dark" }, head, "◐");
+    theme.title = "Light or dark";
+    theme.addEventListener("click", () => this.otherTheme());
+  }
+
+  private otherTheme(): void {
+    const dark = matchMedia("(prefers-color-scheme: dark)").matches;
+    const now = this.root.dataset.theme ?? (dark ? "dark" : "light");
+    this.root.dataset.theme = now === "dark" ? "light" : "dark";
+  }
+
+  private toggles(parent: Element): void {
+    const box = html("div", { class: "lw-toggles", role: "group", "aria-label": "What is shown" }, parent);
+    toggle(box, "Paths", true, (on) => this.drawing.toggle("paths", on));
+    toggle(box, "Names", true, (on) => this.drawing.toggle("names", on));
+    this.arrows.forEach((arrows, k) => {
+      toggle(box, ["Vectors", "Velocities"][k]!, false, (on) => {
+        arrows.shown = on;
+        if (k === 0) this.drawing.dim(on);
+        arrows.draw(this.drawn);
+      });
+    });
+    html("p", { class: "lw-hint" }, box, "Drag a pin or a link. Space plays, arrow keys step.");
+  }
+
+  /** What is plotted at first: outputs before unknowns, lengths before angles. */
+  private plotted(): string[] {
+    const columns = this.data.motions[0]!.columns.slice(1);
+    const rank = (k: number): number =>
+      (columns[k]!.group === "output" ? 0 : 2) + (columns[k]!.unit === "deg" ? 1 : 0);
+    const ordered = columns.map((_, k) => k).sort((a, b) => rank(a) - rank(b) || a - b);
+    return ordered.slice(0, 2).map((k) => columns[k]!.name);
+  }
+
+  private equations(parent: Element): void {
+    if (!this.data.equations.length) return;
+    const box = html("details", { class: "lw-equations", open: "" }, parent);
+    html("summary", {}, box, "Loop equations");
+    for (const equation of this.data.equations) {
+      const line = html("div", { class: "lw-equation" }, box);
+      html("span", {}, line, equation.label);
+      const math = new DOMParser().parseFromString(equation.mathml, "text/html").body.firstElementChild;
+      if (math) line.append(document.importNode(math, true));
+    }
+  }
+
+  private listen(): void {
+    const options = { signal: this.gone.signal };
+    document.addEventListener("keydown", (event) => this.key(event), options);
+    this.drag(this.drawing.element);
+    this.sized.observe(this.drawing.element);
+  }
+
+  private key(event: KeyboardEvent): void {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const target = event.target as HTMLElement;
+    if (target !== document.body && !this.root.contains(target)) return;
+    const tag = target.tagName;
+    const typed = tag === "SELECT" || (tag === "INPUT" && (target as HTMLInputElement).type !== "range");
+    if (typed && event.key !== "Escape") return;
+    if (event.key === " " && (tag === "BUTTON" || tag === "SUMMARY")) return;
+    const far = event.shiftKey ? 10 : 1;
+    const last = this.view.order.length - 1;
+    const actions: Record<string, () => void> = {
+      " ": () => this.player.play(!this.player.playing),
+      ArrowRight: () => this.player.step(far),
+      ArrowUp: () => this.player.step(far),
+      ArrowLeft: () => this.player.step(-far),
+      ArrowDown: () => this.player.step(-far),
+      Home: () => this.hold(0),
+      End: () => this.hold(last),
+      PageDown: () => this.neighbour(1),
+      PageUp: () => this.neighbour(-1),
+    };
+    const action = actions[event.key];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  }
+
+  private neighbour(by: number): void {
+    const count = this.data.motions.length;
+    if (count > 1) this.choose((this.motion + by + count) % count);
+  }
+
+  /** Take hold of a pin or a link and move it: the row whose place is nearest follows. */
+  private drag(canvas: SVGSVGElement): void {
+    let way: Float64Array | null = null;
+    let off: readonly [number, number] = [0, 0];
+    let step: Step = { at: 0, sense: 0 };
+    canvas.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) return;
+      const place = this.drawing.placeAt(event);
+      const found = this.held(event.target as Element, place);
+      if (found === null) return;
+      event.preventDefault();
+      this.player.play(false);
+      step = { at: this.player.at, sense: 0 };
+      way = found;
+      off = [way[2 * step.at]! - place[0], way[2 * step.at + 1]! - place[1]];
+      canvas.setPointerCapture(event.pointerId);
+      canvas.classList.add("lw-dragging");
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (way === null) return;
+      const [x, y] = this.drawing.placeAt(event);
+      step = stepTowards(way, this.view.data.closed, step, x + off[0], y + off[1]);
+      this.player.go(step.at);
+    });
+    for (const end of ["pointerup", "pointercancel"] as const) {
+      canvas.addEventListener(end, () => {
+        way = null;
+        canvas.classList.remove("lw-dragging");
+      });
+    }
+  }
+
+  /** The way of what was taken hold of: a point, or a place of a link. */
+  private held(target: Element, [x, y]: readonly [number, number]): Float64Array | null {
+    const view = this.view;
+    const point = target.getAttribute("data-point");
+    if (point !== null) {
+      const { x: xs, y: ys } = view.points[Number(point)]!;
+      return Float64Array.from(view.order.flatMap((row) => [xs[row]!, ys[row]!]));
+    }
+    const frame = Number(target.closest("[data-frame]")?.getAttribute("data-frame") ?? -1);
+    if (frame < 0) return null;
+    const pose = view.pose(frame, view.order[this.player.at]!);
+    const [cos, sin] = [Math.cos(pose.angle), Math.sin(pose.angle)];
+    const [dx, dy] = [x - pose.x, y - pose.y];
+    return view.wayOf(frame, [cos * dx + sin * dy, -sin * dx + cos * dy]);
+  }
+
+  /** Tell a screen reader where the motion rests, once it rests. */
+  private speakSoon(): void {
+    clearTimeout(this.spoken);
+    this.spoken = window.setTimeout(() => this.speak(), 600);
+  }
+
+  private speak(): void {
+    if (this.player.playing) return;
+    const view = this.view;
+    const row = view.order[this.player.at]!;
+    const told = view.series.slice(0, 4).map((one) => `${one.shown} ${measured(one.values[row]!, one.unit)}`);
+    const limit = view.data.limits.find((one) => one.row === row)?.text;
+    this.live.textContent = [view.data.name, ...told, ...(limit ? [limit] : [])].join(", ");
+    this.drawing.element.setAttribute("aria-label", `${this.data.title}: ${told[0] ?? ""}`);
+  }
+}

@@ -1,0 +1,61 @@
+// Numbers as people read them.
+
+const MINUS = "\u2212";
+
+/** A value to six significant digits, without an exponent where it can be helped; what is not
+ * above `rounding` is 0. */
+export function shortNumber(value: number, digits = 6, rounding = 0): string {
+  if (!Number.isFinite(value)) return "–";
+  const size = Math.abs(value);
+  if (size <= rounding) return "0";
+  if (size < 1e-9) return powerOfTen(value);
+  if (size < 1e-4 || size >= 1e9) return powerOfTen(value, 4);
+  const decimals = Math.min(6, Math.max(0, digits - 1 - Math.floor(Math.log10(size))));
+  const text = value.toFixed(decimals);
+  return withMinus(Number(text) === 0 ? text.replace("-", "") : text);
+}
+
+/** A value as m·10ⁿ, as residuals are written. */
+export function powerOfTen(value: number, digits = 2): string {
+  if (!Number.isFinite(value)) return "–";
+  const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
+  const raised = String(Number(exponent)).replace(/[-0-9]/g, (sign) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(sign)]!);
+  return withMinus(`${mantissa}·10${raised}`);
+}
+
+/** A value with its unit: 60°, 12.5 mm. */
+export function measured(value: number, unit: string): string {
+  const text = shortNumber(value);
+  if (unit === "deg") return `${trimmed(text)}°`;
+  return unit ? `${text} ${unit}` : text;
+}
+
+/** A number without zeros at the end of its decimals. */
+export function trimmed(text: string): string {
+  return text.includes(".") ? text.replace(/\.?0+$/, "") : text;
+}
+
+function withMinus(text: string): string {
+  return text.replace(/^-/, MINUS);
+}
+
+/** Round numbers between two values, about as many as asked. */
+export function ticks(low: number, high: number, about: number): number[] {
+  const rough = (high - low) / Math.max(1, about);
+  if (!(rough > 0)) return [low];
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map((k) => k * power).find((one) => one >= 0.6 * rough)!;
+  const found: number[] = [];
+  for (let k = Math.ceil(low / step - 1e-9) + 0; k * step <= high + 1e-9 * step; k++) found.push(k * step + 0);
+  return found;
+}
+
+/** Round angles in degrees between two values. */
+export function degreeTicks(low: number, high: number, about: number): number[] {
+  const rough = (high - low) / Math.max(1, about);
+  const step = [1, 5, 10, 15, 30, 45, 60, 90, 180, 360, 720, 1440].find((one) => one >= 0.8 * rough);
+  if (step === undefined || rough < 0.5) return ticks(low, high, about);
+  const found: number[] = [];
+  for (let k = Math.ceil(low / step - 1e-9) + 0; k * step <= high + 1e-9; k++) found.push(k * step + 0);
+  return found;
+}

@@ -1,0 +1,153 @@
+// Written by scripts/frontend types from src/linkwork/viewer/page_data.py.
+
+/** A quantity over the rows: its name as printed, its unit; `group` says where it is listed: `input`, `unknown`, `output`. */
+export interface Column {
+  readonly name: string;
+  readonly shown: string;
+  readonly unit: string;
+  readonly group: string;
+  readonly values: PackedColumn;
+  readonly first: PackedColumn | null;
+  readonly first_unit: string;
+}
+
+/** A loop equation: its label and its MathML. */
+export interface Equation {
+  readonly label: string;
+  readonly mathml: string;
+}
+
+/** What carries a shape: numbers of a point and of a turn; -1 for none. */
+export interface FrameData {
+  readonly origin: number;
+  readonly turn: number;
+}
+
+/** A row at which something turns back or branches cross. */
+export interface LimitMark {
+  readonly row: number;
+  readonly text: string;
+}
+
+/** One circuit or branch as it is shown. `order` are the found rows in the order in which the mechanism passes them; `closed` tells that the last is followed by the first. */
+export interface MotionData {
+  readonly name: string;
+  readonly summary: string;
+  readonly rows: number;
+  readonly order: PackedColumn;
+  readonly closed: boolean;
+  readonly columns: readonly Column[];
+  readonly points: readonly PointData[];
+  readonly turns: readonly TurnData[];
+  readonly frames: readonly FrameData[];
+  readonly parts: readonly Part[];
+  readonly vectors: readonly VectorData[];
+  readonly driven: readonly string[];
+  readonly evidence: RowEvidence;
+  readonly limits: readonly LimitMark[];
+}
+
+/** Numbers of the rows that were found: whole multiples of `step`, differenced `order` times, zigzag integers of seven bits a byte, in base64. Order -1: plain floats of eight bytes, the lowest first. */
+export interface PackedColumn {
+  readonly step: number;
+  readonly order: number;
+  readonly content: string;
+}
+
+/** Everything a page shows. `view` is left, bottom, right, top of the drawing. */
+export interface PageData {
+  readonly format: number;
+  readonly version: string;
+  readonly title: string;
+  readonly length_unit: string;
+  readonly derivative_unit: string;
+  readonly input_name: string;
+  readonly input_unit: string;
+  readonly view: readonly number[];
+  readonly stroke: number;
+  readonly pin: number;
+  readonly text: number;
+  readonly motions: readonly MotionData[];
+  readonly light: ThemeData;
+  readonly dark: ThemeData;
+  readonly equations: readonly Equation[];
+}
+
+/** A shape: `line`, `area`, `disc`, `strokes` or `text`. `points` are x, y, x, y, … in its frame (`frame` ≥ 0) or in the plane (-1); of a disc its centre, of a text its anchor. A shape of its own course (`frame` -2) has packed x and y of each corner, and `shown` (1 or 0) in every row. Lengths are in the mechanism's unit. */
+export interface Part {
+  readonly kind: string;
+  readonly role: string;
+  readonly of: string;
+  readonly tone: number;
+  readonly frame: number;
+  readonly points: readonly number[];
+  readonly radius: number;
+  readonly head: readonly number[];
+  readonly text: string;
+  readonly offset: readonly number[];
+  readonly height: number;
+  readonly align: number;
+  readonly course: readonly PackedColumn[];
+  readonly shown: PackedColumn | null;
+}
+
+/** A point: its coordinates and their derivatives by the leading input. */
+export interface PointData {
+  readonly name: string;
+  readonly shown: string;
+  readonly drawn: boolean;
+  readonly x: PackedColumn;
+  readonly y: PackedColumn;
+  readonly dx: PackedColumn;
+  readonly dy: PackedColumn;
+}
+
+/** How a role is drawn: colours (`tone`: that of the link; "" for none), widths in strokes. */
+export interface RoleStyle {
+  readonly role: string;
+  readonly layer: number;
+  readonly line: string;
+  readonly width: number;
+  readonly fill: string;
+  readonly opacity: number;
+  readonly dashes: readonly number[];
+}
+
+/** What is known of every row; `found` is 1 or 0, statuses number `texts`. */
+export interface RowEvidence {
+  readonly found: PackedColumn;
+  readonly status: PackedColumn;
+  readonly status_texts: readonly string[];
+  readonly certification: PackedColumn;
+  readonly certification_texts: readonly string[];
+  readonly certified: PackedColumn;
+  readonly residual_log10: PackedColumn;
+  readonly radius_log10: PackedColumn;
+  readonly iterations: PackedColumn;
+  readonly branch: PackedColumn;
+  readonly branch_names: readonly string[];
+}
+
+/** Colours of a page, light or dark. */
+export interface ThemeData {
+  readonly background: string;
+  readonly ink: string;
+  readonly faint: string;
+  readonly driven: string;
+  readonly tones: readonly string[];
+  readonly styles: readonly RoleStyle[];
+}
+
+/** The angle [rad] of a link or line that something turns with. */
+export interface TurnData {
+  readonly name: string;
+  readonly angle: PackedColumn;
+}
+
+/** A vector from one point to another, by their numbers, with its name. */
+export interface VectorData {
+  readonly name: string;
+  readonly start: number;
+  readonly end: number;
+  readonly tone: number;
+}

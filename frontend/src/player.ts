@@ -1,0 +1,80 @@
+// Which row is shown, and how it changes by itself.
+
+export type Listener = (player: Player) => void;
+
+/** Seconds that all rows of a motion take at speed 1; a long circuit takes longer. */
+export function lasting(rows: number): number {
+  return Math.min(18, Math.max(2.5, rows / 60));
+}
+
+/** A place on the way of `count` rows; plays around a closed way, to and fro on an open one. */
+export class Player {
+  playing = false;
+  speed = 1;
+  private place = 0;
+  private sense = 1;
+  private listeners: Listener[] = [];
+
+  constructor(
+    private count: number,
+    private closed: boolean,
+  ) {}
+
+  /** Index of the row in the order of the motion. */
+  get at(): number {
+    return Math.min(this.count - 1, Math.floor(this.place));
+  }
+
+  onChange(listener: Listener): void {
+    this.listeners.push(listener);
+  }
+
+  /** Another motion is shown, from one of its rows. */
+  restart(count: number, closed: boolean, at: number): void {
+    this.count = count;
+    this.closed = closed;
+    this.sense = 1;
+    this.place = Math.min(Math.max(at, 0), count - 1);
+    this.tell();
+  }
+
+  go(at: number): void {
+    this.place = this.closed ? remainder(at, this.count) : Math.min(Math.max(at, 0), this.count - 1);
+    this.tell();
+  }
+
+  step(by: number): void {
+    this.playing = false;
+    this.go(this.at + by);
+  }
+
+  play(on: boolean): void {
+    this.playing = on && this.count > 1;
+    this.tell();
+  }
+
+  /** Time has passed [s]. */
+  advance(seconds: number): void {
+    if (!this.playing) return;
+    const before = this.at;
+    const way = (this.sense * this.speed * seconds * this.count) / lasting(this.count);
+    let place = this.place + way;
+    if (this.closed) {
+      place = remainder(place, this.count);
+    } else {
+      const last = this.count - 1e-6;
+      if (place > last || place < 0) this.sense = -this.sense;
+      place = Math.min(Math.max(place, 0), last);
+    }
+    this.place = place;
+    if (this.at !== before) this.tell();
+  }
+
+  private tell(): void {
+    for (const listener of this.listeners) listener(this);
+  }
+}
+
+function remainder(number: number, count: number): number {
+  return ((number % count) + count) % count;
+}

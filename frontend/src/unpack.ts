@@ -1,0 +1,61 @@
+// Columns as they are packed by src/linkwork/viewer/packing.py.
+
+import type { PackedColumn } from "./page_data";
+
+/** The order of a column that holds plain floats. */
+const PLAIN = -1;
+
+/** The bytes of a base64 text. */
+export function bytesOf(base64: string): Uint8Array {
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let k = 0; k < text.length; k++) bytes[k] = text.charCodeAt(k);
+  return bytes;
+}
+
+/** Zigzag integers in groups of seven bits; exact up to 2^53. */
+export function wholeNumbers(bytes: Uint8Array): number[] {
+  const numbers: number[] = [];
+  let number = 0;
+  let weight = 1;
+  for (const byte of bytes) {
+    number += (byte & 0x7f) * weight;
+    weight *= 128;
+    if (byte < 0x80) {
+      numbers.push(number % 2 === 0 ? number / 2 : -(number + 1) / 2);
+      number = 0;
+      weight = 1;
+    }
+  }
+  return numbers;
+}
+
+/** The numbers of the rows that were found, in order. */
+export function dense(column: PackedColumn): Float64Array {
+  const bytes = bytesOf(column.content);
+  if (column.order === PLAIN) return new Float64Array(bytes.buffer as ArrayBuffer);
+  const whole = Float64Array.from(wholeNumbers(bytes));
+  for (let again = 0; again < column.order; again++) {
+    for (let k = 1; k < whole.length; k++) whole[k]! += whole[k - 1]!;
+  }
+  return whole.map((number) => number * column.step);
+}
+
+/** The numbers of all rows, NaN where there is no position. */
+export function unpacked(column: PackedColumn, found: readonly boolean[]): Float64Array {
+  const numbers = dense(column);
+  const values = new Float64Array(found.length).fill(NaN);
+  let k = 0;
+  found.forEach((is, row) => {
+    if (is) values[row] = numbers[k++] ?? NaN;
+  });
+  return values;
+}
+
+/** Text that was deflated without a header. */
+export async function inflated(base64: string): Promise<string> {
+  const stream = new Blob([bytesOf(base64) as BlobPart])
+    .stream()
+    .pipeThrough(new DecompressionStream("deflate-raw"));
+  return new Response(stream).text();
+}

@@ -1,0 +1,31 @@
+import { describe, expect, it } from "vitest";
+import { degreeTicks, measured, powerOfTen, shortNumber, ticks } from "../src/numbers";
+
+describe("numbers", () => {
+  it("has six digits, and a true minus sign", () => {
+    expect(shortNumber(-121.4753912)).toBe("−121.475");
+    expect(shortNumber(0.000512345678)).toBe("0.000512");
+    expect(shortNumber(4e-7)).toBe("4.000·10⁻⁷");
+  });
+
+  it("shows rounding as 0, and nothing where there is no number", () => {
+    expect(shortNumber(7.1e-15, 6, 1e-10)).toBe("0");
+    expect(shortNumber(NaN)).toBe("–");
+    expect(shortNumber(-1e-8, 6, 1e-10)).toBe("−1.000·10⁻⁸");
+  });
+
+  it("writes powers of ten as people do", () => {
+    expect(powerOfTen(2.2e-14)).toBe("2.2·10⁻¹⁴");
+  });
+
+  it("measures with the unit", () => {
+    expect(measured(60, "deg")).toBe("60°");
+    expect(measured(-12.5, "mm")).toBe("−12.5000 mm");
+  });
+
+  it("ticks at round numbers", () => {
+    expect(ticks(-45, 45, 4)).toEqual([-40, -20, 0, 20, 40]);
+    expect(degreeTicks(0, 360, 6)).toEqual([0, 60, 120, 180, 240, 300, 360]);
+    expect(degreeTicks(10, 11, 4).length).toBeGreaterThan(2);
+  });
+});

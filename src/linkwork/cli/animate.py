@@ -1,0 +1,108 @@
+"""``linkwork animate``"""
+
+from __future__ import annotations
+
+import click
+
+from linkwork.cli import picture
+from linkwork.cli.mechanism_source import read_mechanism
+from linkwork.cli.options import (
+    configuration_option,
+    debug_option,
+    file_argument,
+    set_option,
+)
+from linkwork.cli.output_file import check_outputs, write_bytes
+from linkwork.cli.terminal import print_lines, progress
+from linkwork.everyday import Mechanism
+from linkwork.foundation.errors import InputError
+from linkwork.results.motion import Motion
+from linkwork.viewer import FilmOptions, animation, check_animation
+
+__all__ = ["animate"]
+
+
+@click.command
+@file_argument
+@click.option(
+    "-o",
+    "--output",
+    metavar="PATH",
+    required=True,
+    help="Page .html, or film: .gif, .mp4, .apng, .webp.",
+)
+@click.option("--all", "every", is_flag=True, help="A page with all circuits to choose from.")
+@click.option(
+    "--fps", type=float, default=25.0, show_default=True, help="Pictures of a film per second."
+)
+@click.option("--rows", type=int, help="Positions of the cycle that a film shows.")
+@click.option("--no-certificates", is_flag=True, help="Prove nothing: faster.")
+@configuration_option
+@set_option
+@debug_option
+@click.pass_context
+def animate(
+    context: click.Context,
+    file: str,
+    output: str,
+    every: bool,
+    fps: float,
+    rows: int | None,
+    no_certificates: bool,
+    configuration: str | None,
+    changes: tuple[str, ...],
+) -> None:
+    """Write the motion to one file that moves.
+
+    A page works offline in any browser: play, drag the crank, plots, the
+    numbers of every position with their proof.
+
+    \b
+      linkwork animate jansen.toml -o jansen.html --all
+      linkwork animate jansen.toml -o jansen.gif --fps 20 --rows 60
+      linkwork animate fourbar.toml -o crossed.mp4 --configuration crossed
+    """
+    options = FilmOptions(fps=fps, rows=rows)
+    kind = check_animation(output, options)
+    if every and kind != "html":
+        raise InputError("--all is for a page: a film shows one circuit, name it .html")
+    if every and configuration is not None:
+        raise InputError("--all shows every circuit: leave out --configuration")
+    if rows is not None and kind == "html":
+        raise InputError("--rows is for films: a page shows all rows")
+    check_outputs(file, output)
+    mechanism = read_mechanism(file, changes)
+    picture.check_points(mechanism)
+    motions = _motions(mechanism, every, configuration, certify=not no_certificates)
+    if not any(motion.found.any() for motion in motions.values()):
+        print_lines([f"Did not write {output}: there is no position to draw."], err=True)
+        context.exit(1)
+    with progress("drawing") as tell:
+        content = animation(
+            motions,
+            kind,
+            options=options,
+            equations=mechanism.equations().mathml(),
+            progress=tell,
+        )
+    write_bytes(output, [content])
+    print_lines([f"Wrote {output}: {_told(motions, kind)}, {len(content) / 1000:.0f} kB."])
+
+
+def _motions(
+    mechanism: Mechanism, every: bool, configuration: str | None, *, certify: bool
+) -> dict[str, Motion]:
+    if every:
+        with progress("following circuits") as tell:
+            return mechanism.cycles(certify=certify, progress=tell)
+    with progress("sweeping") as tell:
+        motion = mechanism.cycle(configuration=configuration, certify=certify, progress=tell)
+    return {configuration or "motion": motion}
+
+
+def _told(motions: dict[str, Motion], kind: str) -> str:
+    rows = sum(int(motion.found.sum()) for motion in motions.values())
+    if kind != "html":
+        return "one cycle"
+    circuits = f"{len(motions)} circuits, " if len(motions) > 1 else ""
+    return f"{circuits}{rows} positions; open it in a browser"

@@ -1,0 +1,109 @@
+"""Names of points that keep their place beside the point over a whole motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from linkwork.drawing.box import Box
+from linkwork.drawing.label_placement import Choice, point_names
+from linkwork.drawing.measures import Measures
+from linkwork.drawing.obstacles import Obstacles
+from linkwork.drawing.pose import Pose
+from linkwork.drawing.scene import Primitive, Text
+from linkwork.foundation.arrays import Array
+
+__all__ = ["labels_as_before", "lasting_labels"]
+
+_NAME_ON_NAME = 100.0
+_CLEAR = 0.12  # left free around every name [em]
+_WORST = 0.5  # share of the worst row in the penalty of a place, beside the mean of all
+
+
+def lasting_labels(
+    poses: Sequence[Pose],
+    drawn: Sequence[Sequence[Primitive]],
+    measures: Measures,
+) -> list[Text]:
+    """The names in the first pose, each in the place that is best over all poses.
+
+    Parameters
+    ----------
+    poses, drawn
+        Some rows of a motion, and what is drawn in each.
+
+    Notes
+    -----
+    Names are placed one by one and moved until none can do better alone, as in
+    :func:`~linkwork.drawing.label_placement.placed`; the penalty of a place is the mean of its
+    penalties in all rows, and some of the worst.
+    """
+    rows = [point_names(pose, measures) for pose in poses]
+    boxes = [_boxes([row[k] for row in rows]) for k in range(len(rows[0]))]
+    obstacles = [Obstacles.of(shapes) for shapes in drawn]
+    fixed = []
+    for k, choice in enumerate(rows[0]):
+        cost = np.array([
+            [obstacle.cost([Box(*box)]) for box in boxes[k][r]]
+            for r, obstacle in enumerate(obstacles)
+        ])  # fmt: skip
+        fixed.append(np.array(choice.cost) + _over_rows(cost))
+    chosen = _settled(fixed, boxes)
+    return [choice.places[place] for choice, place in zip(rows[0], chosen, strict=True)]
+
+
+def labels_as_before(pose: Pose, measures: Measures, before: Sequence[Text]) -> list[Text]:
+    """The names of a pose of the same mechanism, each in the direction that it had ``before``."""
+    had = {text.of: text for text in before}
+    found = []
+    for choice in point_names(pose, measures):
+        text = had[choice.places[0].of]
+        off = complex(*text.offset) * choice.places[0].height / text.height
+        away = [abs(complex(*place.offset) - off) for place in choice.places]
+        found.append(choice.places[int(np.argmin(away))])
+    return found
+
+
+def _boxes(choices: Sequence[Choice]) -> Array:
+    """The boxes of one name, shape (rows, places, 4)."""
+    return np.array([
+        [
+            (box.left, box.bottom, box.right, box.top)
+            for box in (text.box.grown(_CLEAR * text.height) for text in choice.places)
+        ]
+        for choice in choices
+    ])  # fmt: skip
+
+
+def _over_rows(cost: Array) -> Array:
+    found: Array = (1 - _WORST) * cost.mean(axis=0) + _WORST * cost.max(axis=0)
+    return found
+
+
+def _settled(fixed: Sequence[Array], boxes: Sequence[Array]) -> list[int]:
+    """The place of every name, against the others where they stand: a local optimum."""
+    chosen: dict[int, int] = {}
+    order = sorted(range(len(fixed)), key=lambda k: -float(fixed[k].min()))
+    for _ in range(4):
+        before = dict(chosen)
+        for k in order:
+            cost = fixed[k].copy()
+            for other, place in chosen.items():
+                if other != k:
+                    cost += _NAME_ON_NAME * _overlapping(boxes[k], boxes[other][:, place]).mean(0)
+            chosen[k] = int(cost.argmin())
+        if chosen == before:
+            break
+    return [chosen[k] for k in range(len(fixed))]
+
+
+def _overlapping(boxes: Array, others: Array) -> Array:
+    """Whether boxes (rows, places, 4) meet one box per row (rows, 4); shape (rows, places)."""
+    other = others[:, None, :]
+    return np.asarray(
+        (boxes[..., 0] < other[..., 2])
+        & (other[..., 0] < boxes[..., 2])
+        & (boxes[..., 1] < other[..., 3])
+        & (other[..., 1] < boxes[..., 3])
+    )

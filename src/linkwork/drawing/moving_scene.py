@@ -1,0 +1,395 @@
+"""A motion as a picture that moves: every primitive is carried by a frame, or has its own course.
+
+The primitives are those of :func:`~linkwork.drawing.mechanism_scene.scene_of`. Most are rigid: they
+stand still on ground, or are carried by a link or a point. The others (pistons, rods that a collar
+hides a piece of, …) keep their coordinates row by row. Names and arrows keep one place for the
+whole motion, so that they do not jump. Nothing is solved here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.drawing.attachment import STILL, Frame, Frames
+from linkwork.drawing.box import Box
+from linkwork.drawing.drawn_box import reach_of
+from linkwork.drawing.guide_symbols import tracks
+from linkwork.drawing.input_arrow import input_arrows
+from linkwork.drawing.lasting_labels import labels_as_before, lasting_labels
+from linkwork.drawing.link_symbols import tones
+from linkwork.drawing.measures import Measures
+from linkwork.drawing.mechanism_scene import symbols, traced
+from linkwork.drawing.pose import Pose
+from linkwork.drawing.scene import (
+    Arc,
+    Polygon,
+    Polyline,
+    Primitive,
+    Role,
+    Scene,
+    Text,
+    xy,
+)
+from linkwork.drawing.shape_corners import corners, same_sizes, with_corners
+from linkwork.drawing.trace_path import trace_symbols
+from linkwork.foundation.arrays import BoolArray, ComplexArray, CountArray
+from linkwork.foundation.errors import InputError
+from linkwork.results.motion import Motion
+
+__all__ = ["Moving", "MovingScene", "moving_scene"]
+
+_SAMPLED = 9  # rows at which names must not collide
+_ARC_PIECES = 32  # of an arc that changes its sweep
+
+
+@dataclass(frozen=True, kw_only=True)
+class Moving:
+    """A primitive that moves.
+
+    Parameters
+    ----------
+    shape : Primitive
+        As it is in the reference row.
+    frame : Frame, optional
+        What carries it; ``None`` if it changes its shape.
+    course : array (N, m), optional
+        Then its corners x + iy row by row; NaN in rows where it is not drawn.
+    """
+
+    shape: Primitive
+    frame: Frame | None
+    course: ComplexArray | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class MovingScene:
+    """A motion as it is drawn.
+
+    Parameters
+    ----------
+    scene : Scene
+        The picture in the reference row, names and arrows among it.
+    row : int
+        The reference row.
+    found : array (N,) of bool
+        Rows that can be drawn.
+    frames : Frames
+        Where everything is carried.
+    parts : tuple of Moving
+        The primitives, bottom to top.
+    """
+
+    scene: Scene
+    row: int
+    found: BoolArray
+    frames: Frames
+    parts: tuple[Moving, ...]
+
+    def at(self, row: int) -> Scene:
+        """The picture in a row that was found."""
+        if not self.found[row]:
+            raise InputError(f"row {row} of the motion has no position to draw")
+        shapes = tuple(filter(None, (self._placed(part, row) for part in self.parts)))
+        return replace(self.scene, primitives=shapes)
+
+    def _placed(self, part: Moving, row: int) -> Primitive | None:
+        if part.frame is None:
+            assert part.course is not None
+            own = part.course[row]
+            return with_corners(part.shape, own) if np.isfinite(own[0]) else None
+        if part.frame == STILL:
+            return part.shape
+        local = self.frames.local(part.frame, corners(part.shape)[None], np.array([self.row]))[0]
+        return with_corners(part.shape, self.frames.placed(part.frame, local, np.array([row]))[0])
+
+    @property
+    def view(self) -> Box:
+        """What the picture needs over the whole motion."""
+        box = self.scene.box
+        rows = np.flatnonzero(self.found)
+        for part in self.parts:
+            if part.frame == STILL or isinstance(part.shape, Text):
+                continue
+            if part.frame is None:
+                assert part.course is not None
+                around = part.course[rows]
+            else:
+                outline = np.array([complex(*place) for place in part.shape.outline])
+                local = self.frames.local(part.frame, outline[None], np.array([self.row]))[0]
+                around = self.frames.placed(part.frame, local, rows)
+            places = around[np.isfinite(around)]
+            if len(places):
+                x, y = places.real, places.imag
+                box = box.with_box(
+                    Box(float(x.min()), float(y.min()), float(x.max()), float(y.max()))
+                )
+        return box
+
+
+def moving_scene(
+    motion: Motion,
+    *,
+    traces: Sequence[str] | None = None,
+    within: Box | None = None,
+    like: MovingScene | None = None,
+) -> MovingScene:
+    """A motion as it is drawn.
+
+    Parameters
+    ----------
+    motion : Motion
+        A motion of which at least one position was found.
+    traces : sequence of str, optional
+        The points whose paths are shown; those of the mechanism's ``[trace]`` unless given.
+    within : Box, optional
+        What sizes of symbols are measured by: give it to all motions that are shown in one
+        picture; :func:`~linkwork.drawing.drawn_box.reach_of` unless given.
+    like : MovingScene, optional
+        A motion of the same mechanism with other dimensions, drawn before: what carries each
+        shape, and where names stand, are taken over if the shapes are the same. This makes it
+        quick enough to be done while a dimension is dragged.
+
+    Raises
+    ------
+    InputError
+        If no position was found, or the mechanism has no points.
+    UnknownNameError
+        If a trace names no point.
+    """
+    box = reach_of(motion) if within is None else within
+    rows = np.flatnonzero(motion.found)
+    pose = Pose.at_row(motion, int(rows[0]))
+    measures = Measures.of(box, pose.gaps)
+    frames = Frames.of(motion, pose)
+    shown = dict(_keyed(_drawn(pose, measures)))
+    carried = None if like is None else _carried(like)
+    if carried is None or carried.keys() != shown.keys():
+        like = None
+    parts = (
+        _attached(motion, pose, measures, frames, rows)
+        if like is None or carried is None
+        else _taken_over(motion, pose, measures, shown, carried, rows)
+    )
+    paths = trace_symbols(pose, traced(pose, traces), measures)
+    parts += [Moving(shape=path, frame=STILL) for path in paths]
+    row = int(rows[0])
+    if like is None:
+        parts += _arrows(pose, measures, motion.speed, frames, parts)
+        moving = MovingScene(
+            scene=_scene(motion, parts, measures, box),
+            row=row,
+            found=motion.found,
+            frames=frames,
+            parts=tuple(parts),
+        )
+        parts += _names(motion, pose, moving, rows)
+    else:
+        parts += _arrows_as_before(like, frames, row)
+        parts += _names_as_before(like, pose, measures)
+    parts.sort(key=lambda part: part.shape.layer)
+    return MovingScene(
+        scene=_scene(motion, parts, measures, box),
+        row=row,
+        found=motion.found,
+        frames=frames,
+        parts=tuple(parts),
+    )
+
+
+def _scene(motion: Motion, parts: Sequence[Moving], measures: Measures, within: Box) -> Scene:
+    return Scene(
+        primitives=tuple(part.shape for part in parts),
+        measures=measures,
+        within=within,
+        unit=motion.units.length,
+        title=motion.mechanism,
+    )
+
+
+#: Kind, role and part of a primitive, and its number among those that agree in all of these.
+Key = tuple[type[Primitive], Role, str, int]
+
+
+def _drawn(pose: Pose, measures: Measures) -> Iterator[Primitive]:
+    return symbols(pose, tracks(pose, measures, tones(pose)), (), measures)
+
+
+def _keyed(primitives: Iterator[Primitive]) -> Iterator[tuple[Key, Primitive]]:
+    count: dict[tuple[type[Primitive], Role, str], int] = {}
+    for primitive in primitives:
+        kind = (type(primitive), primitive.role, primitive.of)
+        count[kind] = count.get(kind, -1) + 1
+        yield (*kind, count[kind]), primitive
+
+
+def _attached(
+    motion: Motion, pose: Pose, measures: Measures, frames: Frames, rows: CountArray
+) -> list[Moving]:
+    """What carries each primitive, from its coordinates in all rows."""
+    first: dict[Key, Primitive] = {}
+    course: dict[Key, dict[int, Primitive]] = {}
+    for k, row in enumerate(rows):
+        for key, primitive in _keyed(_drawn(pose.moved_to(motion, int(row)), measures)):
+            first.setdefault(key, primitive)
+            course.setdefault(key, {})[k] = primitive
+    return [
+        _one_attached(first[key], along, frames, rows, motion, measures)
+        for key, along in course.items()
+    ]
+
+
+def _one_attached(
+    shape: Primitive,
+    along: Mapping[int, Primitive],
+    frames: Frames,
+    rows: CountArray,
+    motion: Motion,
+    measures: Measures,
+) -> Moving:
+    found = [corners(one) for one in along.values()]
+    alike = len(along) == len(rows) and len({len(one) for one in found}) == 1
+    if alike and same_sizes(along.values(), measures.size):
+        frame = frames.holding(
+            np.stack(found),
+            rows,
+            measures.size,
+            first=shape.of,
+            closed=_closed(shape),
+        )
+        if frame is not None:
+            return Moving(shape=shape, frame=frame)
+    return _own_course(shape, along, rows, len(motion))
+
+
+def _closed(shape: Primitive) -> bool:
+    """Whether it does not matter from which corner the corners are numbered."""
+    line = isinstance(shape, Polyline) and len(shape.points) == 2 and not shape.head
+    return line or isinstance(shape, Polygon)
+
+
+def _own_course(
+    shape: Primitive, along: Mapping[int, Primitive], rows: CountArray, count: int
+) -> Moving:
+    """A primitive with its corners row by row; an arc becomes a line."""
+    lines = {k: _as_line(one) for k, one in along.items()}
+    most = max(len(line) for line in lines.values())
+    course = np.full((count, most), complex(np.nan, np.nan))
+    for k, line in lines.items():
+        course[rows[k], : len(line)] = line
+        course[rows[k], len(line) :] = line[-1]
+    if isinstance(shape, Arc):
+        own = {"role": shape.role, "of": shape.of, "tone": shape.tone, "head": shape.head}
+        shape = Polyline(points=tuple(map(xy, _as_line(shape))), **own)  # type: ignore[arg-type]
+    return Moving(shape=shape, frame=None, course=course)
+
+
+def _as_line(shape: Primitive) -> ComplexArray:
+    if not isinstance(shape, Arc):
+        return corners(shape)
+    angles = shape.start + shape.sweep * np.arange(_ARC_PIECES + 1) / _ARC_PIECES
+    line: ComplexArray = complex(*shape.centre) + shape.radius * np.exp(1j * angles)
+    return line
+
+
+def _carried(scene: MovingScene) -> dict[Key, Moving]:
+    """What of a moving scene was drawn from its pose, by key; not traces, arrows, names."""
+    drawn = [
+        part
+        for part in scene.parts
+        if part.shape.role not in (Role.TRACE, Role.INPUT) and not isinstance(part.shape, Text)
+    ]
+    by_shape = {id(part.shape): part for part in drawn}
+    return {key: by_shape[id(shape)] for key, shape in _keyed(part.shape for part in drawn)}
+
+
+def _taken_over(
+    motion: Motion,
+    pose: Pose,
+    measures: Measures,
+    shown: Mapping[Key, Primitive],
+    carried: Mapping[Key, Moving],
+    rows: CountArray,
+) -> list[Moving]:
+    """The primitives of a pose, carried as they were with other dimensions."""
+    changing = [key for key, part in carried.items() if part.frame is None]
+    course: dict[Key, dict[int, Primitive]] = {key: {} for key in changing}
+    for k, row in enumerate(rows if changing else ()):
+        for key, primitive in _keyed(_drawn(pose.moved_to(motion, int(row)), measures)):
+            if key in course:
+                course[key][k] = primitive
+    return [
+        _own_course(shape, course[key], rows, len(motion))
+        if key in course
+        else Moving(shape=shape, frame=carried[key].frame)
+        for key, shape in shown.items()
+    ]
+
+
+def _arrows(
+    pose: Pose,
+    measures: Measures,
+    speed: float | None,
+    frames: Frames,
+    parts: Sequence[Moving],
+) -> Iterator[Moving]:
+    """An arrow for every input, carried by what is driven as in the reference row."""
+    sense = -1.0 if (speed or 0.0) < 0 else 1.0
+    found = tracks(pose, measures, tones(pose))
+    drawn = [part.shape for part in parts]
+    for arrow in input_arrows(pose, found, measures, sense, drawn):
+        yield Moving(shape=arrow, frame=_driving(pose, arrow, frames))
+
+
+def _arrows_as_before(like: MovingScene, frames: Frames, row: int) -> Iterator[Moving]:
+    """The arrows of another motion, where they were on what is driven."""
+    for part in like.parts:
+        if part.shape.role is Role.INPUT and part.frame is not None:
+            local = like.frames.local(part.frame, corners(part.shape)[None], np.array([like.row]))[
+                0
+            ]
+            places = frames.placed(part.frame, local, np.array([row]))[0]
+            yield replace(part, shape=with_corners(part.shape, places))
+
+
+def _driving(pose: Pose, arrow: Primitive, frames: Frames) -> Frame:
+    """What carries the arrow of an input: the link, the block or the cylinder that is driven."""
+    skeleton = pose.skeleton
+    for part in skeleton.driven:
+        if part.name != arrow.of:
+            continue
+        for strut in skeleton.struts:
+            if strut.name == part.name:
+                return Frame(strut.between[0], ">".join(strut.between))
+        for guide in skeleton.guides:
+            if guide.name == part.name:
+                line = ">".join(guide.line)
+                return Frame(guide.point, line if line in frames.turns else "")
+        for bar in skeleton.bars:
+            if bar.name == part.name:
+                turn = bar.name if bar.name in frames.turns else ""
+                return Frame(part.pivot or bar.points[0], turn)
+    return STILL
+
+
+def _names(motion: Motion, pose: Pose, moving: MovingScene, rows: CountArray) -> Iterator[Moving]:
+    """The names of points, each beside its point in one direction for the whole motion."""
+    sampled = rows[np.unique(np.linspace(0, len(rows) - 1, _SAMPLED).round().astype(int))]
+    poses = [pose.moved_to(motion, int(row)) for row in sampled]
+    drawn = [moving.at(int(row)).primitives for row in sampled]
+    for text in lasting_labels(poses, drawn, moving.scene.measures):
+        yield _name(text, pose)
+
+
+def _names_as_before(like: MovingScene, pose: Pose, measures: Measures) -> Iterator[Moving]:
+    """The names of points in the directions that they had in another motion."""
+    before = [part.shape for part in like.parts if isinstance(part.shape, Text)]
+    for text in labels_as_before(pose, measures, before):
+        yield _name(text, pose)
+
+
+def _name(text: Text, pose: Pose) -> Moving:
+    still = text.of in pose.skeleton.fixed
+    return Moving(shape=text, frame=STILL if still else Frame(text.of))

@@ -1,0 +1,147 @@
+"""A motion as a file that moves: a page, or a film."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from linkwork.drawing.captions import inputs_caption
+from linkwork.drawing.film import film
+from linkwork.drawing.moving_scene import moving_scene
+from linkwork.drawing.theme import LIGHT, Theme
+from linkwork.foundation.arrays import AnyArray
+from linkwork.foundation.errors import InputError
+from linkwork.results.motion import Motion
+from linkwork.viewer.film_file import FILM_FORMATS, check_film, film_bytes
+from linkwork.viewer.offline_page import offline_page
+from linkwork.viewer.page_building import motion_page
+from linkwork.viewer.play_order import play_order
+
+__all__ = ["ANIMATION_FORMATS", "FilmOptions", "animation", "check_animation"]
+
+#: Formats by suffix.
+ANIMATION_FORMATS = ("html", *FILM_FORMATS)
+
+_LASTING = 4.8  # seconds that a film takes unless its rows are given
+
+
+@dataclass(frozen=True, kw_only=True)
+class FilmOptions:
+    """How a film is made.
+
+    Parameters
+    ----------
+    fps : float
+        Pictures a second.
+    rows : int, optional
+        How many positions of the cycle are shown; as many as make a film of about five seconds
+        unless given.
+    dpi : float
+        Pixels per inch; the longer side of the drawing is six inches.
+    theme : Theme
+    """
+
+    fps: float = 25.0
+    rows: int | None = None
+    dpi: float = 110.0
+    theme: Theme = LIGHT
+
+
+def check_animation(path: str | Path, options: FilmOptions | None = None) -> str:
+    """The format of a file by its name, if it can be written here.
+
+    Raises
+    ------
+    InputError
+        If the suffix names no known format, or a number makes no sense.
+    MissingPackageError
+        If what writes it is missing.
+    """
+    chosen = options or FilmOptions()
+    kind = Path(path).suffix.lower().removeprefix(".")
+    if kind not in ANIMATION_FORMATS:
+        known = ", ".join(f".{name}" for name in ANIMATION_FORMATS)
+        raise InputError(f'cannot animate "{path}": its suffix must be one of {known}')
+    if not 0 < chosen.fps <= 240:
+        raise InputError(
+            f"a film has more than 0 and at most 240 pictures a second: {chosen.fps:g}"
+        )
+    if chosen.rows is not None and chosen.rows < 2:
+        raise InputError(f"a film needs at least 2 rows, not {chosen.rows}")
+    if kind != "html":
+        check_film(kind, chosen.fps)
+    return kind
+
+
+def animation(
+    motions: Mapping[str, Motion],
+    kind: str,
+    *,
+    options: FilmOptions | None = None,
+    equations: Sequence[tuple[str, str]] = (),
+    progress: Callable[[float], None] | None = None,
+) -> bytes:
+    """The content of a file that shows motions of one mechanism.
+
+    Parameters
+    ----------
+    motions : Mapping[str, Motion]
+        By the name of the circuit; a film shows the first of which a position was found.
+    kind : str
+        One of :data:`ANIMATION_FORMATS`.
+    options : FilmOptions, optional
+        For films.
+    equations : sequence of (str, str)
+        Labels and MathML of the loop equations, for a page.
+    progress : callable, optional
+        Told the share of a film that is done, 0 to 1.
+
+    Raises
+    ------
+    InputError, MissingPackageError
+        If there is nothing to draw, or the format cannot be written here.
+    """
+    if kind == "html":
+        return offline_page(motion_page(motions, equations=equations)).encode()
+    motion = next((motion for motion in motions.values() if motion.found.any()), None)
+    if motion is None:
+        raise InputError("there is no motion to show: no position was found")
+    return _film(motion, kind, options or FilmOptions(), progress)
+
+
+def _film(
+    motion: Motion, kind: str, options: FilmOptions, progress: Callable[[float], None] | None
+) -> bytes:
+    rows = _film_rows(motion, options)
+    captions = [
+        inputs_caption(
+            {name: round(float(values[row]), 6) for name, values in motion.inputs.items()},
+            motion.input_units,
+            motion.units,
+        )
+        for row in rows
+    ]
+    pictures = film(moving_scene(motion), rows, captions, dpi=options.dpi, theme=options.theme)
+
+    def told() -> Iterator[AnyArray]:
+        for k, picture in enumerate(pictures, 1):
+            yield picture
+            if progress is not None:
+                progress(k / len(rows))
+
+    return film_bytes(told(), kind, options.fps)
+
+
+def _film_rows(motion: Motion, options: FilmOptions) -> list[int]:
+    """The rows in the order in which they are shown: around, or to and fro."""
+    order, closed = play_order(motion)
+    wanted = options.rows or max(2, round(_LASTING * options.fps))
+    if closed:
+        count = min(wanted, len(order))
+        return [int(order[k * len(order) // count]) for k in range(count)]
+    count = min(wanted if options.rows else wanted // 2 + 1, len(order))
+    there = [int(order[k]) for k in np.linspace(0, len(order) - 1, count).round().astype(int)]
+    return there + there[-2:0:-1]

@@ -1,0 +1,63 @@
+"""One HTML file that shows a motion without a network, without Linkwork, and without a server."""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+import zlib
+from importlib import resources
+
+from linkwork.viewer.page_data import PageData
+
+__all__ = ["offline_page", "page_json"]
+
+_POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
+
+
+def offline_page(page: PageData) -> str:
+    """The HTML file.
+
+    Its data stand in it as JSON, deflated where that is shorter; scripts and styles are those of
+    ``static/``, which ``scripts/frontend build`` writes. It loads nothing from anywhere.
+    """
+    static = resources.files("linkwork.viewer") / "static"
+    script = (static / "offline.js").read_text(encoding="utf-8")
+    style = (static / "linkwork.css").read_text(encoding="utf-8")
+    encoding, content = _shortest(page_json(page))
+    title = html.escape(page.title)
+    return f"""<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{_POLICY}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta name="generator" content="Linkwork {html.escape(page.version)}">
+<title>{title}</title>
+<link rel="icon" href="data:,">
+<style>{style}</style>
+</head>
+<body>
+<main id="linkwork"><noscript>This page needs JavaScript to move.</noscript></main>
+<script id="linkwork-data" type="text/plain" data-encoding="{encoding}">{content}</script>
+<script>{script}</script>
+</body>
+</html>
+"""
+
+
+def page_json(page: PageData) -> str:
+    """The data as JSON; what has its usual empty value is kept, so that types hold."""
+    return json.dumps(
+        page, default=vars, ensure_ascii=False, separators=(",", ":"), allow_nan=False
+    )
+
+
+def _shortest(text: str) -> tuple[str, str]:
+    """Deflated base64, or the JSON with ``<`` escaped, whichever is shorter."""
+    packer = zlib.compressobj(9, zlib.DEFLATED, -15)
+    raw = text.encode()
+    deflated = base64.b64encode(packer.compress(raw) + packer.flush()).decode()
+    plain = text.replace("<", "\\u003c")
+    return ("deflate-raw", deflated) if len(deflated) < len(plain.encode()) else ("json", plain)

@@ -1,0 +1,123 @@
+"""Columns of smooth numbers in few bytes: rounded, differenced, and written as short integers.
+
+A column of a cycle changes by little from row to row, and its differences by less. Rounded to
+whole multiples of a step, its differences of the order that needs fewest bytes are written as
+zigzag integers in groups of seven bits. The front end adds them up again.
+"""
+
+from __future__ import annotations
+
+import base64
+import math
+from typing import Protocol
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, CountArray
+from linkwork.viewer.page_data import PackedColumn
+
+__all__ = ["Pack", "packed", "unpacked", "unpressed"]
+
+#: The ``order`` of a column that holds plain floats.
+PLAIN = -1
+
+_BITS = 34  # of the largest value: ten digits
+_ORDERS = range(8)
+_LARGEST = 2.0**52
+
+
+class Pack(Protocol):
+    """How a column is written."""
+
+    def __call__(
+        self, values: Array, found: BoolArray, *, step: float | None = None
+    ) -> PackedColumn:
+        """The ``found`` rows of a column (N,)."""
+
+
+def packed(values: Array, found: BoolArray, *, step: float | None = None) -> PackedColumn:
+    """A column (N,) of which only the ``found`` rows are kept.
+
+    Parameters
+    ----------
+    values : array (N,)
+    found : array (N,) of bool
+    step : float, optional
+        What values are rounded to; ten digits of the largest unless given.
+    """
+    kept = np.where(np.isfinite(values[found]), values[found], 0.0)
+    largest = float(np.abs(kept).max(initial=0.0))
+    size = 2.0 ** (math.floor(math.log2(largest)) + 1 - _BITS) if largest > 0 else 1.0
+    chosen = size if step is None else step
+    whole = np.rint(kept / chosen)
+    if np.abs(whole).max(initial=0.0) > _LARGEST / 2 ** max(_ORDERS):
+        raise ValueError(f"step {chosen:g} is too fine for values up to {largest:g}")
+    order, differences = _smallest(whole.astype(np.int64))
+    content = _bytes(differences)
+    return PackedColumn(step=chosen, order=order, content=base64.b64encode(content).decode())
+
+
+def unpressed(values: Array, found: BoolArray, *, step: float | None = None) -> PackedColumn:
+    """The same as plain floats: quick to write, and exact; a ``step`` is of no use."""
+    kept = np.where(np.isfinite(values[found]), values[found], 0.0)
+    content = base64.b64encode(kept.astype("<f8").tobytes()).decode()
+    return PackedColumn(step=1.0, order=PLAIN, content=content)
+
+
+def unpacked(column: PackedColumn, found: BoolArray) -> Array:
+    """The column (N,), NaN where there is no position."""
+    content = base64.b64decode(column.content)
+    whole = np.frombuffer(content, dtype="<f8") if column.order == PLAIN else _whole(content)
+    for _ in range(column.order):
+        whole = np.cumsum(whole)
+    values = np.full(len(found), np.nan)
+    values[found] = whole * column.step
+    return values
+
+
+def _smallest(whole: CountArray) -> tuple[int, CountArray]:
+    """The differences that need fewest bytes, and their order."""
+    best, least, order = whole, _length(whole), 0
+    for k in _ORDERS[1:]:
+        whole = np.diff(whole, prepend=0)
+        length = _length(whole)
+        if length < least:
+            best, least, order = whole, length, k
+        elif k > order + 1:
+            break
+    return order, best
+
+
+def _length(whole: CountArray) -> float:
+    """About how many bytes numbers need."""
+    return float(np.log2(2.0 * np.abs(whole) + 1.0).sum()) / 7 + len(whole)
+
+
+def _bytes(whole: CountArray) -> bytes:
+    """Zigzag: 0, -1, 1, -2, …; then groups of seven bits, the lowest first."""
+    left = ((whole << 1) ^ (whole >> 63)).astype(np.uint64)
+    groups = []
+    while True:
+        groups.append((left & np.uint64(0x7F)).astype(np.uint8))
+        left = left >> np.uint64(7)
+        if not left.any():
+            break
+    table = np.stack(groups, axis=1)
+    # The last group of a number is its last one that is not zero; the others are marked.
+    last = table.shape[1] - 1 - (table[:, ::-1] != 0).argmax(axis=1)
+    last[~table.any(axis=1)] = 0
+    place = np.arange(table.shape[1])
+    table[place < last[:, None]] |= 0x80
+    content: bytes = table[place <= last[:, None]].tobytes()
+    return content
+
+
+def _whole(content: bytes) -> CountArray:
+    numbers, number, shift = [], 0, 0
+    for byte in content:
+        number |= (byte & 0x7F) << shift
+        shift += 7
+        if byte < 0x80:
+            numbers.append((number >> 1) ^ -(number & 1))
+            number, shift = 0, 0
+    return np.array(numbers, dtype=np.int64)

@@ -1,0 +1,267 @@
+"""From motions to the data of a page. Nothing is solved here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
+from importlib.metadata import version
+
+import numpy as np
+
+from linkwork.drawing.box import Box
+from linkwork.drawing.captions import printed_name
+from linkwork.drawing.drawn_box import reach_of
+from linkwork.drawing.moving_scene import MovingScene, moving_scene
+from linkwork.drawing.scene import Role
+from linkwork.drawing.theme import DARK, LIGHT, Theme
+from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.errors import InputError
+from linkwork.results.motion import Motion, Series
+from linkwork.results.quantity import Rate
+from linkwork.viewer.packing import Pack, packed
+from linkwork.viewer.page_data import (
+    Column,
+    Equation,
+    LimitMark,
+    MotionData,
+    PackedColumn,
+    PageData,
+    PointData,
+    RoleStyle,
+    RowEvidence,
+    ThemeData,
+)
+from linkwork.viewer.page_shapes import shapes_of, vectors_of
+from linkwork.viewer.play_order import play_order
+
+__all__ = ["FORMAT", "drawn_page", "motion_page"]
+
+#: Of the page data: the front end refuses any other.
+FORMAT = 1
+
+_MARGIN = 0.05  # of the drawing, left free around it
+_COARSE = 0.001  # of a decade: how exactly residuals and radii are kept
+_RATE_DIGITS = 7  # of derivatives
+
+
+def motion_page(
+    motions: Mapping[str, Motion],
+    *,
+    equations: Sequence[tuple[str, str]] = (),
+    like: Sequence[MovingScene] = (),
+) -> PageData:
+    """The data of a page that shows motions of one mechanism.
+
+    Parameters
+    ----------
+    motions : Mapping[str, Motion]
+        By the name of the circuit or configuration; the first is shown first. Those of which no
+        position was found are left out.
+    equations : sequence of (str, str)
+        Labels and MathML of the loop equations.
+    like : sequence of MovingScene
+        The same motions drawn with other dimensions, see
+        :func:`~linkwork.drawing.moving_scene.moving_scene`.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to draw.
+    """
+    shown = {name: motion for name, motion in motions.items() if motion.found.any()}
+    if not shown:
+        raise InputError("there is no motion to show: no position was found")
+    within = Box.around(corner for m in shown.values() for corner in reach_of(m).corners)
+    before = list(like) if len(like) == len(shown) else [None] * len(shown)
+    scenes = [
+        moving_scene(motion, within=within, like=old)
+        for motion, old in zip(shown.values(), before, strict=True)
+    ]
+    return drawn_page(shown, scenes, equations)
+
+
+def drawn_page(
+    motions: Mapping[str, Motion],
+    scenes: Sequence[MovingScene],
+    equations: Sequence[tuple[str, str]] = (),
+    *,
+    pack: Pack = packed,
+) -> PageData:
+    """The data of a page from motions that are drawn already.
+
+    ``pack`` writes the columns: :func:`~linkwork.viewer.packing.unpressed` is quick, for a page
+    that is renewed while a dimension is dragged, and needs eight times the room.
+    """
+    first, measures = next(iter(motions.values())), scenes[0].scene.measures
+    view = Box.around(corner for scene in scenes for corner in scene.view.corners)
+    view = view.grown(_MARGIN * measures.size)
+    lead = next(iter(first.inputs))
+    return PageData(
+        format=FORMAT,
+        version=_version(),
+        title=first.mechanism,
+        length_unit=first.units.length,
+        derivative_unit=first.derivative_unit,
+        input_name=printed_name(lead),
+        input_unit=first.input_units[lead],
+        view=(view.left, view.bottom, view.right, view.top),
+        stroke=measures.stroke,
+        pin=measures.pin,
+        text=measures.text,
+        motions=tuple(
+            _motion(name, motion, scene, pack)
+            for (name, motion), scene in zip(motions.items(), scenes, strict=True)
+        ),
+        light=_theme(LIGHT),
+        dark=_theme(DARK),
+        equations=tuple(Equation(label=label, mathml=mathml) for label, mathml in equations),
+    )
+
+
+@lru_cache
+def _version() -> str:
+    return version("linkwork")
+
+
+def _motion(name: str, motion: Motion, scene: MovingScene, pack: Pack) -> MotionData:
+    order, closed = play_order(motion)
+    everyone = np.ones(len(order), dtype=bool)
+    turns, frames, parts = shapes_of(motion, scene, pack)
+    return MotionData(
+        name=name,
+        summary=_summary(motion),
+        rows=len(motion),
+        order=pack(order.astype(float), everyone, step=1.0),
+        closed=closed,
+        columns=tuple(_columns(motion, pack)),
+        points=tuple(_points(motion, pack)),
+        turns=turns,
+        frames=frames,
+        parts=parts,
+        vectors=tuple(vectors_of(motion)),
+        driven=tuple(part.name for part in motion.skeleton.driven),
+        evidence=_evidence(motion, pack),
+        limits=tuple(_limits(motion)),
+    )
+
+
+def _summary(motion: Motion) -> str:
+    """How much of it was found and proved, in a line."""
+    found, proved = int(motion.found.sum()), int(motion.certified.sum())
+    text = f"{found} of {len(motion)} rows found"
+    if proved == found:
+        return f"{text}, all proved"
+    return f"{text}, {proved} proved" if proved else text
+
+
+def _columns(motion: Motion, pack: Pack) -> Iterator[Column]:
+    found = motion.found
+    for name, values in motion.inputs.items():
+        yield Column(
+            name=name,
+            shown=printed_name(name),
+            unit=motion.input_units[name],
+            group="input",
+            values=pack(values, found),
+            first=None,
+            first_unit="",
+        )
+    everything: dict[str, tuple[str, Series]] = {}
+    everything |= {name: ("unknown", series) for name, series in motion.unknowns.items()}
+    everything |= {name: ("unknown", motion.links[name]) for name in motion.riding}
+    everything |= {name: ("output", series) for name, series in motion.outputs.items()}
+    for name, (group, series) in everything.items():
+        kind = series.quantity.kind
+        yield Column(
+            name=name,
+            shown=printed_name(name),
+            unit=motion.units.of(kind),
+            group=group,
+            values=pack(series.value, found),
+            first=_rate(series.first, found, pack),
+            first_unit=Rate.FIRST.unit(kind, motion.units, motion.derivative_unit),
+        )
+
+
+def _points(motion: Motion, pack: Pack) -> Iterator[PointData]:
+    still, found = set(motion.skeleton.fixed), motion.found
+    for name, (x, y) in motion.points.items():
+        yield PointData(
+            name=name,
+            shown=printed_name(name),
+            drawn=name not in still,
+            x=pack(x.value, found),
+            y=pack(y.value, found),
+            dx=_rate(x.first, found, pack),
+            dy=_rate(y.first, found, pack),
+        )
+
+
+def _rate(values: Array, found: BoolArray, pack: Pack) -> PackedColumn:
+    """A derivative, to seven digits; infinite ones (at dead points) count as 0."""
+    finite = np.where(np.isfinite(values), values, 0.0)[found]
+    largest = float(np.abs(finite).max(initial=0.0))
+    # Beside a dead point derivatives grow without bound: digits are counted from the usual ones.
+    usual = min(largest, 1e3 * float(np.median(np.abs(finite)))) or largest
+    step = 10.0 ** np.floor(np.log10(usual) - _RATE_DIGITS) if usual else 1.0
+    clipped = np.clip(np.where(np.isfinite(values), values, 0.0), -1e4 * usual, 1e4 * usual)
+    return pack(clipped, found, step=float(step))
+
+
+def _evidence(motion: Motion, pack: Pack) -> RowEvidence:
+    found, every = motion.found, np.ones(len(motion), dtype=bool)
+    status, status_texts = _numbered([s.value for s in motion.status])
+    proof, proof_texts = _numbered([c.value for c in motion.certification])
+    branch, branch_names = _numbered(motion.branch)
+    return RowEvidence(
+        found=pack(found.astype(float), every, step=1.0),
+        status=pack(status, every, step=1.0),
+        status_texts=status_texts,
+        certification=pack(proof, every, step=1.0),
+        certification_texts=proof_texts,
+        certified=pack(motion.certified.astype(float), every, step=1.0),
+        residual_log10=_log10(motion.residual, motion, pack),
+        radius_log10=_log10(motion.radius, motion, pack),
+        iterations=pack(motion.iterations.astype(float), found, step=1.0),
+        branch=pack(branch, every, step=1.0),
+        branch_names=branch_names,
+    )
+
+
+def _log10(values: Array, motion: Motion, pack: Pack) -> PackedColumn:
+    known = np.where(np.isfinite(values) & (values > 0), values, 1e-99)
+    return pack(np.log10(known), motion.found, step=_COARSE)
+
+
+def _numbered(texts: Iterable[str]) -> tuple[Array, tuple[str, ...]]:
+    listed = list(texts)
+    names = list(dict.fromkeys(listed))
+    return np.array([names.index(text) for text in listed], dtype=float), tuple(names)
+
+
+def _limits(motion: Motion) -> Iterator[LimitMark]:
+    for row, text in enumerate(motion.limit):
+        if text and motion.found[row]:
+            yield LimitMark(row=row, text=text)
+
+
+def _theme(theme: Theme) -> ThemeData:
+    return ThemeData(
+        background=theme.background,
+        ink=theme.ink,
+        faint=theme.faint,
+        driven=theme.driven,
+        tones=theme.tones,
+        styles=tuple(
+            RoleStyle(
+                role=role.name.lower(),
+                layer=role.layer,
+                line=style.line,
+                width=style.width,
+                fill=style.fill,
+                opacity=style.opacity,
+                dashes=style.dashes,
+            )
+            for role, style in ((role, theme.styles[role]) for role in Role)
+        ),
+    )

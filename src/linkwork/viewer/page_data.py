@@ -1,0 +1,220 @@
+"""What the front end is given: plain data, from which its TypeScript types are generated.
+
+Every class here becomes an interface of ``frontend/src/page_data.ts`` (``scripts/frontend types``).
+Angles of frames are radians; every other number is in the unit that its column names.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = [
+    "Column",
+    "Equation",
+    "FrameData",
+    "LimitMark",
+    "MotionData",
+    "PackedColumn",
+    "PageData",
+    "Part",
+    "PointData",
+    "RoleStyle",
+    "RowEvidence",
+    "ThemeData",
+    "TurnData",
+    "VectorData",
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PackedColumn:
+    """Numbers of the rows that were found: whole multiples of ``step``, differenced ``order``
+    times, zigzag integers of seven bits a byte, in base64. Order -1: plain floats of eight bytes,
+    the lowest first.
+    """
+
+    step: float
+    order: int
+    content: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Column:
+    """A quantity over the rows: its name as printed, its unit; ``group`` says where it is listed:
+    ``input``, ``unknown``, ``output``.
+    """
+
+    name: str
+    shown: str
+    unit: str
+    group: str
+    values: PackedColumn
+    first: PackedColumn | None
+    first_unit: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointData:
+    """A point: its coordinates and their derivatives by the leading input."""
+
+    name: str
+    shown: str
+    drawn: bool
+    x: PackedColumn
+    y: PackedColumn
+    dx: PackedColumn
+    dy: PackedColumn
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurnData:
+    """The angle [rad] of a link or line that something turns with."""
+
+    name: str
+    angle: PackedColumn
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrameData:
+    """What carries a shape: numbers of a point and of a turn; -1 for none."""
+
+    origin: int
+    turn: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    """A shape: ``line``, ``area``, ``disc``, ``strokes`` or ``text``.
+
+    ``points`` are x, y, x, y, … in its frame (``frame`` ≥ 0) or in the plane (-1); of a disc its
+    centre, of a text its anchor. A shape of its own course (``frame`` -2) has packed x and y of
+    each corner, and ``shown`` (1 or 0) in every row. Lengths are in the mechanism's unit.
+    """
+
+    kind: str
+    role: str
+    of: str
+    tone: int
+    frame: int
+    points: tuple[float, ...]
+    radius: float
+    head: tuple[float, ...]
+    text: str
+    offset: tuple[float, ...]
+    height: float
+    align: int
+    course: tuple[PackedColumn, ...]
+    shown: PackedColumn | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class VectorData:
+    """A vector from one point to another, by their numbers, with its name."""
+
+    name: str
+    start: int
+    end: int
+    tone: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class LimitMark:
+    """A row at which something turns back or branches cross."""
+
+    row: int
+    text: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class RowEvidence:
+    """What is known of every row; ``found`` is 1 or 0, statuses number ``texts``."""
+
+    found: PackedColumn
+    status: PackedColumn
+    status_texts: tuple[str, ...]
+    certification: PackedColumn
+    certification_texts: tuple[str, ...]
+    certified: PackedColumn
+    residual_log10: PackedColumn
+    radius_log10: PackedColumn
+    iterations: PackedColumn
+    branch: PackedColumn
+    branch_names: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionData:
+    """One circuit or branch as it is shown.
+
+    ``order`` are the found rows in the order in which the mechanism passes them; ``closed`` tells
+    that the last is followed by the first.
+    """
+
+    name: str
+    summary: str
+    rows: int
+    order: PackedColumn
+    closed: bool
+    columns: tuple[Column, ...]
+    points: tuple[PointData, ...]
+    turns: tuple[TurnData, ...]
+    frames: tuple[FrameData, ...]
+    parts: tuple[Part, ...]
+    vectors: tuple[VectorData, ...]
+    driven: tuple[str, ...]
+    evidence: RowEvidence
+    limits: tuple[LimitMark, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoleStyle:
+    """How a role is drawn: colours (``tone``: that of the link; "" for none), widths in strokes."""
+
+    role: str
+    layer: int
+    line: str
+    width: float
+    fill: str
+    opacity: float
+    dashes: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ThemeData:
+    """Colours of a page, light or dark."""
+
+    background: str
+    ink: str
+    faint: str
+    driven: str
+    tones: tuple[str, ...]
+    styles: tuple[RoleStyle, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Equation:
+    """A loop equation: its label and its MathML."""
+
+    label: str
+    mathml: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class PageData:
+    """Everything a page shows. ``view`` is left, bottom, right, top of the drawing."""
+
+    format: int
+    version: str
+    title: str
+    length_unit: str
+    derivative_unit: str
+    input_name: str
+    input_unit: str
+    view: tuple[float, ...]
+    stroke: float
+    pin: float
+    text: float
+    motions: tuple[MotionData, ...]
+    light: ThemeData
+    dark: ThemeData
+    equations: tuple[Equation, ...]

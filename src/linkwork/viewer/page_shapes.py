@@ -1,0 +1,143 @@
+"""The shapes of a moving scene, and its frames, as the front end reads them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from linkwork.drawing.attachment import STILL, Frame
+from linkwork.drawing.captions import printed_name
+from linkwork.drawing.moving_scene import Moving, MovingScene
+from linkwork.drawing.scene import XY, Arc, Disc, Hatch, Polygon, Polyline, Primitive, Text
+from linkwork.foundation.arrays import BoolArray, ComplexArray
+from linkwork.mechanism.linkage import GROUND
+from linkwork.results.motion import Motion
+from linkwork.viewer.packing import Pack
+from linkwork.viewer.page_data import FrameData, PackedColumn, Part, TurnData, VectorData
+
+__all__ = ["OWN_COURSE", "shapes_of", "vectors_of"]
+
+#: The frame of a shape that changes its form.
+OWN_COURSE = -2
+
+_DIGITS = 7  # of coordinates, counted from the size of the drawing
+_KINDS: dict[type[Primitive], str] = {
+    Arc: "line", Polyline: "line", Polygon: "area", Disc: "disc", Hatch: "strokes", Text: "text"
+}  # fmt: skip
+
+
+def shapes_of(
+    motion: Motion, scene: MovingScene, pack: Pack
+) -> tuple[tuple[TurnData, ...], tuple[FrameData, ...], tuple[Part, ...]]:
+    """What turns, the frames that carry something, and all shapes from the bottom to the top."""
+    used = dict.fromkeys(part.frame for part in scene.parts)
+    carriers = [frame for frame in used if frame is not None and frame != STILL]
+    turns = list(dict.fromkeys(frame.turn for frame in carriers if frame.turn))
+    points = list(motion.points)
+    return (
+        tuple(
+            TurnData(name=name, angle=pack(scene.frames.turns[name], scene.found)) for name in turns
+        ),
+        tuple(
+            FrameData(
+                origin=points.index(frame.origin) if frame.origin else -1,
+                turn=turns.index(frame.turn) if frame.turn else -1,
+            )
+            for frame in carriers
+        ),
+        tuple(_part(part, scene, carriers, pack) for part in scene.parts),
+    )
+
+
+def _part(part: Moving, scene: MovingScene, carriers: list[Frame], pack: Pack) -> Part:
+    shape = part.shape
+    number = OWN_COURSE
+    if part.frame is not None:
+        number = -1 if part.frame == STILL else carriers.index(part.frame)
+
+    def local(places: tuple[XY, ...]) -> tuple[float, ...]:
+        """x, y, x, y, … in the frame of the part."""
+        line = np.array([complex(*place) for place in places])
+        if part.frame is not None and len(line):
+            line = scene.frames.local(part.frame, line[None], np.array([scene.row]))[0]
+        return _flat(line, scene.scene.measures.size)
+
+    text = shape if isinstance(shape, Text) else None
+    return Part(
+        kind=_KINDS[type(shape)],
+        role=shape.role.name.lower(),
+        of=shape.of,
+        tone=shape.tone,
+        frame=number,
+        points=local(_places(shape)) if part.frame is not None else (),
+        radius=shape.radius if isinstance(shape, Disc) else 0.0,
+        head=local(shape.arrow_head) if isinstance(shape, Polyline | Arc) else (),
+        text=text.text if text else "",
+        offset=text.offset if text else (),
+        height=text.height if text else 0.0,
+        align=text.align if text else 0,
+        course=() if part.course is None else tuple(_course(part.course, scene.found, pack)),
+        shown=None if part.course is None else _shown(part.course, pack),
+    )
+
+
+def _places(shape: Primitive) -> tuple[XY, ...]:
+    """The points that a shape is drawn through."""
+    match shape:
+        case Polyline() | Arc():
+            return shape.shaft
+        case Polygon():
+            return shape.points
+        case Disc():
+            return (shape.centre,)
+        case Hatch():
+            return shape.outline
+        case Text():
+            return (shape.anchor,)
+        case _:
+            raise TypeError(f"{type(shape).__name__} is not known to pages")
+
+
+def _flat(line: ComplexArray, size: float) -> tuple[float, ...]:
+    digits = _DIGITS - math.ceil(math.log10(size))
+    pairs = np.stack((line.real, line.imag), axis=1).ravel()
+    return tuple(float(number) + 0.0 for number in np.round(pairs, digits))
+
+
+def _course(course: ComplexArray, found: BoolArray, pack: Pack) -> Iterator[PackedColumn]:
+    for corner in course.T:
+        yield pack(corner.real, found)
+        yield pack(corner.imag, found)
+
+
+def _shown(course: ComplexArray, pack: Pack) -> PackedColumn:
+    there = np.isfinite(course[:, 0].real)
+    return pack(there.astype(float), np.ones(len(there), dtype=bool), step=1.0)
+
+
+def vectors_of(motion: Motion) -> Iterator[VectorData]:
+    """The vectors that loops are made of: along links, cylinders, and the lines of sliders; named
+    by their two points.
+    """
+    skeleton, points = motion.skeleton, list(motion.points)
+    driven = {part.name for part in skeleton.driven}
+    free = [bar.name for bar in skeleton.bars if bar.name not in driven]
+    tone = dict.fromkeys(driven, 0) | {name: k for k, name in enumerate(free, 1)}
+    pairs: list[tuple[str, str, str]] = []
+    for bar in skeleton.bars:
+        start, *others = dict.fromkeys(bar.points)
+        pairs += [(bar.name, start, other) for other in others]
+    pairs += [(strut.name, *strut.between) for strut in skeleton.struts]
+    pairs += [(guide.name, guide.line[0], guide.point) for guide in skeleton.guides]
+    ground = [name for name in skeleton.fixed if any(name in bar.points for bar in skeleton.bars)]
+    pairs += [(GROUND, ground[0], other) for other in ground[1:]]
+    for name, start, end in pairs:
+        if start in points and end in points:
+            yield VectorData(
+                name=printed_name(start) + printed_name(end),
+                start=points.index(start),
+                end=points.index(end),
+                tone=tone.get(name, 0 if name != GROUND else -1),
+            )

@@ -1,0 +1,84 @@
+"""The rows of a motion in the order in which the mechanism passes them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwork.foundation.arrays import BoolArray, ComplexArray, CountArray
+from linkwork.results.motion import Motion
+
+__all__ = ["play_order"]
+
+_SAME = 1e-9  # of the way of all points: positions nearer than this are one
+_MEETING = 1.5  # largest steps between rows: runs whose ends are nearer than this are joined
+
+
+def play_order(motion: Motion) -> tuple[CountArray, bool]:
+    """Found rows in order, and whether the last is followed by the first.
+
+    A table starts somewhere on a circuit, may leave a gap where the input reaches no position, and
+    lists further branches after it. Runs of neighbouring rows are put together where their ends
+    meet; runs that meet nothing follow each other.
+    """
+    places = _places(motion)
+    runs = _runs(places, motion.found)
+    near = _MEETING * max((_largest_step(places[run]) for run in runs), default=0.0)
+    chain = [runs.pop(0)]
+    while runs:
+        last, first = places[chain[-1][-1]], places[chain[0][0]]
+        after = [_apart(places[run[0]], last) for run in runs]
+        back = [_apart(places[run[-1]], last) for run in runs]
+        before = [_apart(places[run[-1]], first) for run in runs]
+        k = int(np.argmin(np.minimum(np.minimum(after, back), before)))
+        if before[k] < min(after[k], back[k]) and before[k] <= near:
+            chain.insert(0, runs.pop(k))
+        elif back[k] < after[k] and back[k] <= near:
+            chain.append(runs.pop(k)[::-1])
+        else:
+            k = k if after[k] <= near else 0
+            chain.append(runs.pop(k))
+    closed = _apart(places[chain[-1][-1]], places[chain[0][0]]) <= near
+    order = np.concatenate(chain)
+    order = order[_passed_once(order, places)]
+    if closed and len(order) > 2 and _apart(places[order[-1]], places[order[0]]) < 1e-3 * near:
+        order = order[:-1]
+    if closed:
+        order = np.roll(order, -int(np.argmin(order)))
+    return order, bool(closed and len(order) > 2)
+
+
+def _places(motion: Motion) -> ComplexArray:
+    """Where everything is, shape (N, m): points, and the tips of links that may turn about one."""
+    points = [motion.trace(name) for name in motion.points]
+    known = np.concatenate(points)[np.isfinite(np.concatenate(points))]
+    size = float(np.abs(known - known[:1]).max(initial=0.0)) or 1.0
+    radians = motion.units.angle.radians
+    tips = [size * np.exp(1j * series.value * radians) for series in motion.links.values()]
+    return np.stack([*points, *tips], axis=1)
+
+
+def _passed_once(order: CountArray, places: ComplexArray) -> BoolArray:
+    """Which rows stay: where runs meet in the same position, the row that is listed first."""
+    there = places[order]
+    span = float(np.abs(there - there[0]).max())
+    kept = np.ones(len(order), dtype=bool)
+    for k in np.flatnonzero(np.abs(np.diff(there, axis=0)).max(axis=1) <= _SAME * span):
+        kept[k if order[k] > order[k + 1] else k + 1] = False
+    return kept
+
+
+def _runs(places: ComplexArray, found: BoolArray) -> list[CountArray]:
+    """Neighbouring found rows, broken also where the mechanism jumps."""
+    rows = np.flatnonzero(found)
+    steps = np.abs(np.diff(places[rows], axis=0)).max(axis=1, initial=0.0)
+    usual = float(np.quantile(steps, 0.95)) if len(steps) else 0.0
+    breaks = (np.diff(rows) > 1) | (steps > 8 * max(usual, 1e-300))
+    return list(np.split(rows, np.flatnonzero(breaks) + 1))
+
+
+def _largest_step(places: ComplexArray) -> float:
+    return float(np.abs(np.diff(places, axis=0)).max(initial=0.0))
+
+
+def _apart(one: ComplexArray, other: ComplexArray) -> float:
+    return float(np.abs(one - other).max())

@@ -1,0 +1,58 @@
+"""Pages in a real browser: the Chromium of the system, steered by Playwright."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+import linkwork as lw
+from linkwork.viewer import motion_page, offline_page
+
+_NAMES = ("chromium", "chromium-browser", "google-chrome")
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[object]:
+    """A headless Chromium. Where there is none the test is skipped, but never in CI."""
+    program = next(filter(None, map(shutil.which, _NAMES)), None)
+    if program is None:
+        if os.environ.get("CI") == "true":
+            pytest.fail(f"CI needs a browser: none of {', '.join(_NAMES)} is on the PATH")
+        pytest.skip(f"none of {', '.join(_NAMES)} is on the PATH (apt-get install chromium)")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        found = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        yield found
+        found.close()
+
+
+@pytest.fixture
+def open_page(browser: object, tmp_path: Path) -> Iterator[Callable[..., object]]:
+    """Opens an offline page from a file, without a network; fails on any message of the console."""
+    said: list[str] = []
+    contexts = []
+
+    def opened(motions: dict[str, lw.Motion], **options: object) -> object:
+        target = tmp_path / "page.html"
+        equations = options.pop("equations", ())
+        target.write_text(offline_page(motion_page(motions, equations=equations)), "utf-8")
+        settings = {"reduced_motion": "reduce", "viewport": {"width": 1280, "height": 800}}
+        context = browser.new_context(offline=True, **(settings | options))  # type: ignore[attr-defined]
+        contexts.append(context)
+        page = context.new_page()
+        page.on("console", lambda message: said.append(f"{message.type}: {message.text}"))
+        page.on("pageerror", lambda error: said.append(str(error)))
+        page.on("request", lambda r: None if r.url.startswith("file:") else said.append(r.url))
+        page.goto(target.as_uri())
+        page.wait_for_selector(".lw[data-row]")
+        return page
+
+    yield opened
+    for context in contexts:
+        context.close()
+    assert said == []

@@ -1,0 +1,323 @@
+"""The page in a real browser: what a person does with it, and the numbers it shows."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.drawing import render
+from linkwork.drawing.moving_scene import moving_scene
+from linkwork.drawing.scene import Disc, Role
+from linkwork.viewer import drawn_page, motion_page, offline_page
+from linkwork.viewer.offline_page import page_json
+from linkwork.viewer.packing import unpressed
+
+Open = Callable[..., Any]
+
+
+@pytest.fixture(scope="module")
+def jansen() -> lw.Motion:
+    return lw.example("jansen-leg").cycle()
+
+
+@pytest.fixture(scope="module")
+def limited() -> lw.Motion:
+    return lw.example("rapier-drive-limited").cycle()
+
+
+def _row(page: Any) -> int:
+    return int(page.locator(".lw").get_attribute("data-row"))
+
+
+def _until(page: Any, condition: str) -> None:
+    """Wait until an expression holds; the page's own policy forbids Playwright's way of waiting."""
+    for _ in range(200):
+        if page.evaluate(condition):
+            return
+        page.wait_for_timeout(25)
+    pytest.fail(f"never came true: {condition}")
+
+
+def _number(text: str) -> float:
+    return float(re.sub(r"[^0-9.\-].*$", "", text.replace("\u2212", "-")))
+
+
+def _cells(page: Any, name: str) -> list[str]:
+    return (
+        page.locator("tr", has=page.get_by_role("rowheader", name=name, exact=True))
+        .first.locator("td")
+        .all_inner_texts()
+    )
+
+
+def _pin(page: Any, name: str, motion: lw.Motion) -> tuple[float, float]:
+    """The place of a moving point on the screen."""
+    handle = page.locator(f'.lw-handle[data-point="{list(motion.points).index(name)}"]')
+    box = handle.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def test_table_shows_the_numbers_of_the_library(open_page: Open, jansen: lw.Motion) -> None:
+    page = open_page({"motion": jansen})
+    for row in (0, 123, 360):
+        page.evaluate(f"linkwork.goToRow({row % 360})")
+        assert _number(_cells(page, "foot")[0]) == pytest.approx(
+            jansen["foot"][row % 360], rel=1e-5
+        )
+        assert _number(_cells(page, "foot")[1]) == pytest.approx(
+            jansen["foot.d1"][row % 360], rel=1e-3
+        )
+        assert _number(_cells(page, "F")[0]) == pytest.approx(jansen["F.x"][row % 360], rel=1e-5)
+    assert page.locator('[data-fact="position"]').inner_text() == "position found"
+    assert "a true position lies within" in page.locator('[data-fact="proof"]').inner_text()
+
+
+def test_dragging_the_crank_pin_around_turns_the_crank(open_page: Open, jansen: lw.Motion) -> None:
+    page = open_page({"motion": jansen})
+    x0, y0 = _pin(page, "A", jansen)
+    centre = page.locator('circle[data-of="O"][data-role="pin"]').bounding_box()
+    ox, oy = centre["x"] + centre["width"] / 2, centre["y"] + centre["height"] / 2
+    radius, start = math.hypot(x0 - ox, y0 - oy), math.atan2(oy - y0, x0 - ox)
+    page.mouse.move(x0, y0)
+    page.mouse.down()
+    for degrees in range(0, 451, 15):
+        angle = start + math.radians(degrees)
+        page.mouse.move(ox + 1.3 * radius * math.cos(angle), oy - 1.3 * radius * math.sin(angle))
+    page.mouse.up()
+    assert _row(page) == pytest.approx(90, abs=2)
+
+
+def test_dragging_goes_on_through_a_dead_point(open_page: Open, limited: lw.Motion) -> None:
+    page = open_page({"motion": limited})
+    rows = []
+    turning = limited["θ12"]
+    ox, oy = _centre(page, "A0")
+    x, y = _pin(page, "A", limited)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    radius = math.hypot(x - ox, y - oy)
+    for degrees in [*range(0, 161, 5), *range(160, 99, -5)]:
+        angle = math.radians(degrees)
+        page.mouse.move(ox + radius * math.cos(angle), oy - radius * math.sin(angle))
+        rows.append(_row(page))
+    page.mouse.up()
+    assert turning[rows].max() == pytest.approx(149.617, abs=0.1)  # the dead point is reached
+    assert limited.branch[rows[0]] != limited.branch[rows[-1]]  # and passed
+    assert turning[rows[-1]] == pytest.approx(100, abs=3)
+
+
+def _centre(page: Any, name: str) -> tuple[float, float]:
+    box = page.locator(f'circle[data-of="{name}"][data-role="pin"]').bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def test_keys_step_play_and_go_to_the_ends(open_page: Open, jansen: lw.Motion) -> None:
+    page = open_page({"motion": jansen})
+    keys = page.keyboard
+    rows = []
+    for key in ("ArrowRight", "Shift+ArrowRight", "ArrowLeft", "End", "ArrowRight", "Home"):
+        keys.press(key)
+        rows.append(_row(page))
+    assert rows == [1, 11, 10, 359, 0, 0]
+    play = page.get_by_role("button", name="Play")
+    keys.press("Space")
+    _until(page, "Number(document.querySelector('.lw').dataset.row) > 5")
+    keys.press("Space")
+    assert play.is_visible()
+    resting = _row(page)
+    page.wait_for_timeout(120)
+    assert _row(page) == resting
+
+
+def test_motion_is_still_where_reduced_motion_is_preferred(
+    open_page: Open, jansen: lw.Motion
+) -> None:
+    page = open_page({"motion": jansen})
+    page.wait_for_timeout(150)
+    assert _row(page) == 0
+    moving = open_page({"motion": jansen}, reduced_motion="no-preference")
+    _until(moving, "Number(document.querySelector('.lw').dataset.row) > 2")
+
+
+def test_choosing_a_circuit_shows_it_at_the_same_input(open_page: Open) -> None:
+    four_bar = lw.example("four-bar")
+    motions = four_bar.cycles()
+    assert len(motions) == 2
+    page = open_page(motions)
+    page.evaluate("linkwork.goToRow(75)")
+    page.get_by_label("Circuit").select_option("circuit 2")
+    (name,) = [n for n in motions["circuit 2"].unknowns if n != "coupler"]
+    assert _row(page) == 75
+    assert _number(_cells(page, name)[0]) == pytest.approx(motions["circuit 2"][name][75], rel=1e-5)
+    assert motions["circuit 1"][name][75] != pytest.approx(motions["circuit 2"][name][75], rel=1e-2)
+    page.get_by_label("Circuit").evaluate("choice => choice.blur()")
+    page.keyboard.press("PageUp")
+    assert page.get_by_label("Circuit").input_value() == "0"
+
+
+def test_paths_names_vectors_and_velocities_can_be_shown_and_hidden(
+    open_page: Open, jansen: lw.Motion
+) -> None:
+    page = open_page({"motion": jansen})
+    page.evaluate("linkwork.goToRow(40)")
+    trace, name = page.locator(".r-trace").first, page.locator("text.r-label").first
+    for what, shape in (("Paths", trace), ("Names", name)):
+        assert shape.evaluate("one => getComputedStyle(one).display") != "none"
+        page.get_by_label(what).uncheck()
+        assert shape.evaluate("one => getComputedStyle(one).display") == "none"
+    page.get_by_label("Velocities").check()
+    shaft = page.locator(".lw-velocities g").nth(_moving(jansen).index("F")).locator(".shaft")
+    x0, y0, x1, y1 = map(float, re.findall(r"-?[\d.]+(?:e-?\d+)?", shaft.get_attribute("d")))
+    velocity = complex(jansen["F.x.d1"][40], jansen["F.y.d1"][40])
+    drawn = complex(x1 - x0, y0 - y1)
+    assert drawn / abs(drawn) == pytest.approx(velocity / abs(velocity), abs=1e-4)
+    page.get_by_label("Vectors").check()
+    assert page.locator(".lw-vectors .shaft").first.is_visible()
+
+
+def _moving(motion: lw.Motion) -> list[str]:
+    return [name for name in motion.points if name not in motion.skeleton.fixed]
+
+
+def test_scrubbing_and_clicking_a_plot_choose_the_row(open_page: Open, jansen: lw.Motion) -> None:
+    page = open_page({"motion": jansen})
+    page.get_by_label("Position of the motion").fill("200")
+    assert _row(page) == 200
+    plot = page.locator(".lw-chart svg").first
+    box = plot.bounding_box()
+    plot.click(
+        position={"x": box["width"] * (52 + 0.25 * (420 - 72)) / 420, "y": box["height"] / 2}
+    )
+    assert _row(page) == pytest.approx(90, abs=25)
+    dot = page.locator(".lw-dot").first.bounding_box()
+    line = page.locator(".lw-now").first.bounding_box()
+    assert dot["x"] + dot["width"] / 2 == pytest.approx(line["x"] + line["width"] / 2, abs=1)
+
+
+def test_svg_png_and_page_show_the_same_coordinates(open_page: Open, jansen: lw.Motion) -> None:
+    moving = moving_scene(jansen)
+    row, size = 77, moving.scene.measures.size
+    page = open_page({"motion": jansen})
+    page.evaluate(f"linkwork.goToRow({row})")
+    shown = page.evaluate(_PINS)
+    scene = moving.at(row)
+    pins = {p.of: p.centre for p in scene.select(Disc) if p.role in (Role.PIN, Role.TRACED)}
+    assert shown.keys() == pins.keys()
+    for name, place in pins.items():
+        assert shown[name] == pytest.approx(place, abs=2e-6 * size)
+    # In the SVG file the same points, up to one scale and one shift for all of them.
+    text = render(scene, "svg").decode()
+    written = {
+        name: _svg_centre(text, f"{'traced' if name == 'F' else 'pin'}:{name}") for name in pins
+    }
+    there = np.array([complex(*written[name]) for name in pins])
+    here = np.array([complex(x, -y) for x, y in pins.values()])
+    scale = (there[1] - there[0]) / (here[1] - here[0])
+    assert abs(scale.imag) <= 1e-6 * abs(scale)
+    assert there == pytest.approx(there[0] + scale * (here - here[0]), abs=1e-4)
+
+
+_PINS = """() => {
+  const svg = document.querySelector('.lw-drawing');
+  const back = svg.getScreenCTM().inverse();
+  const found = {};
+  for (const one of svg.querySelectorAll('circle[data-role=pin], circle[data-role=traced]')) {
+    const local = new DOMPoint(one.cx.baseVal.value, one.cy.baseVal.value);
+    const place = local.matrixTransform(back.multiply(one.getScreenCTM()));
+    found[one.dataset.of] = [place.x, -place.y];
+  }
+  return found;
+}"""
+
+
+def _svg_centre(text: str, gid: str) -> tuple[float, float]:
+    """The middle of the outline of a disc in an SVG file."""
+    path = re.search(rf'<g id="{re.escape(gid)}">\s*<path d="([^"]+)"', text)
+    assert path is not None, gid
+    numbers = np.array(re.findall(r"-?\d+\.?\d*", path[1]), dtype=float).reshape(-1, 2)
+    low, high = numbers.min(axis=0), numbers.max(axis=0)
+    x, y = (low + high) / 2
+    return float(x), float(y)
+
+
+def test_page_works_on_a_phone_by_touch(open_page: Open, jansen: lw.Motion) -> None:
+    page = open_page({"motion": jansen}, viewport={"width": 390, "height": 844}, has_touch=True)
+    wide = page.evaluate("document.documentElement.scrollWidth")
+    assert wide <= 390
+    page.get_by_role("button", name="Play").tap()
+    _until(page, "Number(document.querySelector('.lw').dataset.row) > 2")
+    button = page.get_by_role("button", name="Pause").bounding_box()
+    assert min(button["width"], button["height"]) >= 44
+
+
+def test_page_tells_a_screen_reader_where_the_motion_rests(
+    open_page: Open, jansen: lw.Motion
+) -> None:
+    page = open_page({"motion": jansen})
+    page.keyboard.press("Shift+ArrowRight")
+    _until(page, "document.querySelector('[aria-live]').textContent.includes('10°')")
+    assert page.get_by_role("img", name="Jansen leg (Strandbeest): crank 10°").count() == 1
+    scrub = page.get_by_label("Position of the motion")
+    assert scrub.get_attribute("aria-valuetext") == "crank = 10°, 11 of 360"
+
+
+def test_page_follows_the_colours_of_the_system(open_page: Open, jansen: lw.Motion) -> None:
+    colour = "getComputedStyle(document.querySelector('.lw')).backgroundColor"
+    assert open_page({"motion": jansen}).evaluate(colour) == "rgb(255, 255, 255)"
+    page = open_page({"motion": jansen}, color_scheme="dark")
+    dark = page.evaluate(colour)
+    assert dark != "rgb(255, 255, 255)"
+    page.get_by_role("button", name="Light or dark").click()
+    assert page.evaluate(colour) == "rgb(255, 255, 255)"
+
+
+def test_equations_are_set_as_mathematics(open_page: Open, jansen: lw.Motion) -> None:
+    equations = lw.example("jansen-leg").equations().mathml()
+    page = open_page({"motion": jansen}, equations=equations)
+    assert page.locator(".lw-equation math msup").count() > len(equations)
+
+
+def test_pages_are_small(jansen: lw.Motion) -> None:
+    mechanism = lw.example("jansen-leg")
+    equations = mechanism.equations().mathml()
+    assert len(offline_page(motion_page({"motion": jansen}, equations=equations))) <= 400_000
+    everything = motion_page(mechanism.cycles(certify=False), equations=equations)
+    assert len(everything.motions) == 6
+    assert len(offline_page(everything)) <= 1_000_000
+
+
+def test_names_of_a_mechanism_cannot_break_the_page(open_page: Open) -> None:
+    nasty = "</title></script><script>document.title='broken'</script> & \"<b>"
+    motion = lw.example("four-bar").changed(name=nasty).cycle()
+    page = open_page({"motion": motion})
+    assert page.title() == nasty
+    assert page.get_by_role("heading", level=1).inner_text() == nasty
+
+
+def test_other_data_take_the_place_of_the_old_ones(open_page: Open, jansen: lw.Motion) -> None:
+    page = open_page({"motion": jansen})
+    page.evaluate("linkwork.goToRow(50)")
+    lengths = {**lw.example("jansen-leg").description.lengths, "O A": 14.0}
+    changed = lw.example("jansen-leg").changed(lengths=lengths).cycle()
+    drawn = moving_scene(changed, like=moving_scene(jansen))
+    data = drawn_page({"motion": changed}, [drawn], pack=unpressed)
+    page.evaluate(f"linkwork.update({page_json(data)})")
+    assert _row(page) == 50
+    assert _number(_cells(page, "foot")[0]) == pytest.approx(changed["foot"][50], rel=1e-5)
+    assert _number(_cells(page, "foot")[0]) != pytest.approx(jansen["foot"][50], rel=1e-3)
+
+
+def test_pages_of_another_format_are_refused(open_page: Open, jansen: lw.Motion) -> None:
+    data = page_json(replace(motion_page({"motion": jansen}), format=99))
+    page = open_page({"motion": jansen})
+    said = page.evaluate(
+        f"(() => {{ try {{ linkwork.update({data}) }} catch (e) {{ return e.message }} }})()"
+    )
+    assert said == "this front end reads page data of format 1, not 99"

@@ -1,0 +1,54 @@
+"""Packed columns come back as they went in, to ten digits."""
+
+from __future__ import annotations
+
+import base64
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwork.viewer.packing import packed, unpacked, unpressed
+
+_NUMBERS = st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=60)
+
+
+@given(_NUMBERS)
+def test_columns_come_back(numbers: list[float]) -> None:
+    values = np.array(numbers)
+    found = np.ones(len(values), dtype=bool)
+    back = unpacked(packed(values, found), found)
+    assert np.abs(back - values).max() <= 2.0**-33 * max(np.abs(values).max(), 1e-300)
+
+
+@given(_NUMBERS, st.data())
+def test_rows_without_a_position_stay_empty(numbers: list[float], data: st.DataObject) -> None:
+    values = np.array(numbers)
+    found = np.array(data.draw(st.lists(st.booleans(), min_size=len(values), max_size=len(values))))
+    back = unpacked(packed(np.where(found, values, np.nan), found), found)
+    assert np.isnan(back).tolist() == (~found).tolist()
+
+
+def test_smooth_columns_need_little_more_than_a_byte_a_row() -> None:
+    turn = np.radians(np.arange(361.0))
+    column = packed(40 * np.cos(turn) + 3 * np.sin(3 * turn), np.ones(361, dtype=bool))
+    assert len(base64.b64decode(column.content)) < 1.6 * 361
+
+
+def test_whole_numbers_are_kept_exactly() -> None:
+    values = np.array([0.0, 360.0, -7.0, 2.0**40])
+    column = packed(values, np.ones(4, dtype=bool), step=1.0)
+    assert unpacked(column, np.ones(4, dtype=bool)).tolist() == values.tolist()
+
+
+def test_a_step_that_is_too_fine_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"step 1e-12 is too fine for values up to 1e\+06"):
+        packed(np.array([1e6]), np.ones(1, dtype=bool), step=1e-12)
+
+
+@given(_NUMBERS)
+def test_plain_columns_come_back_exactly(numbers: list[float]) -> None:
+    values = np.array(numbers)
+    found = np.ones(len(values), dtype=bool)
+    assert unpacked(unpressed(values, found), found).tolist() == values.tolist()
