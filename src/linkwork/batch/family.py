@@ -14,7 +14,7 @@ from linkwork.batch.reductions import REDUCTIONS
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.errors import InputError
 from linkwork.kernels.lanes.device_compiling import graphics_card
-from linkwork.kernels.lanes.lane_kernel import Gear
+from linkwork.kernels.lanes.gear import Gear
 from linkwork.motion.model import Model
 
 __all__ = ["Family", "Reduction", "family_of"]

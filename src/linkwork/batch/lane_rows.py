@@ -21,7 +21,8 @@ from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.status import Status
 from linkwork.kernels.lanes.device_kernel import DeviceKernel
 from linkwork.kernels.lanes.folding import dead_points
-from linkwork.kernels.lanes.lane_kernel import Gear, LaneKernel, LaneRows, Steps
+from linkwork.kernels.lanes.gear import Gear
+from linkwork.kernels.lanes.lane_kernel import LaneKernel, LaneRows, Steps
 from linkwork.mechanism.parts import Input
 from linkwork.motion import sweep
 from linkwork.motion.drive import Drive

@@ -12,7 +12,8 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.kernels.lanes.device_compiling import graphics_card
 from linkwork.kernels.lanes.device_printing import ThreadState, device_source
-from linkwork.kernels.lanes.lane_kernel import Gear, LaneKernel, LaneRows, Steps
+from linkwork.kernels.lanes.gear import Gear
+from linkwork.kernels.lanes.lane_kernel import LaneKernel, LaneRows, Steps
 from linkwork.kernels.lanes.written import written
 
 __all__ = ["Chunk", "DeviceKernel"]

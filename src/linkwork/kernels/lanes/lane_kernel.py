@@ -10,11 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from linkwork.foundation.aligned import aligned
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError
 from linkwork.kernels.lanes.beginning import begin
 from linkwork.kernels.lanes.closure import BlockPart
 from linkwork.kernels.lanes.folding import LastNodes
+from linkwork.kernels.lanes.gear import Gear
 from linkwork.kernels.lanes.lockstep import in_step
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import ROLES, WEIGHTS, march_programs
@@ -27,10 +29,7 @@ from linkwork.kernels.lanes.trial import Topology
 from linkwork.kernels.lanes.written import is_written, written
 from linkwork.kernels.loop_table import LoopTable
 
-__all__ = ["DEVICES", "Gear", "LaneKernel", "LaneRows", "Steps"]
-
-#: What a march can run on.
-DEVICES = ("cpu", "gpu")
+__all__ = ["LaneKernel", "LaneRows", "Steps"]
 
 _FEW = 16  # designs in a part of which each goes with its rows side by side
 _PART = 4096  # designs that one thread works on at a time
@@ -109,46 +108,6 @@ class LaneRows:
         )
 
 
-@dataclass(frozen=True, kw_only=True)
-class Gear:
-    """Whether the trial of a topology is written out and compiled, or done by the machine.
-
-    Parameters
-    ----------
-    specialised : bool, optional
-        Asked for; by default it is whatever takes less time for so many ``positions``.
-    positions : int
-    device : str
-        Where it runs, one of :data:`DEVICES`; a graphics card runs nothing but what is compiled.
-
-    Raises
-    ------
-    InputError
-        For another device, or for a graphics card that should compile nothing.
-    """
-
-    specialised: bool | None = None
-    positions: int = 0
-    device: str = "cpu"
-
-    def __post_init__(self) -> None:
-        if self.device not in DEVICES:
-            raise InputError(
-                f'there is no device "{self.device}" (there are: {", ".join(DEVICES)})'
-            )
-        if self.device == "gpu" and self.specialised is False:
-            raise InputError(
-                "a graphics card runs nothing but compiled equations: leave out "
-                'specialised=False or device="gpu"'
-            )
-
-
-# Compiling takes some 5 ms for each instruction, of which a position then costs 0.1 ns less.
-_PAYS = 100_000_000  # positions
-_PAYS_COMPILED = 1_000_000  # where an earlier run has left what it compiled
-_LONGEST = 4_000  # instructions: the compiler's time grows faster than they do
-
-
 class LaneKernel:
     """Programs and registers for one loop table.
 
@@ -184,6 +143,7 @@ class LaneKernel:
         self._sections = programs
         #: The same without proofs, which goes ahead where rows are side by side.
         self.scout = LaneKernel(table, parts, zeros, certified=False) if certified else None
+        self._blank: dict[Steps, Array] = {}  # the workspace of the steps asked for last
         self._trial: Any = None  # written out; kept, for its address is used
 
     @property
@@ -201,16 +161,13 @@ class LaneKernel:
         """
         if gear.specialised is False:
             self._trial = None
-        if gear.specialised is False or self.trial:
-            return
-        if not gear.specialised and gear.positions < _PAYS_COMPILED:
-            return
-        source = self.source()
-        if gear.specialised:
-            self._trial = written(source, "trial")
-        elif len(self.code) <= ROLES * _LONGEST and (gear.positions >= _PAYS or is_written(source)):
-            with suppress(InputError):  # nobody asked: the machine serves
-                self._trial = written(source, "trial")
+        elif gear.specialised:
+            self._trial = self._trial or written(self.source(), "trial")
+        elif self._trial is None and gear.pays_compiled(len(self.code)):
+            source = self.source()
+            if gear.pays(len(self.code)) or is_written(source):
+                with suppress(InputError):  # nobody asked: the machine serves
+                    self._trial = written(source, "trial")
 
     def source(self) -> str:
         """A trial of this topology written out: prediction, one correction, proof, judgement."""
@@ -248,16 +205,15 @@ class LaneKernel:
         found : LaneRows
             Filled.
         """
-        count = len(start)
-        places, design = self._registered(coefficients, count)
-        given = self.given(guess, start)
+        count, given = len(start), self.given(guess, start)
+        ready, table = self._ready(coefficients, count), self._table(rows, steps)
 
         def one(first: int) -> None:
             part = slice(first, first + _PART)
-            self._part(places, design[:, part], given[:, part], rows, steps, found, part)
+            self._part(ready.part(part), given[:, part], table, steps, found, part)
 
         if count <= _FEW and len(rows) >= LANES:
-            self._few(places, design, coefficients, given, rows, steps, found)
+            self._few(ready, coefficients, given, table, steps, found)
             return
         firsts = range(0, count, _PART)
         if threads > 1 and len(firsts) > 1:
@@ -290,54 +246,44 @@ class LaneKernel:
         values = np.array([coefficients[name] for name in used]).reshape(len(used), count)
         return np.array([named[name] for name in used], dtype=np.intp), values
 
+    def _ready(self, coefficients: Mapping[str, Array], count: int) -> _Ready:
+        places, design = self._registered(coefficients, count)
+        return _Ready(self._topology(places), design)
+
     def _space(self, steps: Steps) -> Array:
         """A workspace with constants and options in place."""
-        space = self.registers.filled(self.height, LANES)
-        for name in ("tolerance", "most_turn", "most_correction", "most_drift"):
-            if name in self.registers.named:
-                space[self.registers.named[name]] = getattr(steps, name)
-        return space
+        if steps not in self._blank:
+            self._blank.clear()
+            space = self.registers.filled(self.height, LANES)
+            for name in ("tolerance", "most_turn", "most_correction", "most_drift"):
+                if name in self.registers.named:
+                    space[self.registers.named[name]] = getattr(steps, name)
+            self._blank[steps] = space
+        own = aligned(self.height, LANES)
+        own[:] = self._blank[steps]
+        return own
 
-    def _begun(
-        self, topology: Topology, space: Array, design: Array, given: Array
-    ) -> tuple[Array, BoolArray]:
+    def _begun(self, ready: _Ready, space: Array, given: Array) -> tuple[Array, BoolArray]:
         """Nodes (S, D) where designs start, and whether they do, (D,)."""
         node, begun = np.empty_like(given), np.zeros(given.shape[1], dtype=bool)
-        begin(topology, space, design, np.ascontiguousarray(given), node, begun)
+        given = np.ascontiguousarray(given)
+        begin(ready.topology, space, ready.design, given, node, begun)
         return node, begun
 
     def _part(
         self,
-        places: IndexArray,
-        design: Array,
+        ready: _Ready,
         given: Array,
-        rows: Array,
+        table: Table,
         steps: Steps,
         found: LaneRows,
         part: slice,
     ) -> None:
         """Designs side by side."""
-        space, topology = self._space(steps), self._topology(places)
-        design = np.ascontiguousarray(design)
-        node, begun = self._begun(topology, space, design, given)
+        space = self._space(steps)
+        node, begun = self._begun(ready, space, given)
         found.found[part] = begun
-        self._marched(
-            topology, space, design, node, begun, self._table(rows, steps), found.at(part.start)
-        )
-
-    def _marched(
-        self,
-        topology: Topology,
-        space: Array,
-        design: Array,
-        node: Array,
-        begun: BoolArray,
-        table: Table,
-        kept: Found,
-    ) -> None:
-        tasks = Tasks.room(2 * len(begun), len(node))
-        many = in_step(topology, space, design, node, begun, table, tasks, kept)
-        march(topology, space, design, table, tasks, many, kept)
+        _marched(ready, space, node, begun, table, found.at(part.start))
 
     def _table(self, rows: Array, steps: Steps) -> Table:
         sizes = np.array([steps.first, steps.largest, steps.smallest])
@@ -345,41 +291,36 @@ class LaneKernel:
 
     def _few(
         self,
-        places: IndexArray,
-        design: Array,
+        ready: _Ready,
         coefficients: Mapping[str, Array],
         given: Array,
-        rows: Array,
+        table: Table,
         steps: Steps,
         found: LaneRows,
     ) -> None:
         """One design after the other, its rows side by side."""
-        space, topology, table = (
-            self._space(steps),
-            self._topology(places),
-            self._table(rows, steps),
-        )
-        node, begun = self._begun(topology, space, design, given)
+        space = own = self._space(steps)
+        ahead = ready
+        node, begun = self._begun(ready, space, given)
         found.found[:] = begun
-        scout = self.scout or self
-        if self.trial:
-            scout.shift(Gear(specialised=True))
-        own, seen = (space, places) if scout is self else (scout._space(steps), None)
-        if seen is None:
-            seen, values = scout._registered(coefficients, len(begun))
-        else:
-            values = design
-        ahead = scout._topology(seen)
+        if self.scout is not None:
+            if self.trial:
+                self.scout.shift(Gear(specialised=True))
+            ahead = self.scout._ready(coefficients, len(begun))
+            own = self.scout._space(steps)
         for k in np.flatnonzero(begun):
             start = np.ascontiguousarray(node[:, k])
-            far = np.abs(rows[[0, -1]] - start[-1]).max()
+            far = np.abs(table.rows[[0, -1]] - start[-1]).max()
             room = np.empty((3, most_nodes(far, steps.largest), len(start)))
-            space[places], own[seen] = design[:, k, None], values[:, k, None]
-            if by_rows(topology, ahead, space, own, start, table, room, found.at(int(k))):
+            ready.load(space, int(k))
+            ahead.load(own, int(k))
+            place = found.at(int(k))
+            if by_rows(ready.topology, ahead.topology, space, own, start, table, room, place):
                 begun[k] = False
             else:
                 found.reached[:, k] = False
-        self._marched(topology, space, design, node, begun, table, found.at(0))
+        if begun.any():
+            _marched(ready, space, node, begun, table, found.at(0))
 
     def _topology(self, coefficients: IndexArray) -> Topology:
         return Topology(
@@ -393,6 +334,30 @@ class LaneKernel:
             coefficients=coefficients,
             trial=self.trial,
         )
+
+
+@dataclass(frozen=True, eq=False)
+class _Ready:
+    """A topology and the coefficients (C, D) of designs."""
+
+    topology: Topology
+    design: Array
+
+    def part(self, which: slice) -> _Ready:
+        """Some of the designs."""
+        return _Ready(self.topology, np.ascontiguousarray(self.design[:, which]))
+
+    def load(self, space: Array, k: int) -> None:
+        """One design into all lanes of a workspace."""
+        space[self.topology.coefficients] = self.design[:, k, None]
+
+
+def _marched(
+    ready: _Ready, space: Array, node: Array, begun: BoolArray, table: Table, kept: Found
+) -> None:
+    tasks = Tasks.room(2 * len(begun), len(node))
+    many = in_step(ready.topology, space, ready.design, node, begun, table, tasks, kept)
+    march(ready.topology, space, ready.design, table, tasks, many, kept)
 
 
 def _read(programs: Sequence[Program]) -> set[int]:
