@@ -22,7 +22,8 @@ from linkwork.batch.lane_rows import Path
 from linkwork.foundation.errors import InputError
 from linkwork.kernels.lanes.device_compiling import graphics_card, name_of
 from linkwork.kernels.lanes.device_kernel import DeviceKernel
-from linkwork.kernels.lanes.lane_kernel import Gear, Steps
+from linkwork.kernels.lanes.gear import Gear
+from linkwork.kernels.lanes.lane_kernel import Steps
 from linkwork.mechanism.quantities import quantities
 
 __all__ = ["FAMILIES", "Compared", "compared", "family_of", "kernel_speed", "main"]

@@ -6,6 +6,7 @@ from benchmarks.peers.casadi_newton import CasadiNewton
 from benchmarks.peers.exudyn_statics import ExudynStatics
 from benchmarks.peers.kinepy_groups import KinepyGroups
 from benchmarks.peers.linkwork_family import LinkworkFamily
+from benchmarks.peers.linkwork_kernel import LinkworkKernel
 from benchmarks.peers.linkwork_sweep import LinkworkSweep
 from benchmarks.peers.mechanism_package import MechanismPackage
 from benchmarks.peers.numpy_dyads import NumpyDyads
@@ -23,6 +24,8 @@ PEERS: tuple[Peer, ...] = (
     LinkworkFamily(certify=False),
     LinkworkFamily(certify=True, specialised=True),
     LinkworkFamily(certify=False, specialised=True),
+    LinkworkKernel(certify=True),
+    LinkworkKernel(certify=False),
     PylinkageStepFast(),
     PylinkageEnsemble(),
     NumpyDyads(),

@@ -1,0 +1,58 @@
+"""Linkwork's kernel alone: one mechanism's march prepared beforehand, a call for all rows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from benchmarks.peers.dyad_linkage import ComplexArray
+from benchmarks.peers.linkwork_sweep import family_of
+from benchmarks.peers.peer import Peer, Prepared
+from benchmarks.peers.work import Work
+from linkwork.batch.lane_rows import Path
+from linkwork.foundation.aligned import aligned
+from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.kernels.lanes.gear import Gear
+
+__all__ = ["LinkworkKernel"]
+
+
+class LinkworkKernel(Peer):
+    """What the march costs without reading a mechanism, statuses and tables; it starts anew in
+    every call.
+    """
+
+    distribution = "linkwork"
+    module = "linkwork"
+
+    def __init__(self, *, certify: bool) -> None:
+        self.certify = certify
+        self.name = "kernel, certified" if certify else "kernel"
+
+    def cannot(self, work: Work) -> str:
+        return "" if len(work.members) == 1 else "one mechanism only"
+
+    def prepare(self, work: Work) -> Prepared:
+        family = family_of(work)
+        motion = family.sweep(certify=self.certify, threads=1, specialised=False)
+        model = family.designs.base
+        path = Path.of(model)
+        assert path is not None
+        march = path.march(family.designs, self.certify, 1, Gear(specialised=False))
+        t = model.rows[:, path.lead]
+        t = np.ascontiguousarray(t[::-1] if path.falling else t)
+        unknowns = len(model.equations.unknowns)
+
+        def run() -> tuple[Array, BoolArray]:
+            v = aligned(unknowns, len(t), 1)
+            radius = aligned(len(t) if self.certify else 0, 1)
+            return v, march.through(t, v, radius)[1]
+
+        def read(found: tuple[Array, BoolArray]) -> ComplexArray:
+            way = slice(None, None, -1 if path.falling else 1)
+            v, reached = found
+            rows, reached = replace(motion.rows, v=v[:, way]), reached[way]
+            return np.where(reached.T, replace(motion, rows=rows).trace("T"), np.nan)
+
+        return Prepared(run=run, read=read)
