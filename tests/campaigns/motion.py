@@ -20,7 +20,15 @@ from linkwork.foundation.status import Status
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.quantity import Kind
 
-__all__ = ["FAMILIES", "Tally", "random_mechanism", "sweep_campaign"]
+__all__ = [
+    "FAMILIES",
+    "Case",
+    "Tally",
+    "changed_branch",
+    "random_case",
+    "random_mechanism",
+    "sweep_campaign",
+]
 
 Array = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -63,7 +71,7 @@ def sweep_campaign(numbers: range) -> Tally:
         step = STEPS[number // len(FAMILIES) % len(STEPS)]
         rng = np.random.default_rng([11, number])
         near = 10 ** rng.uniform(-9, -3) if rng.random() < 0.12 and family != "triad" else None
-        case = _case(rng, family, near, step)
+        case = random_case(rng, family, near, step)
         _judge(case, tally, f"{family}, {step} degrees, number {number}: ", step, near)
     return tally
 
@@ -71,7 +79,7 @@ def sweep_campaign(numbers: range) -> Tally:
 def random_mechanism(family: str, rng: np.random.Generator) -> lw.Mechanism:
     """One of a family, a tenth of them close to a change point."""
     near = 10 ** rng.uniform(-9, -3) if rng.random() < 0.12 and family != "triad" else None
-    return _case(rng, family, near, 10).mechanism
+    return random_case(rng, family, near, 10).mechanism
 
 
 def _judge(case: Case, tally: Tally, where: str, step: int, near: float | None) -> None:
@@ -92,7 +100,7 @@ def _judge(case: Case, tally: Tally, where: str, step: int, near: float | None) 
     theta = np.radians(motion["t"][asked])
     joints = _joints(case, motion, asked)
     finer = joints if case.exact else _finer(case, step, motion)
-    changed = _changed(case, theta, joints, finer) & ~limit[asked]
+    changed = changed_branch(case, theta, joints, finer) & ~limit[asked]
     counts["branch changes"] += int((changed & found).sum())
     if (changed & certified[asked]).any():
         wrong = int((changed & certified[asked]).sum())
@@ -104,7 +112,7 @@ def _judge(case: Case, tally: Tally, where: str, step: int, near: float | None) 
         if near is None:
             tally.wrong.append(f"{where}{int((~found).sum())} reachable rows are lost")
     plain = _plain_newton(case, theta)
-    jumped = _changed(case, theta, case.joints(*plain), finer) & found
+    jumped = changed_branch(case, theta, case.joints(*plain), finer) & found
     counts["plain Newton: mechanisms that change branch"] += bool(jumped.any())
 
 
@@ -128,7 +136,9 @@ def _off_at_limits(case: Case, motion: lw.Motion, limit: npt.NDArray[np.bool_]) 
     return int((~(np.fmin(*off) < 1e-3)).sum())
 
 
-def _changed(case: Case, theta: Array, joints: Complex, finer: Complex) -> npt.NDArray[np.bool_]:
+def changed_branch(
+    case: Case, theta: Array, joints: Complex, finer: Complex
+) -> npt.NDArray[np.bool_]:
     """Rows nearer to another branch than to the own one."""
     if case.exact is None:
         off = np.abs(joints - finer).max(axis=2)  # of three turns
@@ -206,7 +216,7 @@ def _degrees(z: complex) -> float:
     return math.degrees(math.atan2(z.imag, z.real))
 
 
-def _case(rng: np.random.Generator, family: str, near: float | None, step: int) -> Case:
+def random_case(rng: np.random.Generator, family: str, near: float | None, step: int) -> Case:
     make = {
         "four-bar": _four_bar,
         "slider-crank": _slider_crank,

@@ -12,6 +12,7 @@ from tests.campaigns.certificates import judge
 from tests.campaigns.circuits import circuit_campaign
 from tests.campaigns.configurations import configuration_campaign
 from tests.campaigns.families import family_campaign
+from tests.campaigns.kinds import kind_campaign
 from tests.campaigns.lanes import judge_lane_steps, judge_lanes
 from tests.campaigns.motion import sweep_campaign
 from tests.campaigns.positions import library_positions, random_position
@@ -64,6 +65,10 @@ def _circuits(part: int) -> tuple[Counter[str], list[str]]:
     return circuit_campaign(part, _PART)
 
 
+def _kinds(part: int) -> tuple[Counter[str], list[str]]:
+    return kind_campaign(part, _PART)
+
+
 #: What one part does, and how many things the whole campaign looks at.
 CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {
     "certificates": (_certificates, 10_000),
@@ -72,6 +77,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "motion": (_motion, 10_000),
     "configurations": (_configurations, 450),
     "circuits": (_circuits, 500),
+    "kinds": (_kinds, 100_000),
 }
 #: Those that share the cores themselves: what does the whole campaign, and its usual size.
 WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {
