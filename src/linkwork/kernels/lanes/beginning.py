@@ -46,7 +46,7 @@ def begin(topology, w, design, guess, node, found):  # type: ignore[no-untyped-d
                 copied(w, lane, nodes[role], nodes[1])
             tangent(w, lane, topology.weights, 0.0)
             w[good, lane] = 1.0
-        solved_slowly(topology, w)
+        solved_slowly(topology, w, 1 if width == 1 else LANES)
         for lane in range(width):
             member = base + lane
             fine = w[good, lane] > 0.5

@@ -194,24 +194,24 @@ def settled(topology, turn, w, standing, together, lanes):  # type: ignore[no-un
 
 
 @compiled
-def solved_slowly(topology, w):  # type: ignore[no-untyped-def]
+def solved_slowly(topology, w, lanes):  # type: ignore[no-untyped-def]
     """From a guess in role 1 to a position, with small steps; its own proof.
 
     The first proof knows nothing of the node it compares with, the second that it is this position.
     """
     blocks, nodes = _blocks(topology), topology.nodes
     everywhere = np.ones(LANES)
-    _one(topology, 0, w, PREDICT, LANES)
-    _one(topology, 0, w, GIVEN, LANES)
+    _one(topology, 0, w, PREDICT, lanes)
+    _one(topology, 0, w, GIVEN, lanes)
     for b in range(blocks):
         live = topology.noted[LIVE + b]
         w[live, :] = 1.0
-        _iterate(topology, 0, w, BLOCKS + blocks + b, live, START_STEPS, everywhere, LANES)
+        _iterate(topology, 0, w, BLOCKS + blocks + b, live, START_STEPS, everywhere, lanes)
     if proved(topology):
         for _ in range(2):
-            for lane in range(LANES):
+            for lane in range(lanes):
                 copied(w, lane, nodes[1], nodes[0])
-            judged(topology, 0, w, LANES)
+            judged(topology, 0, w, lanes)
 
 
 @compiled
