@@ -149,7 +149,9 @@ def _set_out(base, way, topology, w, begun, node, rows, standing, tasks, count):
 
 @compiled
 def _aimed(base, width, row, topology, turn, w, standing, table, found):  # type: ignore[no-untyped-def]
-    """The trial's t: of the row, or on the way to it. How far the row is; in how many steps."""
+    """The trial's t: of the row, or on the way to it. How far the row is; in how many steps, -1
+    where a step would be lost in rounding.
+    """
     last = topology.nodes.shape[1] - 1
     t0, t1 = topology.nodes[-turn % ROLES, last], topology.nodes[(1 - turn) % ROLES, last]
     lead = 0
@@ -158,6 +160,8 @@ def _aimed(base, width, row, topology, turn, w, standing, table, found):  # type
     away = table.rows[row] - w[t1, lead]
     parts = math.ceil(abs(away) / (_LARGEST * table.steps[1]))
     w[t0, :] = table.rows[row] if parts <= 1 else w[t1, lead] + away / parts
+    if parts > 1 and w[t0, lead] == w[t1, lead]:
+        return away, -1
     if parts <= 1:
         _fetched(found.first + base, width, row, table, found)
     return away, parts
@@ -175,6 +179,8 @@ def _one_way(base, way, topology, w, begun, node, table, tasks, count, found):  
     left = int(standing.sum())
     while 0 <= row < len(table.rows) and left >= min(_WORTH, (width + 1) // 2):
         away, parts = _aimed(base, width, row, topology, turn, w, standing, table, found)
+        if parts < 0:
+            break
         steps += 1
         _weighted(w, topology, turn, steps, together, spacing, times)
         settled(topology, turn, w, standing, True, LANES)
