@@ -1,0 +1,201 @@
+// The live page: the drawing and player of every page, and around them what edits the file.
+
+import type { CannotClose, FileState, LiveEvent, LiveRequest, MotionFound } from "../messages";
+import { mount, type Mounted } from "../mount";
+import { shortNumber, trimmed } from "../numbers";
+import { html } from "../svg";
+import type { Desk } from "./asking";
+import { Bar } from "./bar";
+import { Connection } from "./connection";
+import { Dimensions } from "./dimensions";
+import { Latest } from "./latest";
+import { Notices } from "./notices";
+import { pictureOf, type Points } from "./schematic";
+import { Tabs } from "./tabs";
+import { Ways } from "./ways";
+
+/** What answers a request: the next one may be sent. */
+const ANSWERS = new Set(["motion_found", "cannot_close", "position_found", "newton_shown", "refused", "problems_found"]);
+
+export class LivePage {
+  private readonly connection: Connection;
+  private readonly latest: Latest<LiveRequest>;
+  private readonly bar: Bar;
+  private readonly notices = new Notices();
+  private readonly dimensions: Dimensions;
+  private readonly ways: Ways;
+  private readonly tabs: Tabs;
+  private readonly picture = html("div", { class: "lw-instead" });
+  private file: FileState | null = null;
+  private page: Mounted | null = null;
+  private plain: HTMLElement | null = null;
+  private under = 0;
+
+  constructor(private readonly element: HTMLElement) {
+    const desk = this.desk();
+    this.bar = new Bar(desk);
+    this.dimensions = new Dimensions(desk);
+    this.ways = new Ways(desk);
+    this.tabs = new Tabs([
+      { title: "Dimensions", element: this.dimensions.element },
+      { title: "Configurations", element: this.ways.element, shown: (on) => this.ways.shown(on) },
+    ]);
+    this.connection = new Connection({
+      event: (event) => this.told(event),
+      lost: (message) => this.lost(message),
+    });
+    this.latest = new Latest((request) => (this.under = this.connection.ask(request)));
+  }
+
+  private desk(): Desk {
+    return {
+      ask: (request) => {
+        this.latest.clear();
+        this.notices.clear();
+        this.connection.ask(request);
+      },
+      latest: (request) => this.latest.put(request),
+      file: () => this.file!,
+      here: () => this.here(),
+    };
+  }
+
+  private here(): Record<string, number> {
+    const inputs = this.file?.inputs ?? [];
+    if (this.page === null || inputs.length !== 1) return {};
+    return { [inputs[0]!.name]: this.page.input };
+  }
+
+  private told(event: LiveEvent): void {
+    switch (event.kind) {
+      case "file_state":
+        this.state(event);
+        break;
+      case "motion_found":
+        this.motion(event);
+        break;
+      case "cannot_close":
+        this.open(event);
+        break;
+      case "position_found":
+        if (this.page === null || !this.file!.inputs.length) this.still(event.points, event.message);
+        break;
+      case "configurations_found":
+        this.ways.show(event);
+        break;
+      case "problems_found":
+        this.notices.problems(event);
+        break;
+      case "refused":
+        this.refused(event.message);
+        break;
+      case "file_changed":
+        this.notices.changed(event, this.decisions());
+        break;
+      case "saved":
+        this.notices.say(`Saved in ${event.file}.`);
+        break;
+    }
+    if (event.answers === this.under && ANSWERS.has(event.kind)) this.latest.answered();
+  }
+
+  private decisions(): Record<string, () => void> {
+    return {
+      Reload: () => this.connection.ask({ kind: "reload" }),
+      Overwrite: () => this.connection.ask({ kind: "save", overwrite: true }),
+    };
+  }
+
+  private refused(message: string): void {
+    const conflict = /overwrite/.test(message);
+    this.notices.say(message, conflict ? this.decisions() : {});
+    if (this.file) this.dimensions.show(this.file);
+  }
+
+  private state(file: FileState): void {
+    this.file = file;
+    this.bar.show(file);
+    this.dimensions.show(file);
+    this.ways.renew();
+  }
+
+  private motion(found: MotionFound): void {
+    const unit = this.file!.inputs[0]?.unit ?? "";
+    if (found.page !== null) {
+      this.picture.remove();
+      if (this.page === null) this.begin(found);
+      else this.page.update(found.page, found.live);
+      this.element.dataset.live = String(found.live);
+    } else if (!found.inputs || found.missing < found.rows) {
+      this.still({}, "This mechanism has no points to draw: see its numbers with linkwork sweep.");
+    }
+    this.notices.limits(found, unit, (input) => this.page?.goToInput(input));
+    this.element.dataset.updates = String(Number(this.element.dataset.updates ?? 0) + 1);
+  }
+
+  private begin(found: MotionFound): void {
+    this.plain = null;
+    const page = (this.page = mount(this.element, found.page!));
+    const { head, canvas, side } = page.places;
+    head.insertBefore(this.bar.element, head.querySelector(".lw-theme"));
+    canvas.after(this.notices.element);
+    side.prepend(this.tabs.element);
+  }
+
+  /** The same places where there is no motion to mount. */
+  private places(): { canvas: HTMLElement } {
+    if (this.page !== null) return this.page.places;
+    if (this.plain === null) {
+      this.plain = html("div", { class: "lw" });
+      this.element.replaceChildren(this.plain);
+      const head = html("header", { class: "lw-head" }, this.plain);
+      html("h1", {}, head, this.file!.title);
+      head.append(this.bar.element);
+      const stage = html("section", { class: "lw-stage", "aria-label": "Drawing" }, this.plain);
+      html("div", { class: "lw-canvas" }, stage);
+      stage.append(this.notices.element);
+      const side = html("section", { class: "lw-side", "aria-label": "Numbers" }, this.plain);
+      side.append(this.tabs.element);
+    }
+    return { canvas: this.plain.querySelector(".lw-canvas")! };
+  }
+
+  /** A picture of points in place of a motion. */
+  private still(points: Points, text: string): void {
+    const { canvas } = this.places();
+    this.picture.replaceChildren(pictureOf(this.file!.links, points));
+    canvas.append(this.picture);
+    this.notices.open(text, []);
+  }
+
+  private open(event: CannotClose): void {
+    const { canvas } = this.places();
+    this.picture.replaceChildren(pictureOf(this.file!.links, event.points, event.open_ends));
+    canvas.append(this.picture);
+    const unit = this.file!.length_unit;
+    const gap = `${trimmed(shortNumber(event.gap, 4))} ${unit}`.trim();
+    const remedies = Object.entries(event.remedies).map(([name, value]) => {
+      const rounded = trimmed(shortNumber(value));
+      const set = (): void => {
+        this.connection.ask({ kind: "set_number", name, value });
+      };
+      return [`${name} = ${rounded}`, "This length alone would let it close", set] as const;
+    });
+    const help = remedies.length ? " Any of these alone would help:" : "";
+    this.notices.open(`It cannot close: a gap of ${gap} remains.${help}`, remedies);
+    this.element.dataset.updates = String(Number(this.element.dataset.updates ?? 0) + 1);
+  }
+
+  private lost(message: string): void {
+    this.bar.close();
+    if (this.page === null && this.plain === null) {
+      this.element.replaceChildren(html("p", { class: "lw-wait", role: "alert" }, undefined, message));
+      return;
+    }
+    this.element.classList.add("lw-lost");
+    for (const input of this.tabs.element.querySelectorAll<HTMLInputElement>("input, button, select, textarea")) {
+      input.disabled = true;
+    }
+    this.notices.say(message, { "Load again": () => location.reload() }, false);
+  }
+}
