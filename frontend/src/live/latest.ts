@@ -1,28 +1,30 @@
-// One request at a time; of those that wait only the latest, as of a slider that is being dragged.
+// Few requests at a time; of those that wait only the latest, as of a slider that is being dragged.
 
-/** Seconds after which a request that nobody answered counts as answered. */
+/** Seconds after which requests that nobody answered count as answered. */
 export const PATIENCE = 1.5;
 
+/** Requests under way: one is worked on while the answer to the other is shown. */
+export const UNDER_WAY = 2;
+
 export class Latest<T> {
-  private busy = false;
+  private under: number[] = [];
   private waiting: T | null = null;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(private readonly send: (request: T) => void) {}
+  /** `send` gives the number that the answer repeats. */
+  constructor(private readonly send: (request: T) => number) {}
 
   /** Send it, at once or when what is under way has been answered. */
   put(request: T): void {
-    if (this.busy) this.waiting = request;
+    if (this.under.length >= UNDER_WAY) this.waiting = request;
     else this.start(request);
   }
 
-  /** What is under way has been answered. */
-  answered(): void {
-    clearTimeout(this.timer);
-    this.busy = false;
-    const next = this.waiting;
-    this.waiting = null;
-    if (next !== null) this.start(next);
+  /** This request and all before it have been answered; others are not of this kind. */
+  answered(number: number | null): void {
+    if (number === null || !this.under.includes(number)) return;
+    this.under = this.under.filter((one) => one > number);
+    this.next();
   }
 
   /** Nothing that waits is of interest any more. */
@@ -30,9 +32,18 @@ export class Latest<T> {
     this.waiting = null;
   }
 
+  private next(): void {
+    const next = this.waiting;
+    this.waiting = null;
+    if (next !== null) this.start(next);
+  }
+
   private start(request: T): void {
-    this.busy = true;
-    this.timer = setTimeout(() => this.answered(), 1000 * PATIENCE);
-    this.send(request);
+    clearTimeout(this.timer);
+    this.under.push(this.send(request));
+    this.timer = setTimeout(() => {
+      this.under = [];
+      this.next();
+    }, 1000 * PATIENCE);
   }
 }

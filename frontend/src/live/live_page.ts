@@ -29,7 +29,6 @@ export class LivePage {
   private file: FileState | null = null;
   private page: Mounted | null = null;
   private plain: HTMLElement | null = null;
-  private under = 0;
 
   constructor(private readonly element: HTMLElement) {
     const desk = this.desk();
@@ -44,7 +43,7 @@ export class LivePage {
       event: (event) => this.told(event),
       lost: (message) => this.lost(message),
     });
-    this.latest = new Latest((request) => (this.under = this.connection.ask(request)));
+    this.latest = new Latest((request) => this.connection.ask(request));
   }
 
   private desk(): Desk {
@@ -96,7 +95,7 @@ export class LivePage {
         this.notices.say(`Saved in ${event.file}.`);
         break;
     }
-    if (event.answers === this.under && ANSWERS.has(event.kind)) this.latest.answered();
+    if (ANSWERS.has(event.kind)) this.latest.answered(event.answers);
   }
 
   private decisions(): Record<string, () => void> {

@@ -6,6 +6,9 @@ import { html } from "../svg";
 /** How many dead points are told one by one. */
 const TOLD = 4;
 
+/** What the program says of a cycle that needs no word. */
+const FOUND = "position found";
+
 export type Choices = Readonly<Record<string, () => void>>;
 
 export class Notices {
@@ -84,7 +87,7 @@ export class Notices {
 
 /** How much of the range is reached, in words; empty if all of it is. */
 export function reach(found: Pick<MotionFound, "limits" | "missing" | "message">): string {
-  if (!found.limits.length && !found.missing) return found.message;
+  if (!found.limits.length && !found.missing) return found.message === FOUND ? "" : found.message;
   const missing = found.missing === 1 ? "1 position" : `${found.missing} positions`;
   if (!found.limits.length) return `${missing} of the range cannot be reached.`;
   const kind = found.limits.every((limit) => limit.what === "dead point") ? "Dead point" : "Limit";
