@@ -27,8 +27,9 @@ export class Bar {
 
   show(state: FileState): void {
     this.element.dataset.unsaved = String(state.unsaved);
-    this.file.textContent = `${state.file}${state.unsaved ? " •" : ""}`;
-    this.file.title = state.unsaved ? "Changes are not saved" : "Saved";
+    const name = state.file.split(/[\\/]/).pop();
+    this.file.textContent = `${name}${state.unsaved ? " •" : ""}`;
+    this.file.title = `${state.file}: ${state.unsaved ? "changes are not saved" : "saved"}`;
     this.file.setAttribute("aria-label", `${state.file}, ${state.unsaved ? "changes are not saved" : "saved"}`);
     label(this.undo, "Undo", "Ctrl+Z", state.undo);
     label(this.redo, "Redo", "Ctrl+Shift+Z", state.redo);

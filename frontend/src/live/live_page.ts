@@ -9,8 +9,10 @@ import { Bar } from "./bar";
 import { Connection } from "./connection";
 import { Dimensions } from "./dimensions";
 import { Latest } from "./latest";
+import { Newton } from "./newton";
 import { Notices } from "./notices";
 import { pictureOf, type Points } from "./schematic";
+import { Sketch } from "./sketch";
 import { Tabs } from "./tabs";
 import { Ways } from "./ways";
 
@@ -24,6 +26,8 @@ export class LivePage {
   private readonly notices = new Notices();
   private readonly dimensions: Dimensions;
   private readonly ways: Ways;
+  private readonly newton: Newton;
+  private readonly sketch: Sketch;
   private readonly tabs: Tabs;
   private readonly picture = html("div", { class: "lw-instead" });
   private file: FileState | null = null;
@@ -35,9 +39,12 @@ export class LivePage {
     this.bar = new Bar(desk);
     this.dimensions = new Dimensions(desk);
     this.ways = new Ways(desk);
+    this.newton = new Newton(desk);
+    this.sketch = new Sketch(desk);
     this.tabs = new Tabs([
       { title: "Dimensions", element: this.dimensions.element },
       { title: "Configurations", element: this.ways.element, shown: (on) => this.ways.shown(on) },
+      { title: "Newton", element: this.newton.element, shown: (on) => this.newton.shown(on) },
     ]);
     this.connection = new Connection({
       event: (event) => this.told(event),
@@ -56,8 +63,12 @@ export class LivePage {
       latest: (request) => this.latest.put(request),
       file: () => this.file!,
       here: () => this.here(),
+      branch: () => this.name,
     };
   }
+
+  /** The branch that is shown. */
+  private name = "";
 
   private here(): Record<string, number> {
     const inputs = this.file?.inputs ?? [];
@@ -81,6 +92,12 @@ export class LivePage {
         break;
       case "configurations_found":
         this.ways.show(event);
+        break;
+      case "newton_shown":
+        this.newton.show(event);
+        break;
+      case "point_moved":
+        if (event.answers !== null && this.element.dataset.live !== "true") this.notices.say(this.sketch.told(event));
         break;
       case "problems_found":
         this.notices.problems(event);
@@ -116,14 +133,18 @@ export class LivePage {
     this.bar.show(file);
     this.dimensions.show(file);
     this.ways.renew();
+    this.newton.renew();
+    this.sketch.renew();
   }
 
   private motion(found: MotionFound): void {
     const unit = this.file!.inputs[0]?.unit ?? "";
     if (found.page !== null) {
       this.picture.remove();
+      this.element.classList.remove("lw-stays-open");
       if (this.page === null) this.begin(found);
       else this.page.update(found.page, found.live);
+      this.name = found.page.motions[0]!.name;
       this.element.dataset.live = String(found.live);
     } else if (!found.inputs || found.missing < found.rows) {
       this.still({}, "This mechanism has no points to draw: see its numbers with linkwork sweep.");
@@ -139,6 +160,8 @@ export class LivePage {
     head.insertBefore(this.bar.element, head.querySelector(".lw-theme"));
     canvas.after(this.notices.element);
     side.prepend(this.tabs.element);
+    this.newton.attach(page);
+    this.sketch.attach(page);
   }
 
   /** The same places where there is no motion to mount. */
@@ -164,6 +187,7 @@ export class LivePage {
     const { canvas } = this.places();
     this.picture.replaceChildren(pictureOf(this.file!.links, points));
     canvas.append(this.picture);
+    this.element.classList.add("lw-stays-open");
     this.notices.open(text, []);
   }
 
@@ -171,6 +195,7 @@ export class LivePage {
     const { canvas } = this.places();
     this.picture.replaceChildren(pictureOf(this.file!.links, event.points, event.open_ends));
     canvas.append(this.picture);
+    this.element.classList.add("lw-stays-open");
     const unit = this.file!.length_unit;
     const gap = `${trimmed(shortNumber(event.gap, 4))} ${unit}`.trim();
     const remedies = Object.entries(event.remedies).map(([name, value]) => {

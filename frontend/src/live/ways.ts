@@ -40,7 +40,7 @@ export class Ways {
     this.list.replaceChildren();
     for (const way of found.ways) {
       const button = html("button", { type: "button", class: "lw-way" }, this.list);
-      const current = way.name !== "" && way.name === file().configuration;
+      const current = way.name !== "" && way.name === (file().configuration || this.desk.branch());
       button.setAttribute("aria-pressed", String(current));
       if (file().links.length) button.append(pictureOf(file().links, way.points, [], false));
       html("span", {}, button, way.name || "without a name");
