@@ -101,7 +101,8 @@ function sliderRow(number: ChangeableNumber, desk: Desk): Row {
       }
       slider.value = String(now.value);
       slider.setAttribute("aria-valuetext", `${trimmed(shortNumber(now.value))}${unitText(now.unit)}`);
-      input.value = trimmed(shortNumber(now.value, 9));
+      input.value = trimmed(shortNumber(now.value));
+      input.title = String(now.value);
     },
   };
 }

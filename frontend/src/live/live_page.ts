@@ -160,6 +160,7 @@ export class LivePage {
     head.insertBefore(this.bar.element, head.querySelector(".lw-theme"));
     canvas.after(this.notices.element);
     side.prepend(this.tabs.element);
+    head.closest(".lw")!.querySelector(".lw-hint")!.textContent = "Drag a pin or a link.";
     this.newton.attach(page);
     this.sketch.attach(page);
   }

@@ -138,8 +138,8 @@ export class Newton {
       const blocks = new Set(this.found!.iterates.map((one) => one.equations.join())).size;
       const name = blocks > 1 ? `${iterate.k} of ${iterate.equations.join(", ")}` : String(iterate.k);
       this.button(cell, iterate.k === 0 ? `guess${blocks > 1 ? ` of ${iterate.equations.join(", ")}` : ""}` : name, () => this.choose(k));
-      html("td", {}, line, iterate.norm === null ? "–" : powerOfTen(iterate.norm, 3));
-      html("td", {}, line, iterate.step === null ? "" : powerOfTen(iterate.step, 3));
+      html("td", {}, line, small(iterate.norm));
+      html("td", {}, line, iterate.step === null ? "" : small(iterate.step));
     });
   }
 
@@ -182,7 +182,8 @@ export class Newton {
   private draw(iterate: NewtonIterate): void {
     const matrix = this.page?.places.drawing.element.getScreenCTM();
     if (!matrix) return;
-    drawLinks(this.group, this.desk.file().links, iterate.points, { stroke: 1.2 / matrix.a });
+    const stroke = 1.2 / matrix.a;
+    drawLinks(this.group, this.desk.file().links, iterate.points, { stroke, names: 11 * stroke });
   }
 }
 

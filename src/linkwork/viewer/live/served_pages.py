@@ -1,4 +1,4 @@
-"""What the live page is made of: fixed files, the same for every mechanism, with nothing in them."""
+"""What the live page is made of: fixed files, the same for every mechanism."""
 
 from __future__ import annotations
 
