@@ -35,6 +35,8 @@ export interface Mounted {
   goToInput(value: number): void;
   /** The input of the row that is shown. */
   readonly input: number;
+  /** Every quantity in the row that is shown. */
+  readonly values: Readonly<Record<string, number>>;
   /** The elements that can be added to. */
   readonly places: Places;
   destroy(): void;
@@ -149,6 +151,11 @@ class Page implements Mounted {
 
   get input(): number {
     return this.view.input.values[this.view.order[this.player.at]!]!;
+  }
+
+  get values(): Record<string, number> {
+    const row = this.view.order[this.player.at]!;
+    return Object.fromEntries(this.view.series.map((one) => [one.name, one.values[row]!]));
   }
 
   goToInput(value: number): void {

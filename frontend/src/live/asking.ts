@@ -11,6 +11,6 @@ export interface Desk {
   readonly file: () => FileState;
   /** The values of the inputs that are shown. */
   readonly here: () => Record<string, number>;
-  /** The name of the branch that is shown. */
-  readonly branch: () => string;
+  /** Every quantity in the row that is shown. */
+  readonly values: () => Readonly<Record<string, number>>;
 }

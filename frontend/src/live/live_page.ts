@@ -6,6 +6,7 @@ import { shortNumber, trimmed } from "../numbers";
 import { html } from "../svg";
 import type { Desk } from "./asking";
 import { Bar } from "./bar";
+import { Build } from "./build";
 import { Connection } from "./connection";
 import { Dimensions } from "./dimensions";
 import { Latest } from "./latest";
@@ -27,6 +28,7 @@ export class LivePage {
   private readonly dimensions: Dimensions;
   private readonly ways: Ways;
   private readonly newton: Newton;
+  private readonly build: Build;
   private readonly sketch: Sketch;
   private readonly tabs: Tabs;
   private readonly picture = html("div", { class: "lw-instead" });
@@ -40,11 +42,13 @@ export class LivePage {
     this.dimensions = new Dimensions(desk);
     this.ways = new Ways(desk);
     this.newton = new Newton(desk);
+    this.build = new Build(desk);
     this.sketch = new Sketch(desk);
     this.tabs = new Tabs([
       { title: "Dimensions", element: this.dimensions.element },
       { title: "Configurations", element: this.ways.element, shown: (on) => this.ways.shown(on) },
       { title: "Newton", element: this.newton.element, shown: (on) => this.newton.shown(on) },
+      { title: "Build", element: this.build.element },
     ]);
     this.connection = new Connection({
       event: (event) => this.told(event),
@@ -63,12 +67,9 @@ export class LivePage {
       latest: (request) => this.latest.put(request),
       file: () => this.file!,
       here: () => this.here(),
-      branch: () => this.name,
+      values: () => this.page?.values ?? {},
     };
   }
-
-  /** The branch that is shown. */
-  private name = "";
 
   private here(): Record<string, number> {
     const inputs = this.file?.inputs ?? [];
@@ -132,6 +133,7 @@ export class LivePage {
     this.file = file;
     this.bar.show(file);
     this.dimensions.show(file);
+    this.build.show(file);
     this.ways.renew();
     this.newton.renew();
     this.sketch.renew();
@@ -144,7 +146,6 @@ export class LivePage {
       this.element.classList.remove("lw-stays-open");
       if (this.page === null) this.begin(found);
       else this.page.update(found.page, found.live);
-      this.name = found.page.motions[0]!.name;
       this.element.dataset.live = String(found.live);
     } else if (!found.inputs || found.missing < found.rows) {
       this.still({}, "This mechanism has no points to draw: see its numbers with linkwork sweep.");

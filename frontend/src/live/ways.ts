@@ -40,7 +40,7 @@ export class Ways {
     this.list.replaceChildren();
     for (const way of found.ways) {
       const button = html("button", { type: "button", class: "lw-way" }, this.list);
-      const current = way.name !== "" && way.name === (file().configuration || this.desk.branch());
+      const current = same(way.unknowns, this.desk.values(), file().angle_unit === "rad" ? 2 * Math.PI : 360);
       button.setAttribute("aria-pressed", String(current));
       if (file().links.length) button.append(pictureOf(file().links, way.points, [], false));
       html("span", {}, button, way.name || "without a name");
@@ -53,4 +53,17 @@ export class Ways {
     this.state.textContent = "Looking for all of them …";
     this.desk.ask({ kind: "list_configurations", at: this.desk.here() });
   }
+}
+
+/** Whether all unknowns of a way are as they are shown; angles agree but for whole turns. */
+export function same(
+  unknowns: Readonly<Record<string, number>>,
+  shown: Readonly<Record<string, number>>,
+  turn: number,
+): boolean {
+  return Object.entries(unknowns).every(([name, value]) => {
+    const off = Math.abs(value - (shown[name] ?? NaN));
+    const turned = Math.abs(off - turn * Math.round(off / turn));
+    return Math.min(off, turned) <= 1e-6 * (1 + Math.abs(value));
+  });
 }
