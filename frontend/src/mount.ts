@@ -323,7 +323,7 @@ class Page implements Mounted {
     const target = event.target as HTMLElement;
     if (target !== document.body && !this.root.contains(target)) return;
     const tag = target.tagName;
-    const typed = tag === "SELECT" || (tag === "INPUT" && (target as HTMLInputElement).type !== "range");
+    const typed = ["SELECT", "TEXTAREA"].includes(tag) || (tag === "INPUT" && !target.closest(".lw-transport"));
     if (typed && event.key !== "Escape") return;
     if (event.key === " " && (tag === "BUTTON" || tag === "SUMMARY")) return;
     const far = event.shiftKey ? 10 : 1;

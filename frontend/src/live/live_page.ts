@@ -73,8 +73,8 @@ export class LivePage {
 
   private here(): Record<string, number> {
     const inputs = this.file?.inputs ?? [];
-    if (this.page === null || inputs.length !== 1) return {};
-    return { [inputs[0]!.name]: this.page.input };
+    const values = this.page?.values ?? {};
+    return Object.fromEntries(inputs.flatMap(({ name }) => (name in values ? [[name, values[name]!]] : [])));
   }
 
   private told(event: LiveEvent): void {
@@ -187,13 +187,24 @@ export class LivePage {
   /** A picture of points in place of a motion. */
   private still(points: Points, text: string): void {
     const { canvas } = this.places();
-    this.picture.replaceChildren(pictureOf(this.file!.links, points));
+    const drawn = Object.keys(points).length > 0;
+    this.picture.replaceChildren(drawn ? pictureOf(this.file!.links, points) : this.equations());
     canvas.append(this.picture);
-    this.element.classList.add("lw-stays-open");
     this.notices.open(text, []);
   }
 
+  /** What stands where there is nothing to draw. */
+  private equations(): HTMLElement {
+    const box = html("div", { class: "lw-plain-equations" });
+    for (const equation of this.file!.equations) html("p", {}, box, equation);
+    return box;
+  }
+
   private open(event: CannotClose): void {
+    if (!Object.keys(event.points).length) {
+      this.still({}, event.message);
+      return;
+    }
     const { canvas } = this.places();
     this.picture.replaceChildren(pictureOf(this.file!.links, event.points, event.open_ends));
     canvas.append(this.picture);

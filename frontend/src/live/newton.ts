@@ -82,6 +82,7 @@ export class Newton {
   /** From the guess of the file, at the input that is shown. */
   private begin(): void {
     const file = this.desk.file();
+    this.page?.goToInput(this.page.input); // it stands still
     this.at = this.desk.here();
     this.guess = Object.fromEntries(file.unknowns.map((one) => [one.name, one.guess]));
     this.chosen = 0;
@@ -130,7 +131,7 @@ export class Newton {
     this.steps.replaceChildren();
     const body = html("table", {}, this.steps);
     const head = html("tr", {}, html("thead", {}, body));
-    for (const title of ["step", "|F|", "turned by"]) html("th", { scope: "col" }, head, title);
+    for (const title of ["k", "|F|", "step"]) html("th", { scope: "col" }, head, title);
     const rows = html("tbody", {}, body);
     this.found!.iterates.forEach((iterate, k) => {
       const line = html("tr", {}, rows);

@@ -42,7 +42,8 @@ export class Sketch {
     const on = this.box.checked;
     const file = this.desk.file();
     this.switch.hidden = Object.keys(file.points).length === 0;
-    page.places.drawing.dim(on);
+    if (on || this.handles.childElementCount) page.places.drawing.dim(on);
+    if (on) page.goToInput(page.input); // it stands still
     const focused = (document.activeElement as Element | null)?.getAttribute("data-sketched");
     this.links.replaceChildren();
     this.handles.replaceChildren();

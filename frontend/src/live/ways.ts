@@ -43,7 +43,7 @@ export class Ways {
       const current = same(way.unknowns, this.desk.values(), file().angle_unit === "rad" ? 2 * Math.PI : 360);
       button.setAttribute("aria-pressed", String(current));
       if (file().links.length) button.append(pictureOf(file().links, way.points, [], false));
-      html("span", {}, button, way.name || "without a name");
+      html("span", {}, button, way.name || written(way.unknowns));
       button.disabled = way.name === "";
       button.addEventListener("click", () => this.desk.ask({ kind: "choose_configuration", name: way.name }));
     }
@@ -66,4 +66,8 @@ export function same(
     const turned = Math.abs(off - turn * Math.round(off / turn));
     return Math.min(off, turned) <= 1e-6 * (1 + Math.abs(value));
   });
+}
+
+function written(unknowns: Readonly<Record<string, number>>): string {
+  return Object.entries(unknowns).map(([name, value]) => `${name} = ${measured(value, "")}`).join(", ");
 }

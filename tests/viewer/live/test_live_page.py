@@ -214,3 +214,57 @@ def test_a_phone_shows_everything_in_one_column(open_live: Open, tmp_path: Path)
     wide = page.evaluate("document.documentElement.scrollWidth")
     assert wide <= 390
     assert page.locator('[data-number="A B"] input[type=range]').bounding_box()["width"] > 80
+
+
+def test_a_slider_is_moved_by_keys_and_the_motion_stays(open_live: Open) -> None:
+    page = open_live()
+    before = shown_row(page)
+    slider = page.locator('[data-number="A B"] input[type=range]')
+    step = float(slider.get_attribute("step"))
+    slider.focus()
+    page.keyboard.press("ArrowRight")
+    page.get_by_role("button", name=f"Undo: A B = {120 + step:g}").wait_for()
+    assert shown_row(page) == before
+
+
+def test_a_point_is_added_from_the_palette_and_removed_again(
+    open_live: Open, served: Served
+) -> None:
+    page = open_live()
+    page.get_by_role("tab", name="Build").click()
+    piece = page.locator(".lw-piece").first
+    piece.locator("summary").click()
+    for label, text in (("Name", "Q"), ("x", "120"), ("y", "40")):
+        piece.get_by_label(label, exact=True).fill(text)
+    piece.get_by_label("On link").select_option("rocker")
+    piece.get_by_role("button", name="Add point").click()
+    page.locator(".lw-drawing text[data-of=Q]").wait_for()
+    mechanism = lw.loads(served.workbench.text)
+    assert "Q" in mechanism.description.links["rocker"]
+    page.locator(".lw-group summary", has_text="Remove").click()
+    page.get_by_role("button", name="Remove point Q").click()
+    page.locator(".lw-drawing text[data-of=Q]").wait_for(state="detached")
+    assert "Q" not in lw.loads(served.workbench.text).description.points
+
+
+def test_the_range_of_the_input_is_set(open_live: Open, served: Served) -> None:
+    page = open_live()
+    page.get_by_role("tab", name="Build").click()
+    form = page.locator(".lw-build form", has_text="link crank")
+    form.get_by_label("To [deg]").fill("90")
+    form.get_by_role("button", name="Set the input").click()
+    page.get_by_text("91 of 91 rows found").wait_for()
+    assert float(lw.loads(served.workbench.text).sweep()["crank"][-1]) == 90.0
+
+
+def test_equations_without_points_are_no_blank_page(open_live: Open, served: Served) -> None:
+    page = open_live()
+    served.path.write_text(
+        'format = 1\nname = "Root"\nangle = "rad"\n\n[equations]\nF = "atan(x) = 0"\n\n'
+        "[guess]\nx = 1.5\n",
+        "utf-8",
+    )
+    page.get_by_text("the iteration ran away to infinity").wait_for()
+    assert "atan(x)" in page.locator(".lw-plain-equations").text_content()
+    page.get_by_role("tab", name="Newton").click()
+    page.locator('.lw-outcome[data-trouble="INFLECTION"]').wait_for()
