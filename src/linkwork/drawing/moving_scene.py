@@ -250,7 +250,8 @@ def _attached(
 
 def _some(rows: CountArray, count: int) -> CountArray:
     """At most so many rows from the first to the last."""
-    return rows[np.unique(np.linspace(0, len(rows) - 1, count).round().astype(int))]
+    some: CountArray = rows[np.unique(np.linspace(0, len(rows) - 1, count).round().astype(int))]
+    return some
 
 
 def _one_attached(
