@@ -42,7 +42,8 @@ def test_a_circuit_with_dead_points_is_passed_without_a_jump() -> None:
 
 
 def test_a_range_with_a_gap_is_passed_from_dead_point_to_dead_point() -> None:
-    motion = lw.example("jansen-leg").with_dimensions(**{"O A": 22.0}).sweep()
+    jansen = lw.example("jansen-leg")
+    motion = jansen.changed(lengths={**jansen.description.lengths, "O A": 22}).sweep()
     order, closed = play_order(motion)
     assert not closed
     limits = [row for row, what in enumerate(motion.limit) if what]
