@@ -1,7 +1,7 @@
-"""The TypeScript types of the front end's data, from the Python dataclasses.
+"""The TypeScript types of the front end's data and of the live page's messages, from Python.
 
-python scripts/frontend_types.py          writes frontend/src/page_data.ts
-python scripts/frontend_types.py --check  says whether it is current
+python scripts/frontend_types.py          writes frontend/src/page_data.ts and messages.ts
+python scripts/frontend_types.py --check  says whether they are current
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 from linkwork.viewer import page_data
+from linkwork.viewer.live.typescript import typescript_types
 
-TARGET = Path(__file__).resolve().parent.parent / "frontend" / "src" / "page_data.ts"
+SOURCES = Path(__file__).resolve().parent.parent / "frontend" / "src"
 PLAIN = {str: "string", int: "number", float: "number", bool: "boolean", type(None): "null"}
 
 
@@ -54,16 +55,16 @@ def module_text() -> str:
 
 
 def main(arguments: list[str]) -> int:
-    text = module_text()
-    if arguments == ["--check"]:
-        if not TARGET.exists() or TARGET.read_text(encoding="utf-8") != text:
-            sys.stderr.write(
-                "frontend/src/page_data.ts is not current: run scripts/frontend types\n"
-            )
-            return 1
-        return 0
-    TARGET.write_text(text, encoding="utf-8")
-    return 0
+    texts = {"page_data.ts": module_text(), "messages.ts": typescript_types()}
+    stale = 0
+    for name, text in texts.items():
+        target = SOURCES / name
+        if arguments != ["--check"]:
+            target.write_text(text, encoding="utf-8")
+        elif not target.exists() or target.read_text(encoding="utf-8") != text:
+            sys.stderr.write(f"frontend/src/{name} is not current: run scripts/frontend types\n")
+            stale = 1
+    return stale
 
 
 if __name__ == "__main__":

@@ -23,11 +23,15 @@ export class Arrows {
   shown = false;
 
   constructor(
-    private readonly data: PageData,
+    private data: PageData,
     overlay: SVGGElement,
     private readonly kind: "vectors" | "velocities",
   ) {
     this.group = svg("g", { class: `lw-${kind}` }, overlay);
+  }
+
+  renew(data: PageData): void {
+    this.data = data;
   }
 
   show(view: MotionView): void {

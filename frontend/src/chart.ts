@@ -107,14 +107,16 @@ export class Chart {
     const { input, order, data } = this.view;
     const wide = (this.x.high - this.x.low) / 2;
     const pieces: string[] = [];
+    const usual = this.usualStep(order, input);
     let before = Number.NaN;
     let last = 0;
     const to = (letter: string, value: number, row: number): number =>
       pieces.push(`${letter}${this.x.at(value).toFixed(2)} ${this.y.at(this.series.values[row]!).toFixed(2)}`);
     for (const row of data.closed ? [...order, order[0]!] : order) {
       const value = input.values[row]!;
-      const onward = Math.abs(value - before) <= wide;
-      if (!onward && Number.isFinite(before)) {
+      const far = Math.abs(value - before);
+      const onward = far <= wide && !(far > 1.5 * usual && this.isGap(last, row));
+      if (far > wide) {
         // The curve goes on at the other side, a turn further: end it at the edge.
         const turned = before + Math.sign(before - value) * this.step(order, input);
         const end = this.rowAt(turned, this.series.values[last]!);
@@ -139,7 +141,17 @@ export class Chart {
     return best;
   }
 
-  /** The usual distance of input values. */
+  /** Whether rows without a position lie between two rows of the table. */
+  private isGap(one: number, other: number): boolean {
+    return !this.view.found.slice(Math.min(one, other), Math.max(one, other)).every(Boolean);
+  }
+
+  private usualStep(order: readonly number[], input: Series): number {
+    const steps = order.slice(1).map((row, k) => Math.abs(input.values[row]! - input.values[order[k]!]!));
+    return steps.sort((a, b) => a - b)[Math.floor(steps.length / 2)] ?? 0;
+  }
+
+  /** The distance of the first input values. */
   private step(order: readonly number[], input: Series): number {
     return Math.abs(input.values[order[1] ?? 0]! - input.values[order[0]!]!);
   }

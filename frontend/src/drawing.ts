@@ -25,23 +25,26 @@ export class Drawing {
   private view!: MotionView;
 
   constructor(
-    private readonly data: PageData,
+    private data: PageData,
     parent: Element,
   ) {
-    const [left, bottom, right, top] = data.view as [number, number, number, number];
     this.element = svg(
       "svg",
-      {
-        class: "lw-drawing",
-        viewBox: `${left} ${-top} ${right - left} ${top - bottom}`,
-        role: "img",
-        preserveAspectRatio: "xMidYMid meet",
-      },
+      { class: "lw-drawing", role: "img", preserveAspectRatio: "xMidYMid meet" },
       parent,
     );
+    this.renew(data);
     this.shapes = svg("g", {}, this.element);
     this.overlay = svg("g", { class: "lw-overlay" }, this.element);
     this.handles = svg("g", { class: "lw-handles" }, this.element);
+  }
+
+  /** Other data: sizes of symbols, what is in view. */
+  renew(data: PageData): void {
+    this.data = data;
+    const [left, bottom, right, top] = data.view as [number, number, number, number];
+    this.element.setAttribute("viewBox", `${left} ${-top} ${right - left} ${top - bottom}`);
+    this.fit();
   }
 
   /** Names grow in small drawings, so that they can be read. */

@@ -27,11 +27,29 @@ export interface Hooks {
 
 /** What was mounted. */
 export interface Mounted {
-  /** Show other data of the same mechanism, in the same place of the motion. */
-  update(data: PageData): void;
+  /** Show other data, at the same input; `steady` keeps what is in view, for a drag. */
+  update(data: PageData, steady?: boolean): void;
   /** Show a row of the table. */
   goToRow(row: number): void;
+  /** Show the row whose input is nearest. */
+  goToInput(value: number): void;
+  /** The input of the row that is shown. */
+  readonly input: number;
+  /** Every quantity in the row that is shown. */
+  readonly values: Readonly<Record<string, number>>;
+  /** The elements that can be added to. */
+  readonly places: Places;
   destroy(): void;
+}
+
+/** Parts of what was mounted. */
+export interface Places {
+  readonly head: HTMLElement;
+  readonly stage: HTMLElement;
+  readonly canvas: HTMLElement;
+  readonly side: HTMLElement;
+  readonly toggles: HTMLElement;
+  readonly drawing: Drawing;
 }
 
 let mounted = 0;
@@ -41,6 +59,11 @@ export function mount(element: HTMLElement, data: PageData, hooks: Hooks = {}): 
   return new Page(element, checked(data), hooks);
 }
 
+/** The box around two boxes. */
+function around(one: readonly number[], other: readonly number[]): number[] {
+  return one.map((side, k) => (k < 2 ? Math.min : Math.max)(side, other[k]!));
+}
+
 function checked(data: PageData): PageData {
   if (data.format === FORMAT) return data;
   throw new Error(`this front end reads page data of format ${FORMAT}, not ${data.format}`);
@@ -48,7 +71,8 @@ function checked(data: PageData): PageData {
 
 class Page implements Mounted {
   private readonly root: HTMLElement;
-  private readonly style: HTMLStyleElement;
+  private readonly style = new CSSStyleSheet();
+  readonly places: Places;
   private readonly drawing: Drawing;
   private readonly arrows: readonly Arrows[];
   private readonly transport: Transport;
@@ -58,6 +82,8 @@ class Page implements Mounted {
   private readonly live: HTMLElement;
   private choice: HTMLSelectElement | null = null;
   private summary!: HTMLElement;
+  private title!: HTMLElement;
+  private equationBox!: HTMLElement;
   private views: (MotionView | undefined)[] = [];
   private motion = 0;
   private frame = 0;
@@ -74,9 +100,8 @@ class Page implements Mounted {
   ) {
     this.root = html("div", { class: "lw", id: `lw-${++mounted}`, tabindex: -1 });
     element.replaceChildren(this.root);
-    this.style = html("style", {}, this.root);
-    this.style.textContent = themeRules(data, `#${this.root.id}`);
-    this.heading();
+    this.adopt();
+    const head = this.heading();
     const stage = html("section", { class: "lw-stage", "aria-label": "Drawing" }, this.root);
     const canvas = html("div", { class: "lw-canvas" }, stage);
     this.drawing = new Drawing(data, canvas);
@@ -90,14 +115,16 @@ class Page implements Mounted {
       go: (index) => this.hold(index),
       speed: (factor) => (this.player.speed = factor),
     });
-    this.toggles(stage);
+    const toggles = this.toggles(stage);
     const side = html("section", { class: "lw-side", "aria-label": "Numbers" }, this.root);
     const charts = html("div", { class: "lw-charts" }, side);
     for (const name of this.plotted()) {
       this.charts.push(new Chart(charts, name, (index) => this.hold(index)));
     }
     this.table = new RowTable(side, 1e-10 * (data.view[2]! - data.view[0]!));
-    this.equations(side);
+    this.equationBox = html("div", {}, side);
+    this.equations();
+    this.places = { head, stage, canvas, side, toggles, drawing: this.drawing };
     this.live = html("div", { class: "lw-unseen", role: "status", "aria-live": "polite" }, this.root);
     this.player.onChange(() => this.draw());
     this.listen();
@@ -107,12 +134,32 @@ class Page implements Mounted {
     this.frame = requestAnimationFrame((now) => this.tick(now));
   }
 
-  update(data: PageData): void {
+  update(data: PageData, steady = false): void {
+    const here = this.input;
     const index = this.player.at;
-    this.data = checked(data);
+    const view = steady ? around(this.data.view, data.view) : data.view;
+    this.data = { ...checked(data), view };
     this.views = [];
-    this.style.textContent = themeRules(data, `#${this.root.id}`);
-    this.show(Math.min(this.motion, data.motions.length - 1), index);
+    this.style.replaceSync(themeRules(data, `#${this.root.id}`));
+    this.title.textContent = data.title;
+    this.drawing.renew(this.data);
+    for (const arrows of this.arrows) arrows.renew(this.data);
+    if (data.equations.length) this.equations();
+    this.motion = Math.min(this.motion, data.motions.length - 1);
+    this.show(this.motion, this.nearest(here, index));
+  }
+
+  get input(): number {
+    return this.view.input.values[this.view.order[this.player.at]!]!;
+  }
+
+  get values(): Record<string, number> {
+    const row = this.view.order[this.player.at]!;
+    return Object.fromEntries(this.view.series.map((one) => [one.name, one.values[row]!]));
+  }
+
+  goToInput(value: number): void {
+    this.hold(this.nearest(value, this.player.at));
   }
 
   goToRow(row: number): void {
@@ -123,6 +170,8 @@ class Page implements Mounted {
   destroy(): void {
     this.gone.abort();
     this.sized.disconnect();
+    const sheets = this.sheets();
+    sheets.adoptedStyleSheets = sheets.adoptedStyleSheets.filter((sheet) => sheet !== this.style);
     cancelAnimationFrame(this.frame);
     this.root.remove();
   }
@@ -148,16 +197,31 @@ class Page implements Mounted {
 
   /** Another motion, from where the input is now if it comes by there. */
   private choose(motion: number): void {
-    const here = this.view.input.values[this.view.order[this.player.at]!]!;
+    const here = this.input;
     this.motion = motion;
-    const { input, order } = this.view;
-    let [best, least] = [0, Infinity];
-    order.forEach((row, k) => {
-      const far = Math.abs(input.values[row]! - here);
-      if (far < least) [best, least] = [k, far];
-    });
-    this.show(motion, best);
+    this.show(motion, this.nearest(here, 0));
     this.speak();
+  }
+
+  /** The index whose input is nearest; of those as near, the one nearest to an index. */
+  private nearest(value: number, index: number): number {
+    const { input, order } = this.view;
+    const far = order.map((row) => Math.abs(input.values[row]! - value));
+    const least = Math.min(...far) * (1 + 1e-9) + 1e-12;
+    const alike = far.flatMap((one, k) => (one <= least ? [k] : []));
+    return alike.reduce((best, k) => (Math.abs(k - index) < Math.abs(best - index) ? k : best), alike[0] ?? 0);
+  }
+
+  /** The colours, as a sheet that no content security policy minds. */
+  private adopt(): void {
+    this.style.replaceSync(themeRules(this.data, `#${this.root.id}`));
+    const sheets = this.sheets();
+    sheets.adoptedStyleSheets = [...sheets.adoptedStyleSheets, this.style];
+  }
+
+  private sheets(): Document | ShadowRoot {
+    const root = this.root.getRootNode();
+    return root instanceof ShadowRoot ? root : document;
   }
 
   private hold(index: number): void {
@@ -188,9 +252,9 @@ class Page implements Mounted {
     this.frame = requestAnimationFrame((next) => this.tick(next));
   }
 
-  private heading(): void {
+  private heading(): HTMLElement {
     const head = html("header", { class: "lw-head" }, this.root);
-    html("h1", {}, head, this.data.title);
+    this.title = html("h1", {}, head, this.data.title);
     if (this.data.motions.length > 1) {
       const label = html("label", { class: "lw-choice" }, head, "Circuit ");
       this.choice = html("select", {}, label);
@@ -201,6 +265,7 @@ class Page implements Mounted {
     const theme = html("button", { type: "button", class: "lw-theme", "aria-label": "Light or dark" }, head, "◐");
     theme.title = "Light or dark";
     theme.addEventListener("click", () => this.otherTheme());
+    return head;
   }
 
   private otherTheme(): void {
@@ -209,7 +274,7 @@ class Page implements Mounted {
     this.root.dataset.theme = now === "dark" ? "light" : "dark";
   }
 
-  private toggles(parent: Element): void {
+  private toggles(parent: Element): HTMLElement {
     const box = html("div", { class: "lw-toggles", role: "group", "aria-label": "What is shown" }, parent);
     toggle(box, "Paths", true, (on) => this.drawing.toggle("paths", on));
     toggle(box, "Names", true, (on) => this.drawing.toggle("names", on));
@@ -221,6 +286,7 @@ class Page implements Mounted {
       });
     });
     html("p", { class: "lw-hint" }, box, "Drag a pin or a link. Space plays, arrow keys step.");
+    return box;
   }
 
   /** What is plotted at first: outputs before unknowns, lengths before angles. */
@@ -232,9 +298,10 @@ class Page implements Mounted {
     return ordered.slice(0, 2).map((k) => columns[k]!.name);
   }
 
-  private equations(parent: Element): void {
+  private equations(): void {
     if (!this.data.equations.length) return;
-    const box = html("details", { class: "lw-equations", open: "" }, parent);
+    this.equationBox.replaceChildren();
+    const box = html("details", { class: "lw-equations", open: "" }, this.equationBox);
     html("summary", {}, box, "Loop equations");
     for (const equation of this.data.equations) {
       const line = html("div", { class: "lw-equation" }, box);
@@ -256,7 +323,7 @@ class Page implements Mounted {
     const target = event.target as HTMLElement;
     if (target !== document.body && !this.root.contains(target)) return;
     const tag = target.tagName;
-    const typed = tag === "SELECT" || (tag === "INPUT" && (target as HTMLInputElement).type !== "range");
+    const typed = ["SELECT", "TEXTAREA"].includes(tag) || (tag === "INPUT" && !target.closest(".lw-transport"));
     if (typed && event.key !== "Escape") return;
     if (event.key === " " && (tag === "BUTTON" || tag === "SUMMARY")) return;
     const far = event.shiftKey ? 10 : 1;

@@ -41,6 +41,17 @@ def test_a_circuit_with_dead_points_is_passed_without_a_jump() -> None:
     assert len(turned) == 2  # the input turns back at the two dead points, and nowhere else
 
 
+def test_a_range_with_a_gap_is_passed_from_dead_point_to_dead_point() -> None:
+    jansen = lw.example("jansen-leg")
+    motion = jansen.changed(lengths={**jansen.description.lengths, "O A": 22}).sweep()
+    order, closed = play_order(motion)
+    assert not closed
+    limits = [row for row, what in enumerate(motion.limit) if what]
+    assert len(limits) == 2
+    assert {int(order[0]), int(order[-1])} == set(limits)
+    assert len(order) >= motion.found.sum() - 1  # 0 and 360 degrees are one position
+
+
 def test_a_cam_is_played_through_its_dwell() -> None:
     motion = lw.example("cam-roller-follower").sweep()
     order, closed = play_order(motion)

@@ -42,6 +42,8 @@ from linkwork.results.motion import Motion
 __all__ = ["Moving", "MovingScene", "moving_scene"]
 
 _SAMPLED = 9  # rows at which names must not collide
+_FEW = 4  # the same, for a picture that somebody waits for
+_TRIED = 25  # rows that tell what carries a shape
 _ARC_PIECES = 32  # of an arc that changes its sweep
 
 
@@ -135,6 +137,7 @@ def moving_scene(
     traces: Sequence[str] | None = None,
     within: Box | None = None,
     like: MovingScene | None = None,
+    sampled: bool = False,
 ) -> MovingScene:
     """A motion as it is drawn.
 
@@ -151,6 +154,9 @@ def moving_scene(
         A motion of the same mechanism with other dimensions, drawn before: what carries each
         shape, and where names stand, are taken over if the shapes are the same. This makes it
         quick enough to be done while a dimension is dragged.
+    sampled : bool
+        What carries each shape is found from some of the rows, many times faster, for a picture
+        that somebody waits for. A shape that is drawn in none of these rows is left out.
 
     Raises
     ------
@@ -167,12 +173,13 @@ def moving_scene(
     shown = dict(_keyed(_drawn(pose, measures)))
     carried = None if like is None else _carried(like)
     if carried is None or carried.keys() != shown.keys():
-        like = None
-    parts = (
-        _attached(motion, pose, measures, frames, rows)
-        if like is None or carried is None
-        else _taken_over(motion, pose, measures, shown, carried, rows)
-    )
+        like = carried = None
+    if carried is None and sampled:
+        carried = _attached(motion, pose, measures, frames, _some(rows, _TRIED))
+    if carried is not None and carried.keys() == shown.keys():
+        parts = _taken_over(motion, pose, measures, shown, carried, rows)
+    else:
+        parts = list(_attached(motion, pose, measures, frames, rows).values())
     paths = trace_symbols(pose, traced(pose, traces), measures)
     parts += [Moving(shape=path, frame=STILL) for path in paths]
     row = int(rows[0])
@@ -185,7 +192,7 @@ def moving_scene(
             frames=frames,
             parts=tuple(parts),
         )
-        parts += _names(motion, pose, moving, rows)
+        parts += _names(motion, pose, moving, _some(rows, _FEW if sampled else _SAMPLED))
     else:
         parts += _arrows_as_before(like, frames, row)
         parts += _names_as_before(like, pose, measures)
@@ -227,18 +234,24 @@ def _keyed(primitives: Iterator[Primitive]) -> Iterator[tuple[Key, Primitive]]:
 
 def _attached(
     motion: Motion, pose: Pose, measures: Measures, frames: Frames, rows: CountArray
-) -> list[Moving]:
-    """What carries each primitive, from its coordinates in all rows."""
+) -> dict[Key, Moving]:
+    """What carries each primitive, from its coordinates in these rows."""
     first: dict[Key, Primitive] = {}
     course: dict[Key, dict[int, Primitive]] = {}
     for k, row in enumerate(rows):
         for key, primitive in _keyed(_drawn(pose.moved_to(motion, int(row)), measures)):
             first.setdefault(key, primitive)
             course.setdefault(key, {})[k] = primitive
-    return [
-        _one_attached(first[key], along, frames, rows, motion, measures)
+    return {
+        key: _one_attached(first[key], along, frames, rows, motion, measures)
         for key, along in course.items()
-    ]
+    }
+
+
+def _some(rows: CountArray, count: int) -> CountArray:
+    """At most so many rows from the first to the last."""
+    some: CountArray = rows[np.unique(np.linspace(0, len(rows) - 1, count).round().astype(int))]
+    return some
 
 
 def _one_attached(
@@ -375,10 +388,9 @@ def _driving(pose: Pose, arrow: Primitive, frames: Frames) -> Frame:
 
 
 def _names(motion: Motion, pose: Pose, moving: MovingScene, rows: CountArray) -> Iterator[Moving]:
-    """The names of points, each beside its point in one direction for the whole motion."""
-    sampled = rows[np.unique(np.linspace(0, len(rows) - 1, _SAMPLED).round().astype(int))]
-    poses = [pose.moved_to(motion, int(row)) for row in sampled]
-    drawn = [moving.at(int(row)).primitives for row in sampled]
+    """The names of points, each in one direction from its point that is free in these rows."""
+    poses = [pose.moved_to(motion, int(row)) for row in rows]
+    drawn = [moving.at(int(row)).primitives for row in rows]
     for text in lasting_labels(poses, drawn, moving.scene.measures):
         yield _name(text, pose)
 

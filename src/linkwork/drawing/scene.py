@@ -81,7 +81,10 @@ class Role(Enum):
     @property
     def layer(self) -> int:
         """The height of the role in the stack, 0 at the bottom."""
-        return list(Role).index(self)
+        return _LAYERS[self]
+
+
+_LAYERS = {role: layer for layer, role in enumerate(Role)}
 
 
 @dataclass(frozen=True, kw_only=True)

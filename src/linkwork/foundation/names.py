@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterable
+from functools import lru_cache
 
 __all__ = ["GREEK", "canonical", "is_name", "latex_name", "pretty", "spelled"]
 
@@ -18,6 +19,7 @@ GREEK = {
 _LETTER = {spelled: letter for letter, spelled in GREEK.items() if letter != "ς"}
 
 
+@lru_cache(maxsize=4096)  # asked for again and again while a dimension is dragged
 def canonical(name: str) -> str:
     """The one form under which a name is looked up: NFKC, Greek letters spelled out."""
     folded = unicodedata.normalize("NFKC", name)

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -289,10 +290,10 @@ class Motion:
         places = [f"{point}.{axis}" for point in self.points for axis in "xy"]
         raise UnknownNameError(f'there is no "{name}" {choices("names", [*known, *places], name)}')
 
-    @property
+    @cached_property
     def found(self) -> BoolArray:
         """Which rows hold a position, shape (N,)."""
-        return np.array([status.ok for status in self.status], dtype=bool)
+        return read_only(np.array([status.ok for status in self.status], dtype=bool))
 
     @property
     def asked(self) -> BoolArray:

@@ -245,6 +245,7 @@ def _limits(motion: Motion) -> Iterator[LimitMark]:
             yield LimitMark(row=row, text=text)
 
 
+@lru_cache
 def _theme(theme: Theme) -> ThemeData:
     return ThemeData(
         background=theme.background,

@@ -21,8 +21,10 @@ def play_order(motion: Motion) -> tuple[CountArray, bool]:
     meet; runs that meet nothing follow each other.
     """
     places = _places(motion)
-    runs = _runs(places, motion.found)
-    near = _MEETING * max((_largest_step(places[run]) for run in runs), default=0.0)
+    runs = _runs(places, motion)
+    limit = np.array([bool(what) for what in motion.limit], dtype=bool)
+    usual = (places[run[~limit[run]]] for run in runs)
+    near = _MEETING * max(map(_largest_step, usual), default=0.0)
     chain = [runs.pop(0)]
     while runs:
         last, first = places[chain[-1][-1]], places[chain[0][0]]
@@ -67,12 +69,18 @@ def _passed_once(order: CountArray, places: ComplexArray) -> BoolArray:
     return kept
 
 
-def _runs(places: ComplexArray, found: BoolArray) -> list[CountArray]:
-    """Neighbouring found rows, broken also where the mechanism jumps."""
-    rows = np.flatnonzero(found)
+def _runs(places: ComplexArray, motion: Motion) -> list[CountArray]:
+    """Neighbouring found rows, broken also where the mechanism jumps.
+
+    Beside a limit it moves far for a small step of the input: that is no jump on one branch.
+    """
+    rows = np.flatnonzero(motion.found)
     steps = np.abs(np.diff(places[rows], axis=0)).max(axis=1, initial=0.0)
     usual = float(np.quantile(steps, 0.95)) if len(steps) else 0.0
-    breaks = (np.diff(rows) > 1) | (steps > 8 * max(usual, 1e-300))
+    limit = np.array([bool(what) for what in motion.limit], dtype=bool)[rows]
+    branch = np.array(motion.branch)[rows]
+    at_limit = (limit[:-1] | limit[1:]) & (branch[:-1] == branch[1:])
+    breaks = (np.diff(rows) > 1) | ((steps > 8 * max(usual, 1e-300)) & ~at_limit)
     return list(np.split(rows, np.flatnonzero(breaks) + 1))
 
 

@@ -34,6 +34,8 @@ def test_an_event_has_all_its_fields() -> None:
     assert "  limits: readonly (LimitFound)[];" in cycle
     assert "  worst_residual: number | null;" in cycle
     assert "?" not in cycle
+    assert "  page: PageData | null;" in cycle
+    assert "interface PageData" not in typescript_types()
 
 
 def test_every_message_and_every_part_has_its_type_once() -> None:
@@ -41,5 +43,6 @@ def test_every_message_and_every_part_has_its_type_once() -> None:
     names = re.findall(r"export interface (\w+)", text)
     assert len(set(names)) == len(names)
     assert {m.__name__ for m in (*REQUESTS, *EVENTS)} <= set(names)
+    names.append("PageData")  # imported from the module of its own
     used = set(re.findall(r"\b[A-Z]\w+", re.sub(r"//.*|\".*?\"", "", text)))
     assert used - set(names) == {"Record", "LiveEdit", "LiveRequest", "LiveEvent"}

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from linkwork.viewer.page_data import PageData
+
 __all__ = [
     "EVENTS",
     "CannotClose",
@@ -119,7 +121,8 @@ class MotionFound:
 
     ``live``: found from the cycle before while something is dragged, nothing proved; some of the
     rows, ``missing`` and ``certified`` count them all.
-    ``points``: for every point its x and its y.
+    ``points``: for every point its x and its y. ``page``: all rows as they are drawn, its
+    equations only where the cycle is not ``live``; ``None`` where there is nothing to draw.
     """
 
     live: bool
@@ -133,6 +136,7 @@ class MotionFound:
     limits: tuple[LimitFound, ...]
     worst_residual: float | None
     message: str
+    page: PageData | None
 
 
 @dataclass(frozen=True, kw_only=True)

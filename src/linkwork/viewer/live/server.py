@@ -16,7 +16,7 @@ from linkwork.viewer.live.desk import Desk
 from linkwork.viewer.live.events import Event, Refused
 from linkwork.viewer.live.guard import SUBPROTOCOL, Guard
 from linkwork.viewer.live.messages import LARGEST_MESSAGE, MessageError, decoded, encoded
-from linkwork.viewer.live.placeholder import PAGES
+from linkwork.viewer.live.served_pages import served_pages
 from linkwork.viewer.live.workbench import Workbench
 
 __all__ = ["LiveServer"]
@@ -51,7 +51,7 @@ class LiveServer:
         self._socket = _listening(port)
         self.port: int = self._socket.getsockname()[1]
         self.token = secrets.token_urlsafe(32)
-        self._guard = Guard(port=self.port, token=self.token, paths=PAGES)
+        self._guard = Guard(port=self.port, token=self.token, paths=served_pages())
         self._workbench = workbench
         self._page: asyncio.Queue[str] | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -117,7 +117,7 @@ class LiveServer:
         headers = self._guard.security_headers
         refusal = self._guard.refused(scope["method"], scope["raw_path"], scope["headers"])
         if refusal is None:
-            status, (kind, content) = 200, PAGES[scope["path"]]
+            status, (kind, content) = 200, served_pages()[scope["path"]]
         else:
             status, kind, content = refusal.status, "text/plain", refusal.message.encode()
             headers["connection"] = "close"

@@ -21,6 +21,7 @@ from linkwork.results.motion import Motion
 from linkwork.results.nearest_assembly import NearestAssembly
 from linkwork.results.position import Position
 from linkwork.viewer.live import events as tell
+from linkwork.viewer.page_data import PageData
 
 __all__ = [
     "cannot_close",
@@ -43,7 +44,9 @@ Numbers = dict[str, float | None]
 _LIVE_ROWS = 181
 
 
-def motion_found(motion: Motion, *, live: bool, message: str = "") -> tell.MotionFound:
+def motion_found(
+    motion: Motion, *, live: bool, message: str = "", page: PageData | None = None
+) -> tell.MotionFound:
     """The cycle; every column without its rates. On the way, some of its rows will do."""
     tables = (motion.unknowns, motion.links, motion.sliders, motion.outputs)
     name, unit = next(iter(motion.input_units.items()))
@@ -71,6 +74,7 @@ def motion_found(motion: Motion, *, live: bool, message: str = "") -> tell.Motio
         ),
         worst_residual=_number(motion.worst),
         message=message or motion.message,
+        page=page,
     )
 
 

@@ -10,13 +10,16 @@ from typing import Any
 from linkwork.viewer.live.events import EVENTS
 from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.requests import EDITS, REQUESTS
+from linkwork.viewer.page_data import PageData
 
 __all__ = ["typescript_types"]
 
 _PLAIN = {str: "string", float: "number", int: "number", bool: "boolean", type(None): "null"}
 _HEAD = """\
-// Written by scripts/message-types from the dataclasses in
+// Written by scripts/frontend types from the dataclasses in
 // linkwork.viewer.live.requests and linkwork.viewer.live.events: change those.
+
+import type { PageData } from "./page_data";
 """
 
 
@@ -78,6 +81,8 @@ def _parts_of_events() -> Iterator[type]:
     found: dict[type, None] = {}
 
     def look(kind: Any) -> None:
+        if kind is PageData:  # has its own module
+            return
         if dataclasses.is_dataclass(kind) and isinstance(kind, type):
             if kind not in EVENTS:
                 found[kind] = None

@@ -20,6 +20,7 @@ from linkwork.viewer.live.edits import Before, Followed, applied
 from linkwork.viewer.live.history import History
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
 from linkwork.viewer.live.messages import kind_of
+from linkwork.viewer.live.motion_picture import MotionPicture
 from linkwork.viewer.live.solvable import Read, Solvable
 
 __all__ = ["GivenUpError", "Workbench"]
@@ -71,6 +72,7 @@ class Workbench:
         self._mechanism: Solvable = read(file.text, file.name)
         self._history = History(file.text)
         self._motion: Motion | None = None
+        self._picture = MotionPicture()
         self._solution: Events = []  # the cycle of the mechanism as it is, once solved
         self._owed = False  # a cycle was given up, and no other has been told since
         self._drag: _Drag | None = None
@@ -293,7 +295,9 @@ class Workbench:
             self._owed = True
             return []
         self._motion, self._owed = motion, False
-        events: Events = [telling.motion_found(motion, live=live, message=message)]
+        equations = () if live else self._mechanism.equations().mathml()
+        page = self._picture.page(motion, equations)
+        events: Events = [telling.motion_found(motion, live=live, message=message, page=page)]
         if all(status is Status.NO_START for status in motion.status):
             failure = motion.failure
             remedies = {} if failure is None else {r.length: r.needed for r in failure.remedies}

@@ -1,0 +1,69 @@
+// Undo, redo, reload, save; whether there is something to save.
+
+import type { FileState } from "../messages";
+import { html } from "../svg";
+import type { Desk } from "./asking";
+
+export class Bar {
+  readonly element = html("div", { class: "lw-bar", role: "toolbar", "aria-label": "File" });
+  private readonly file: HTMLElement;
+  private readonly undo: HTMLButtonElement;
+  private readonly redo: HTMLButtonElement;
+  private readonly save: HTMLButtonElement;
+  private readonly gone = new AbortController();
+
+  constructor(private readonly desk: Desk) {
+    this.file = html("span", { class: "lw-file" }, this.element);
+    this.undo = this.button("↶", "Undo", () => desk.ask({ kind: "undo" }));
+    this.redo = this.button("↷", "Redo", () => desk.ask({ kind: "redo" }));
+    this.button("Reload", "Read the file again", () => desk.ask({ kind: "reload" }));
+    this.save = this.button("Save", "Save (Ctrl+S)", () => desk.ask({ kind: "save" }));
+    this.save.classList.add("lw-save");
+    document.addEventListener("keydown", (event) => this.key(event), { signal: this.gone.signal });
+    window.addEventListener("beforeunload", (event) => {
+      if (this.element.dataset.unsaved === "true" && !this.save.disabled) event.preventDefault();
+    });
+  }
+
+  show(state: FileState): void {
+    this.element.dataset.unsaved = String(state.unsaved);
+    const name = state.file.split(/[\\/]/).pop();
+    this.file.textContent = `${name}${state.unsaved ? " •" : ""}`;
+    this.file.title = `${state.file}: ${state.unsaved ? "changes are not saved" : "saved"}`;
+    this.file.setAttribute("aria-label", `${state.file}, ${state.unsaved ? "changes are not saved" : "saved"}`);
+    label(this.undo, "Undo", "Ctrl+Z", state.undo);
+    label(this.redo, "Redo", "Ctrl+Shift+Z", state.redo);
+    this.save.disabled = false;
+    this.save.classList.toggle("lw-wanted", state.unsaved);
+    document.title = `${state.unsaved ? "• " : ""}${state.title} – Linkwork`;
+  }
+
+  /** Nothing can be done any more. */
+  close(): void {
+    this.gone.abort();
+    for (const button of this.element.querySelectorAll("button")) button.disabled = true;
+  }
+
+  private button(text: string, name: string, act: () => void): HTMLButtonElement {
+    const button = html("button", { type: "button", "aria-label": name, title: name }, this.element, text);
+    button.addEventListener("click", act);
+    return button;
+  }
+
+  private key(event: KeyboardEvent): void {
+    if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+    const key = event.key.toLowerCase();
+    const typing = (event.target as HTMLElement).matches("textarea, input[type=text]");
+    if (key === "s") this.desk.ask({ kind: "save" });
+    else if (key === "z" && !typing) this.desk.ask({ kind: event.shiftKey ? "redo" : "undo" });
+    else if (key === "y" && !typing) this.desk.ask({ kind: "redo" });
+    else return;
+    event.preventDefault();
+  }
+}
+
+function label(button: HTMLButtonElement, name: string, keys: string, what: string): void {
+  button.disabled = what === "";
+  button.title = what ? `${name}: ${what} (${keys})` : `Nothing to ${name.toLowerCase()}`;
+  button.setAttribute("aria-label", what ? `${name}: ${what}` : name);
+}

@@ -1,0 +1,198 @@
+// Newton's steps one by one, from a guess that is dragged: |F|, the unknowns, the Jacobian, the end.
+
+import type { FileState, NewtonIterate, NewtonShown } from "../messages";
+import type { Mounted } from "../mount";
+import { unitText } from "../chart";
+import { powerOfTen, shortNumber, trimmed } from "../numbers";
+import { html, svg } from "../svg";
+import type { Desk } from "./asking";
+import { clean, rangeAround } from "./ranges";
+import { drawLinks } from "./schematic";
+
+/** The four troubles, as people would say them. */
+export const TROUBLES: Readonly<Record<string, string>> = {
+  SINGULAR_DERIVATIVE: "The Jacobian is singular: a step has no end, or goes far away.",
+  INFLECTION: "It runs away or in circles about an inflection.",
+  ANOTHER_ROOT: "It went to another root than the one beside the guess.",
+  LOCAL_EXTREMUM: "It is caught at a place where |F| is least, but not zero.",
+};
+
+export class Newton {
+  readonly element = html("div", { class: "lw-newton" });
+  private readonly guesses: HTMLElement;
+  private readonly steps: HTMLElement;
+  private readonly detail: HTMLElement;
+  private readonly outcome: HTMLElement;
+  private readonly full: HTMLInputElement;
+  private readonly group = svg("g", { class: "lw-iterate" });
+  private guess: Record<string, number> = {};
+  private at: Record<string, number> = {};
+  private found: NewtonShown | null = null;
+  private chosen = 0;
+  private page: Mounted | null = null;
+  private on = false;
+
+  constructor(private readonly desk: Desk) {
+    html("p", { class: "lw-lead" }, this.element, "Drag the guess and watch where Newton–Raphson goes from it, step by step, at the input shown.");
+    this.guesses = html("div", {}, this.element);
+    const row = html("div", { class: "lw-newton-row" }, this.element);
+    this.button(row, "Guess of the file", () => this.begin());
+    this.button(row, "‹ Step", () => this.choose(this.chosen - 1));
+    this.button(row, "Step ›", () => this.choose(this.chosen + 1));
+    const label = html("label", { class: "lw-toggle", title: "The textbook's bare method: a step may turn a link as far as it likes" }, row);
+    this.full = html("input", { type: "checkbox" }, label);
+    label.append("Full steps");
+    this.full.addEventListener("change", () => this.find());
+    this.outcome = html("p", { class: "lw-outcome", role: "status" }, this.element);
+    this.steps = html("div", { class: "lw-table lw-steps" }, this.element);
+    this.detail = html("div", { class: "lw-table" }, this.element);
+  }
+
+  attach(page: Mounted): void {
+    this.page = page;
+    page.places.drawing.element.append(this.group);
+  }
+
+  shown(on: boolean): void {
+    this.on = on;
+    this.page?.places.drawing.dim(on);
+    if (on) this.begin();
+    else this.group.replaceChildren();
+  }
+
+  renew(): void {
+    if (this.on) this.begin();
+  }
+
+  show(found: NewtonShown): void {
+    if (!this.on) return;
+    this.found = found;
+    const trouble = TROUBLES[found.trouble] ?? "";
+    this.outcome.textContent = [trouble, found.message].filter(Boolean).join(" ");
+    this.outcome.dataset.trouble = found.trouble;
+    this.outcome.dataset.status = found.status;
+    this.list();
+    this.choose(Math.min(this.chosen, found.iterates.length - 1));
+  }
+
+  private button(parent: Element, text: string, act: () => void): void {
+    html("button", { type: "button" }, parent, text).addEventListener("click", act);
+  }
+
+  /** From the guess of the file, at the input that is shown. */
+  private begin(): void {
+    const file = this.desk.file();
+    this.page?.goToInput(this.page.input); // it stands still
+    this.at = this.desk.here();
+    this.guess = Object.fromEntries(file.unknowns.map((one) => [one.name, one.guess]));
+    this.chosen = 0;
+    this.sliders(file);
+    this.find();
+  }
+
+  private sliders(file: FileState): void {
+    this.guesses.replaceChildren();
+    const size = Math.max(...file.numbers.map((one) => Math.abs(one.value)), 1e-3);
+    for (const unknown of file.unknowns) {
+      const line = html("div", { class: "lw-number", "data-guess": unknown.name }, this.guesses);
+      html("span", { class: "lw-number-name" }, line, unknown.name);
+      const angle = unknown.unit === "deg" || unknown.unit === "rad";
+      const range = angle ? rangeAround(unknown.guess, unknown.unit, size) : rangeAround(0, unknown.unit, size);
+      const reach = angle ? 2 : 1;
+      const middle = angle ? unknown.guess : 0;
+      const slider = html(
+        "input",
+        {
+          type: "range",
+          min: middle - reach * (middle - range.low),
+          max: middle + reach * (range.high - middle),
+          step: range.step,
+          "aria-label": `Guess of ${unknown.name}`,
+        },
+        line,
+      );
+      slider.value = String(unknown.guess);
+      const value = html("output", { class: "lw-value" }, line, text(unknown.guess, unknown.unit));
+      slider.addEventListener("input", () => {
+        this.guess[unknown.name] = clean(Number(slider.value));
+        value.textContent = text(Number(slider.value), unknown.unit);
+        this.chosen = 0;
+        this.find();
+      });
+    }
+  }
+
+  private find(): void {
+    this.desk.latest({ kind: "newton_steps", guess: this.guess, at: this.at, full_steps: this.full.checked });
+  }
+
+  /** Every iterate in a line: which can be chosen. */
+  private list(): void {
+    this.steps.replaceChildren();
+    const body = html("table", {}, this.steps);
+    const head = html("tr", {}, html("thead", {}, body));
+    for (const title of ["k", "|F|", "step"]) html("th", { scope: "col" }, head, title);
+    const rows = html("tbody", {}, body);
+    this.found!.iterates.forEach((iterate, k) => {
+      const line = html("tr", {}, rows);
+      const cell = html("th", { scope: "row" }, line);
+      const blocks = new Set(this.found!.iterates.map((one) => one.equations.join())).size;
+      const name = blocks > 1 ? `${iterate.k} of ${iterate.equations.join(", ")}` : String(iterate.k);
+      this.button(cell, iterate.k === 0 ? `guess${blocks > 1 ? ` of ${iterate.equations.join(", ")}` : ""}` : name, () => this.choose(k));
+      html("td", {}, line, small(iterate.norm));
+      html("td", {}, line, iterate.step === null ? "" : small(iterate.step));
+    });
+  }
+
+  private choose(k: number): void {
+    const iterates = this.found?.iterates ?? [];
+    const iterate = iterates[Math.max(0, Math.min(k, iterates.length - 1))];
+    if (iterate === undefined) return;
+    this.chosen = iterates.indexOf(iterate);
+    this.steps.querySelectorAll("tbody tr").forEach((line, number) => {
+      line.classList.toggle("lw-chosen", number === this.chosen);
+      line.querySelector("button")!.setAttribute("aria-pressed", String(number === this.chosen));
+    });
+    this.details(iterate);
+    this.draw(iterate);
+  }
+
+  private details(iterate: NewtonIterate): void {
+    this.detail.replaceChildren();
+    const names = Object.keys(iterate.unknowns);
+    const table = html("table", {}, this.detail);
+    html("caption", {}, table, "F and the Jacobian ∂F/∂q at this step");
+    const head = html("tr", {}, html("thead", {}, table));
+    for (const title of ["", "F", ...names]) html("th", { scope: "col" }, head, title);
+    const body = html("tbody", {}, table);
+    const values = html("tr", {}, body);
+    html("th", { scope: "row" }, values, "q");
+    html("td", {}, values);
+    for (const name of names) {
+      const unit = this.desk.file().unknowns.find((one) => one.name === name)?.unit ?? "";
+      html("td", {}, values, text(iterate.unknowns[name] ?? NaN, unit));
+    }
+    iterate.jacobian.forEach((row, k) => {
+      const line = html("tr", {}, body);
+      html("th", { scope: "row" }, line, `F${String(k + 1)}`);
+      html("td", {}, line, small(iterate.residuals[k]));
+      for (const entry of row) html("td", {}, line, small(entry));
+    });
+  }
+
+  private draw(iterate: NewtonIterate): void {
+    const matrix = this.page?.places.drawing.element.getScreenCTM();
+    if (!matrix) return;
+    const stroke = 1.2 / matrix.a;
+    drawLinks(this.group, this.desk.file().links, iterate.points, { stroke, names: 11 * stroke });
+  }
+}
+
+function text(value: number, unit: string): string {
+  return `${trimmed(shortNumber(value))}${unitText(unit)}`;
+}
+
+function small(value: number | null | undefined): string {
+  if (value === null || value === undefined) return "–";
+  return Math.abs(value) < 1e-3 && value !== 0 ? powerOfTen(value) : shortNumber(value, 4);
+}

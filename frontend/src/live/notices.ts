@@ -1,0 +1,102 @@
+// What is told beside the drawing: where the motion ends, what went wrong, what to decide.
+
+import type { FileChanged, LimitFound, MotionFound, ProblemsFound } from "../messages";
+import { html } from "../svg";
+
+/** How many dead points are told one by one. */
+const TOLD = 4;
+
+/** What the program says of a cycle that needs no word. */
+const FOUND = "position found";
+
+export type Choices = Readonly<Record<string, () => void>>;
+
+export class Notices {
+  readonly element = html("div", { class: "lw-notices" });
+  private readonly motion = html("div", { class: "lw-motion-notice", role: "status" }, this.element);
+  private readonly message = html("div", { class: "lw-message", role: "alert" }, this.element);
+
+  /** The dead points of a motion, each a button that goes there. */
+  limits(found: MotionFound, unit: string, goTo: (input: number) => void): void {
+    const text = reach(found);
+    this.motion.replaceChildren();
+    this.motion.hidden = !text;
+    this.motion.dataset.limits = String(found.limits.length);
+    if (!text) return;
+    html("span", {}, this.motion, text);
+    for (const limit of found.limits.slice(0, TOLD)) {
+      const button = html("button", { type: "button", class: "lw-limit-button" }, this.motion, told(limit, unit));
+      button.title = limit.sentence;
+      button.addEventListener("click", () => goTo(limit.input));
+    }
+    if (found.limits.length > TOLD) html("span", {}, this.motion, `and ${found.limits.length - TOLD} more`);
+  }
+
+  /** A mechanism that stays open. */
+  open(text: string, remedies: readonly (readonly [string, string, () => void])[]): void {
+    this.motion.replaceChildren();
+    this.motion.hidden = false;
+    html("span", { class: "lw-open" }, this.motion, text);
+    for (const [label, title, set] of remedies) {
+      const button = html("button", { type: "button" }, this.motion, label);
+      button.title = title;
+      button.addEventListener("click", set);
+    }
+  }
+
+  problems(found: ProblemsFound): void {
+    this.clear();
+    const several = found.problems.length > 1;
+    html("strong", {}, this.message, several ? `${found.problems.length} problems; nothing was changed.` : "Not changed:");
+    const list = html("ul", {}, this.message);
+    for (const problem of found.problems) {
+      const entry = html("li", {}, list);
+      const where = [problem.line === null ? "" : `line ${problem.line}`, problem.key].filter(Boolean).join(", ");
+      if (where) html("code", {}, entry, where);
+      entry.append(` ${problem.message}`);
+    }
+    this.closable();
+  }
+
+  changed(event: FileChanged, choices: Choices): void {
+    this.say(event.message, event.reloaded || !event.unsaved ? {} : choices);
+  }
+
+  say(text: string, choices: Choices = {}, lasting = true): void {
+    this.clear();
+    html("span", {}, this.message, text);
+    for (const [label, act] of Object.entries(choices)) {
+      const button = html("button", { type: "button" }, this.message, label);
+      button.addEventListener("click", () => {
+        this.clear();
+        act();
+      });
+    }
+    if (lasting) this.closable();
+  }
+
+  clear(): void {
+    this.message.replaceChildren();
+  }
+
+  private closable(): void {
+    const close = html("button", { type: "button", class: "lw-close", "aria-label": "Close this message" }, this.message, "×");
+    close.addEventListener("click", () => this.clear());
+  }
+}
+
+/** How much of the range is reached, in words; empty if all of it is. */
+export function reach(found: Pick<MotionFound, "limits" | "missing" | "message">): string {
+  if (!found.limits.length && !found.missing) return found.message === FOUND ? "" : found.message;
+  const missing = found.missing === 1 ? "1 position" : `${found.missing} positions`;
+  if (!found.limits.length) return `${missing} of the range cannot be reached.`;
+  const kind = found.limits.every((limit) => limit.what === "dead point") ? "Dead point" : "Limit";
+  const head = `${kind}${found.limits.length > 1 ? "s" : ""}`;
+  return found.missing ? `${missing} cannot be reached. ${head}:` : `${head}:`;
+}
+
+/** A limit in a few signs: where the input is. */
+export function told(limit: LimitFound, unit: string): string {
+  const value = String(Number(limit.input.toFixed(4))).replace("-", "\u2212");
+  return `${limit.located ? "" : "about "}${value}${unit === "deg" ? "°" : unit ? ` ${unit}` : ""}`;
+}

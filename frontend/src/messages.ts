@@ -1,0 +1,410 @@
+// Written by scripts/frontend types from the dataclasses in
+// linkwork.viewer.live.requests and linkwork.viewer.live.events: change those.
+
+import type { PageData } from "./page_data";
+
+export interface SetNumber {
+  kind: "set_number";
+  id?: number;
+  name: string;
+  value: number | string;
+  live?: boolean;
+}
+
+export interface MovePoint {
+  kind: "move_point";
+  id?: number;
+  point: string;
+  x: number;
+  y: number;
+  lengths_follow?: boolean;
+  live?: boolean;
+}
+
+export interface SetInput {
+  kind: "set_input";
+  id?: number;
+  number?: number;
+  drive?: string | null;
+  name?: string | null;
+  start?: number | string | null;
+  stop?: number | string | null;
+  step?: number | string | null;
+  speed?: number | string | null;
+}
+
+export interface AddPoint {
+  kind: "add_point";
+  id?: number;
+  name: string;
+  x: number;
+  y: number;
+  links?: readonly (string)[];
+}
+
+export interface RemovePoint {
+  kind: "remove_point";
+  id?: number;
+  name: string;
+}
+
+export interface AddLink {
+  kind: "add_link";
+  id?: number;
+  name: string;
+  points: readonly (string)[];
+}
+
+export interface RemoveLink {
+  kind: "remove_link";
+  id?: number;
+  name: string;
+}
+
+export interface AddJoint {
+  kind: "add_joint";
+  id?: number;
+  link: string;
+  point: string;
+}
+
+export interface RemoveJoint {
+  kind: "remove_joint";
+  id?: number;
+  link: string;
+  point: string;
+}
+
+export interface AddSlider {
+  kind: "add_slider";
+  id?: number;
+  name: string;
+  link: string;
+  points: readonly (string)[];
+  on: string;
+  line: readonly (string)[];
+  offset?: number;
+  angle?: number | null;
+}
+
+export interface AddGear {
+  kind: "add_gear";
+  id?: number;
+  name: string;
+  wheels: readonly (string)[];
+  centers: readonly (string)[];
+  radii?: readonly (number)[];
+  teeth?: readonly (number)[];
+  arm?: string | null;
+  internal?: boolean;
+}
+
+export interface RemovePart {
+  kind: "remove_part";
+  id?: number;
+  name: string;
+}
+
+export interface ChooseConfiguration {
+  kind: "choose_configuration";
+  id?: number;
+  name: string;
+}
+
+export interface Together {
+  kind: "together";
+  id?: number;
+  edits: readonly (LiveEdit)[];
+}
+
+export interface SetText {
+  kind: "set_text";
+  id?: number;
+  text: string;
+}
+
+export interface SolveAt {
+  kind: "solve_at";
+  id?: number;
+  at: Record<string, number>;
+  configuration?: string | null;
+}
+
+export interface ListConfigurations {
+  kind: "list_configurations";
+  id?: number;
+  at: Record<string, number>;
+}
+
+export interface NewtonSteps {
+  kind: "newton_steps";
+  id?: number;
+  guess: Record<string, number>;
+  at: Record<string, number>;
+  full_steps?: boolean;
+  max_steps?: number;
+}
+
+export interface Undo {
+  kind: "undo";
+  id?: number;
+}
+
+export interface Redo {
+  kind: "redo";
+  id?: number;
+}
+
+export interface Save {
+  kind: "save";
+  id?: number;
+  overwrite?: boolean;
+}
+
+export interface Reload {
+  kind: "reload";
+  id?: number;
+}
+
+export interface FileState {
+  kind: "file_state";
+  answers: number | null;
+  file: string;
+  title: string;
+  text: string;
+  form: string;
+  unsaved: boolean;
+  undo: string;
+  redo: string;
+  length_unit: string;
+  angle_unit: string;
+  configuration: string;
+  numbers: readonly (ChangeableNumber)[];
+  unknowns: readonly (Unknown)[];
+  inputs: readonly (DrivenInput)[];
+  points: Record<string, readonly [number, number]>;
+  links: readonly (Link)[];
+  traced: readonly (string)[];
+  equations: readonly (string)[];
+}
+
+export interface MotionFound {
+  kind: "motion_found";
+  answers: number | null;
+  live: boolean;
+  rows: number;
+  missing: number;
+  certified: number;
+  inputs: Record<string, readonly (number)[]>;
+  points: Record<string, readonly [readonly (number | null)[], readonly (number | null)[]]>;
+  columns: Record<string, readonly (number | null)[]>;
+  status: readonly (string)[];
+  limits: readonly (LimitFound)[];
+  worst_residual: number | null;
+  message: string;
+  page: PageData | null;
+}
+
+export interface PositionFound {
+  kind: "position_found";
+  answers: number | null;
+  status: string;
+  message: string;
+  input: Record<string, number>;
+  unknowns: Record<string, number | null>;
+  links: Record<string, number | null>;
+  sliders: Record<string, number | null>;
+  outputs: Record<string, number | null>;
+  points: Record<string, readonly [number, number]>;
+  residual: number | null;
+  iterations: number;
+  condition: number | null;
+  certified: boolean;
+}
+
+export interface CannotClose {
+  kind: "cannot_close";
+  answers: number | null;
+  message: string;
+  input: Record<string, number>;
+  gap: number;
+  gaps: Record<string, readonly [number, number]>;
+  unknowns: Record<string, number>;
+  points: Record<string, readonly [number, number]>;
+  open_ends: readonly (OpenEnd)[];
+  remedies: Record<string, number>;
+}
+
+export interface ConfigurationsFound {
+  kind: "configurations_found";
+  answers: number | null;
+  input: Record<string, number>;
+  ways: readonly (Way)[];
+  completeness: string;
+}
+
+export interface NewtonShown {
+  kind: "newton_shown";
+  answers: number | null;
+  iterates: readonly (NewtonIterate)[];
+  status: string;
+  trouble: string;
+  message: string;
+  input: Record<string, number>;
+  unknowns: Record<string, number | null>;
+  points: Record<string, readonly [number, number]>;
+}
+
+export interface PointMoved {
+  kind: "point_moved";
+  answers: number | null;
+  point: string;
+  followed: readonly (string)[];
+  stayed: readonly (string)[];
+}
+
+export interface ProblemsFound {
+  kind: "problems_found";
+  answers: number | null;
+  where: string;
+  problems: readonly (ProblemShown)[];
+}
+
+export interface Refused {
+  kind: "refused";
+  answers: number | null;
+  message: string;
+}
+
+export interface FileChanged {
+  kind: "file_changed";
+  answers: number | null;
+  message: string;
+  reloaded: boolean;
+  unsaved: boolean;
+  missing: boolean;
+}
+
+export interface Saved {
+  kind: "saved";
+  answers: number | null;
+  file: string;
+}
+
+export interface ChangeableNumber {
+  name: string;
+  value: number;
+  unit: string;
+  table: string;
+  formula: string;
+}
+
+export interface Unknown {
+  name: string;
+  unit: string;
+  guess: number;
+}
+
+export interface DrivenInput {
+  name: string;
+  unit: string;
+  drive: string;
+  start: number;
+  stop: number;
+  rows: number;
+  speed: string;
+}
+
+export interface Link {
+  name: string;
+  points: readonly (string)[];
+}
+
+export interface LimitFound {
+  what: string;
+  input: number;
+  located: boolean;
+  sentence: string;
+}
+
+export interface OpenEnd {
+  link: string;
+  point: string;
+  joint: readonly [number, number];
+  end: readonly [number, number];
+}
+
+export interface Way {
+  name: string;
+  unknowns: Record<string, number>;
+  points: Record<string, readonly [number, number]>;
+}
+
+export interface NewtonIterate {
+  equations: readonly (string)[];
+  k: number;
+  unknowns: Record<string, number | null>;
+  residuals: readonly (number | null)[];
+  norm: number | null;
+  jacobian: readonly (readonly (number | null)[])[];
+  step: number | null;
+  points: Record<string, readonly [number, number]>;
+}
+
+export interface ProblemShown {
+  line: number | null;
+  key: string;
+  message: string;
+}
+
+export type LiveEdit =
+  | SetNumber
+  | MovePoint
+  | SetInput
+  | AddPoint
+  | RemovePoint
+  | AddLink
+  | RemoveLink
+  | AddJoint
+  | RemoveJoint
+  | AddSlider
+  | AddGear
+  | RemovePart
+  | ChooseConfiguration;
+
+export type LiveRequest =
+  | SetNumber
+  | MovePoint
+  | SetInput
+  | AddPoint
+  | RemovePoint
+  | AddLink
+  | RemoveLink
+  | AddJoint
+  | RemoveJoint
+  | AddSlider
+  | AddGear
+  | RemovePart
+  | ChooseConfiguration
+  | Together
+  | SetText
+  | SolveAt
+  | ListConfigurations
+  | NewtonSteps
+  | Undo
+  | Redo
+  | Save
+  | Reload;
+
+export type LiveEvent =
+  | FileState
+  | MotionFound
+  | PositionFound
+  | CannotClose
+  | ConfigurationsFound
+  | NewtonShown
+  | PointMoved
+  | ProblemsFound
+  | Refused
+  | FileChanged
+  | Saved;

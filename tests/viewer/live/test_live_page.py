@@ -1,0 +1,270 @@
+"""The live page in a real browser: what is dragged, typed and chosen is what the library solves."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import linkwork as lw
+from tests.viewer.conftest import browser as browser  # the fixture, for this folder too
+from tests.viewer.live.conftest import FOUR_BAR, Served
+
+Open = Callable[..., Any]
+
+
+@pytest.fixture
+def open_live(browser: Any, served: Served) -> Iterator[Open]:
+    """Opens the live page; fails on any message of the console and on any foreign request."""
+    said: list[str] = []
+    contexts = []
+
+    def opened(wait: str = ".lw[data-row]", **options: Any) -> Any:
+        settings = {"reduced_motion": "reduce", "viewport": {"width": 1280, "height": 800}}
+        context = browser.new_context(**(settings | options))
+        contexts.append(context)
+        page = context.new_page()
+        page.set_default_timeout(10_000)
+        page.on("console", lambda message: said.append(f"{message.type}: {message.text}"))
+        page.on("pageerror", lambda error: said.append(str(error)))
+        home = f"http://{served.host}/"
+        page.on("request", lambda r: None if r.url.startswith(home) else said.append(r.url))
+        page.goto(served.server.address)
+        page.wait_for_selector(wait)
+        return page
+
+    yield opened
+    for context in contexts:
+        context.close()
+    assert said == []
+
+
+def shown_row(page: Any) -> int:
+    return int(page.locator(".lw").get_attribute("data-row"))
+
+
+def table(page: Any, name: str) -> float:
+    """The value of a quantity in the table of the row that is shown."""
+    row = page.locator(".lw-side > .lw-table tr", has=page.locator("th", has_text=name)).first
+    text = row.locator("td").first.text_content().replace("\u2212", "-")
+    found = re.match(r"[-\d.]+", text)
+    assert found is not None, text
+    return float(found[0])
+
+
+def type_number(page: Any, name: str, value: object) -> None:
+    """Another value in the field of a number, and wait for its cycle."""
+    field = page.locator(f'[data-number="{name}"] input[type=text]')
+    before = page.locator("#linkwork").get_attribute("data-updates")
+    field.fill(str(value))
+    field.press("Enter")
+    page.wait_for_function(
+        "before => document.getElementById('linkwork').dataset.updates !== before", arg=before
+    )
+
+
+def test_the_crank_is_dragged_to_a_solved_row(open_live: Open) -> None:
+    page = open_live()
+    motion = lw.loads(FOUR_BAR).sweep()
+    a = next(k for k, name in enumerate(motion.points) if name == "A")
+    pin = page.locator(f'[data-point="{a}"]').bounding_box()
+    x, y = pin["x"] + pin["width"] / 2, pin["y"] + pin["height"] / 2
+    before = shown_row(page)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x - 60, y - 10, steps=5)
+    page.mouse.up()
+    row = shown_row(page)
+    assert row != before
+    assert table(page, "rocker") == pytest.approx(motion["rocker"][row], abs=1e-3)
+
+
+def test_a_length_is_typed_and_the_cycle_is_that_of_the_library(
+    open_live: Open, served: Served
+) -> None:
+    page = open_live()
+    type_number(page, "A B", 130)
+    motion = lw.loads(FOUR_BAR.replace('"A B" = 120', '"A B" = 130')).sweep()
+    assert table(page, "rocker") == pytest.approx(motion["rocker"][shown_row(page)], abs=1e-3)
+    assert page.title().startswith("•")
+    assert served.path.read_text("utf-8") == FOUR_BAR  # nothing is written before it is saved
+
+
+def test_a_longer_crank_has_dead_points(open_live: Open) -> None:
+    page = open_live()
+    assert page.locator(".lw-limit-button").count() == 0
+    slider = page.locator('[data-number="a"] input[type=range]')
+    slider.evaluate(
+        """slider => {
+          slider.value = "76";
+          slider.dispatchEvent(new Event("input"));
+          slider.dispatchEvent(new Event("change"));
+        }"""
+    )
+    page.locator("#linkwork[data-live=false]").wait_for()
+    page.locator(".lw-limit-button").first.wait_for()
+    limits = lw.loads(FOUR_BAR.replace("a = 40", "a = 76")).sweep().limits
+    page.wait_for_function(
+        "text => document.querySelector('.lw-limit-button')?.textContent === text",
+        arg=f"{limits[0].input:.4f}".rstrip("0").rstrip(".").replace("-", "\u2212") + "°",
+    )
+    assert page.locator(".lw-limit-button").count() == min(4, len(limits))
+    assert page.locator(".lw-marks span").count() == len(limits)
+
+
+def test_what_cannot_close_is_shown_with_its_gap(open_live: Open, served: Served) -> None:
+    page = open_live()
+    type_number(page, "O2 O4", 300)
+    page.locator(".lw-instead .lw-gap").first.wait_for()
+    gap = lw.loads(served.workbench.text).nearest_assembly().gap
+    said = page.locator(".lw-open").text_content()
+    assert f"a gap of {gap:.2f}" in said, said
+    page.get_by_role("button", name="Undo").click()
+    page.locator(".lw-instead").wait_for(state="detached")
+
+
+def test_another_configuration_is_chosen(open_live: Open) -> None:
+    page = open_live()
+    page.get_by_role("tab", name="Configurations").click()
+    page.locator(".lw-way").nth(1).wait_for()
+    current = page.locator('.lw-way[aria-pressed="true"]').text_content()
+    other = page.locator('.lw-way[aria-pressed="false"]')
+    name = other.text_content()
+    known = [way.configuration for way in lw.loads(FOUR_BAR).configurations()]
+    assert sorted([current, name]) == sorted(known)
+    other.click()
+    page.locator(f'.lw-way[aria-pressed="true"]:has-text("{name}")').wait_for()
+    motion = lw.loads(f'configuration = "{name}"\n{FOUR_BAR}').sweep()
+    assert table(page, "rocker") == pytest.approx(motion["rocker"][shown_row(page)], abs=1e-3)
+
+
+def test_saving_writes_the_file_and_a_conflict_is_asked_about(
+    open_live: Open, served: Served
+) -> None:
+    page = open_live()
+    type_number(page, "A B", 130)
+    page.get_by_role("button", name="Save").click()
+    page.get_by_text("Saved in").wait_for()
+    assert served.path.read_text("utf-8") == FOUR_BAR.replace('"A B" = 120', '"A B" = 130')
+    type_number(page, "A B", 131)
+    served.path.write_text(FOUR_BAR.replace('"A B" = 120', '"A B" = 125'), "utf-8")
+    page.get_by_role("button", name="Overwrite").click()
+    page.get_by_text("Saved in").wait_for()
+    assert served.path.read_text("utf-8") == FOUR_BAR.replace('"A B" = 120', '"A B" = 131')
+
+
+def test_a_file_that_another_program_breaks_is_told_with_line_and_key(
+    open_live: Open, served: Served
+) -> None:
+    page = open_live()
+    served.path.write_text(FOUR_BAR.replace('"A B" = 120', '"A B" = -120'), "utf-8")
+    told = page.locator(".lw-message li")
+    told.wait_for()
+    line = FOUR_BAR.splitlines().index('"A B" = 120') + 1
+    assert told.locator("code").text_content().startswith(f"line {line}, lengths")
+    assert page.locator(".lw-drawing .lw-moving").count() > 0  # what was shown before stays
+
+
+def test_newton_is_followed_step_by_step(open_live: Open) -> None:
+    page = open_live()
+    page.get_by_role("tab", name="Newton").click()
+    page.locator(".lw-steps tbody tr").first.wait_for()
+    crank = float(lw.loads(FOUR_BAR).sweep()["crank"][shown_row(page)])
+    iterates = lw.loads(FOUR_BAR).iterates({}, {"crank": crank}).iterates
+    assert page.locator(".lw-steps tbody tr").count() == len(iterates)
+    first = page.locator(".lw-steps tbody tr td").first.text_content()
+    assert math.isclose(float(first), iterates[0].norm, rel_tol=1e-3)
+    page.get_by_role("button", name="Step ›").click()
+    assert "lw-chosen" in page.locator(".lw-steps tbody tr").nth(1).get_attribute("class")
+    entry = page.locator(".lw-newton .lw-table").nth(1).locator("tbody tr").nth(1).locator("td")
+    shown = float(entry.nth(1).text_content().replace("\u2212", "-"))
+    assert shown == pytest.approx(iterates[1].jacobian[0][0], rel=1e-3)
+
+
+def test_a_point_of_the_sketch_is_moved_with_the_arrow_keys(
+    open_live: Open, served: Served
+) -> None:
+    page = open_live()
+    page.get_by_label("Move points").check()
+    page.locator('[data-sketched="P"]').focus()
+    page.keyboard.press("ArrowRight")
+    page.get_by_text("P was moved in the sketch").wait_for()
+    assert "P = [90, 90]" not in served.workbench.text
+    page.get_by_role("button", name="Undo").click()
+    page.locator("[aria-label$='four-bar.toml, saved']").wait_for()
+    assert served.workbench.text == FOUR_BAR
+
+
+def test_a_second_page_and_a_lost_connection_are_told(open_live: Open, served: Served) -> None:
+    page = open_live()
+    second = open_live(wait=".lw-wait[role=alert]")
+    assert "Another page shows this file" in second.locator(".lw-wait").text_content()
+    served.server.stop()
+    page.get_by_text("The connection is lost").wait_for()
+    assert page.get_by_role("button", name="Save").is_disabled()
+    assert page.locator(".lw-drawing .lw-moving").count() > 0
+
+
+def test_a_phone_shows_everything_in_one_column(open_live: Open, tmp_path: Path) -> None:
+    page = open_live(viewport={"width": 390, "height": 844}, has_touch=True, color_scheme="dark")
+    wide = page.evaluate("document.documentElement.scrollWidth")
+    assert wide <= 390
+    assert page.locator('[data-number="A B"] input[type=range]').bounding_box()["width"] > 80
+
+
+def test_a_slider_is_moved_by_keys_and_the_motion_stays(open_live: Open) -> None:
+    page = open_live()
+    before = shown_row(page)
+    slider = page.locator('[data-number="A B"] input[type=range]')
+    step = float(slider.get_attribute("step"))
+    slider.focus()
+    page.keyboard.press("ArrowRight")
+    page.get_by_role("button", name=f"Undo: A B = {120 + step:g}").wait_for()
+    assert shown_row(page) == before
+
+
+def test_a_point_is_added_from_the_palette_and_removed_again(
+    open_live: Open, served: Served
+) -> None:
+    page = open_live()
+    page.get_by_role("tab", name="Build").click()
+    piece = page.locator(".lw-piece").first
+    piece.locator("summary").click()
+    for label, text in (("Name", "Q"), ("x", "120"), ("y", "40")):
+        piece.get_by_label(label, exact=True).fill(text)
+    piece.get_by_label("On link").select_option("rocker")
+    piece.get_by_role("button", name="Add point").click()
+    page.locator(".lw-drawing text[data-of=Q]").wait_for()
+    mechanism = lw.loads(served.workbench.text)
+    assert "Q" in mechanism.description.links["rocker"]
+    page.locator(".lw-group summary", has_text="Remove").click()
+    page.get_by_role("button", name="Remove point Q").click()
+    page.locator(".lw-drawing text[data-of=Q]").wait_for(state="detached")
+    assert "Q" not in lw.loads(served.workbench.text).description.points
+
+
+def test_the_range_of_the_input_is_set(open_live: Open, served: Served) -> None:
+    page = open_live()
+    page.get_by_role("tab", name="Build").click()
+    form = page.locator(".lw-build form", has_text="link crank")
+    form.get_by_label("To [deg]").fill("90")
+    form.get_by_role("button", name="Set the input").click()
+    page.get_by_text("91 of 91 rows found").wait_for()
+    assert float(lw.loads(served.workbench.text).sweep()["crank"][-1]) == 90.0
+
+
+def test_equations_without_points_are_no_blank_page(open_live: Open, served: Served) -> None:
+    page = open_live()
+    served.path.write_text(
+        'format = 1\nname = "Root"\nangle = "rad"\n\n[equations]\nF = "atan(x) = 0"\n\n'
+        "[guess]\nx = 1.5\n",
+        "utf-8",
+    )
+    page.get_by_text("the iteration ran away to infinity").wait_for()
+    assert "atan(x)" in page.locator(".lw-plain-equations").text_content()
+    page.get_by_role("tab", name="Newton").click()
+    page.locator('.lw-outcome[data-trouble="INFLECTION"]').wait_for()
