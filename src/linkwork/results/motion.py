@@ -368,7 +368,12 @@ class Motion:
         return shower("Motion.plot")(self, *names, ax=ax, theme=theme, title=title, **options)
 
     def __repr__(self) -> str:
-        return motion_summary(self)
+        return str(motion_summary(self))
+
+    def _repr_html_(self) -> str:
+        """A picture and a short table, for notebooks."""
+        shown: str = shower("Motion.html")(self)
+        return shown
 
     @property
     def counts(self) -> Counter[Status]:
