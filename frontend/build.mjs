@@ -16,5 +16,12 @@ const common = {
 await Promise.all([
   build({ ...common, entryPoints: ["src/offline.ts"], format: "iife", outfile: join(folder, "offline.js") }),
   build({ ...common, entryPoints: ["src/mount.ts"], format: "esm", outfile: join(folder, "linkwork.js") }),
+  build({
+    ...common,
+    entryPoints: ["src/widget.ts"],
+    format: "esm",
+    loader: { ".css": "text" },
+    outfile: join(folder, "widget.js"),
+  }),
   build({ ...common, entryPoints: ["src/linkwork.css"], outfile: join(folder, "linkwork.css") }),
 ]);

@@ -85,9 +85,7 @@ def inline_svg(scene: Scene, inks: Inks, *, longest: float = 400.0, view: Box | 
     writer = _Writer(inks, scene.measures.stroke, max(shown.width, shown.height))
     scale = longest / writer.size
     name = ": ".join(filter(None, (scene.title, scene.caption)))
-    box = " ".join(
-        map(writer.number, (shown.left, -shown.top, shown.width, shown.height))
-    )
+    box = " ".join(map(writer.number, (shown.left, -shown.top, shown.width, shown.height)))
     parts = "".join(part for primitive in scene.primitives for part in writer.drawn(primitive))
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{html.escape(name)}" '
@@ -106,8 +104,10 @@ class _Writer:
     def number(self, value: float) -> str:
         """A length, as exactly as can be seen."""
         rounded = round(value, self.places)
-        return f"{rounded:.{max(self.places, 0)}f}".rstrip("0").rstrip(".") if rounded % 1 else (
-            f"{rounded:.0f}"
+        return (
+            f"{rounded:.{max(self.places, 0)}f}".rstrip("0").rstrip(".")
+            if rounded % 1
+            else (f"{rounded:.0f}")
         )
 
     def drawn(self, primitive: Primitive) -> Iterator[str]:

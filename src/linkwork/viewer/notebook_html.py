@@ -45,7 +45,7 @@ __all__ = [
 ]
 
 _CLASS = "linkwork-shown"
-_LONGEST, _IN_ROW = 380.0, 230.0  # longer sides of pictures: alone, and beside others [CSS px]
+_LONGEST, _IN_ROW, _OF_CIRCUIT = 380.0, 230.0, 310.0  # longer sides of pictures [CSS px]
 _LARGER = 1.3  # names, so that they can be read at that size
 _FAINT = 5  # further positions of a motion
 _MOST = 12  # pictures beside each other
@@ -64,8 +64,8 @@ font:14px/1.45 system-ui,-apple-system,"Segoe UI",Roboto,"Noto Sans","DejaVu San
 font-size:13px!important;font-variant-numeric:tabular-nums;color:inherit!important}
 .linkwork-shown tr{background:none!important}
 .linkwork-shown th,.linkwork-shown td{padding:2px 14px 2px 0!important;border:0!important;
-text-align:left!important;vertical-align:top;max-width:30em;color:inherit!important}
-.linkwork-shown th{font-weight:400!important;white-space:nowrap;color:COLOUR-FAINT!important}
+text-align:left!important;vertical-align:top;max-width:44em;white-space:pre-wrap;color:inherit!important}
+.linkwork-shown th{font-weight:400!important;white-space:nowrap;opacity:.72}
 .linkwork-shown math{font-size:15px}
 """.replace("\n", "")
 
@@ -75,20 +75,22 @@ def position_html(position: Position) -> str:
     return _position(position_summary(position), position)
 
 
-def mechanism_html(
-    summary: Summary, start: Position, equations: Sequence[tuple[str, str]] = ()
-) -> str:
-    """A mechanism at its start.
+def mechanism_html(what: str, start: Position, equations: Sequence[tuple[str, str]] = ()) -> str:
+    """A mechanism at its start: the input and the unknowns there, the loop equations.
 
     Parameters
     ----------
-    summary : Summary
-        What is said about it.
+    what : str
+        Its name, and what is said about it.
     start : Position
+        If it was not found, the table tells why.
     equations : sequence of (str, str)
         Labels and MathML of the loop equations.
     """
-    return _position(summary, start, equations)
+    driven = [
+        (name, f"{value:.10g} {start.input_units[name]}") for name, value in start.input.items()
+    ]
+    return _position(Summary(what, (*driven, *position_summary(start).rows)), start, equations)
 
 
 def motion_html(motion: Motion) -> str:
@@ -120,7 +122,7 @@ def circuits_html(circuits: Circuits) -> str:
         scenes = [_motion_picture(circuit.motion, within) for circuit in drawn]
         view = Box.around(corner for _, own in scenes for corner in own.corners)
         pictures = [
-            _figure(replace(scene, title=circuit.name), inks, _IN_ROW, view, circuit.name)
+            _figure(replace(scene, title=circuit.name), inks, _OF_CIRCUIT, view, circuit.name)
             for circuit, (scene, _) in zip(drawn, scenes, strict=True)
         ]
     return _element(circuits_summary(circuits), pictures, inks)
