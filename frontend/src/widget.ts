@@ -22,6 +22,7 @@ const FIT = `
 .lw { min-height: 0; padding: 10px 12px; border: 1px solid var(--line); border-radius: 12px; }
 .lw-stage { position: static; height: 520px; }
 .lw-side { max-height: 520px; overflow-y: auto; }
+.lw-side > * { flex: none; }
 @container (max-width: 720px) {
   .lw { display: block; }
   .lw-stage { height: auto; padding-bottom: 14px; }

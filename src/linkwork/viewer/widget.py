@@ -70,6 +70,7 @@ def _widget_class() -> Any:
         ) from None
     script = resources.files("linkwork.viewer") / "static" / "widget.js"
 
+    # Types end here: anywidget and traitlets are not there wherever this is checked.
     class MotionWidget(anywidget.AnyWidget):  # type: ignore[misc]
         """What is shown of which motions; refuses what they do not have."""
 
@@ -83,7 +84,7 @@ def _widget_class() -> Any:
             first = next(iter(rows))
             super().__init__(page=page, configuration=first, row=min(rows[first]))
 
-        @traitlets.validate("configuration")
+        @traitlets.validate("configuration")  # type: ignore[untyped-decorator]
         def _known(self, proposal: Any) -> str:
             name: str = proposal["value"]
             if name not in self._rows:
@@ -93,7 +94,7 @@ def _widget_class() -> Any:
                 )
             return name
 
-        @traitlets.validate("row")
+        @traitlets.validate("row")  # type: ignore[untyped-decorator]
         def _found(self, proposal: Any) -> int:
             row: int = proposal["value"]
             if row not in self._rows[self.configuration]:
@@ -104,7 +105,7 @@ def _widget_class() -> Any:
                 )
             return row
 
-        @traitlets.observe("configuration")
+        @traitlets.observe("configuration")  # type: ignore[untyped-decorator]
         def _moved(self, change: Any) -> None:
             """The same row if it was found there too, else the nearest that was."""
             there = self._rows[change["new"]]
