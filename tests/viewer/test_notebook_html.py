@@ -15,6 +15,7 @@ import linkwork as lw
 from linkwork.drawing import DARK, LIGHT
 from linkwork.drawing.mechanism_scene import scene_of
 from linkwork.drawing.scene import Disc, Role
+from linkwork.drawing.theme import Theme
 
 _SVG = "{http://www.w3.org/2000/svg}"
 _HOSTILE = '<script>alert("1")</script> & <b>'
@@ -149,3 +150,33 @@ def test_showing_loads_no_matplotlib() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert (done.stdout, done.stderr) == ("False\n", "")
+
+
+@pytest.mark.parametrize(
+    ("body", "system", "theme"),
+    [
+        ("", "light", LIGHT),
+        ("", "dark", DARK),
+        ('data-jp-theme-light="true"', "dark", LIGHT),
+        ('data-jp-theme-light="false"', "light", DARK),
+        ('class="vscode-light"', "dark", LIGHT),
+        ('class="vscode-dark"', "light", DARK),
+    ],
+)
+def test_it_is_light_or_dark_as_the_notebook_is_else_as_the_system(
+    browser: Any, bar: lw.Mechanism, body: str, system: str, theme: Theme
+) -> None:
+    page = browser.new_page(color_scheme=system)
+    page.set_content(f"<html><body {body}>{bar.solve(60)._repr_html_()}</body></html>")
+    told = "(of, what) => getComputedStyle(document.querySelector(of))[what]"
+    colours = [
+        page.evaluate(f"({told})('.linkwork-shown', 'backgroundColor')"),
+        page.evaluate(f"({told})('.linkwork-shown', 'color')"),
+        page.evaluate(f"({told})('.linkwork-shown circle', 'fill')"),
+    ]
+    page.close()
+    assert colours == [_rgb(theme.background), _rgb(theme.ink), _rgb(theme.background)]
+
+
+def _rgb(colour: str) -> str:
+    return f"rgb({', '.join(str(int(colour[k : k + 2], 16)) for k in (1, 3, 5))})"

@@ -10,13 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import traitlets
 
 import linkwork as lw
 from linkwork.viewer import motion_page, motions_widget
 from linkwork.viewer.offline_page import page_json
 from linkwork.viewer.widget import _widget_class
-
-traitlets = pytest.importorskip("traitlets")
 
 
 @pytest.fixture(scope="module")
