@@ -38,7 +38,7 @@ export interface Mounted {
   destroy(): void;
 }
 
-let mounted = Math.floor(1e9 * Math.random()); // a page may hold several copies of this front end
+let mounted = 0;
 
 /** Show a motion in an element. */
 export function mount(element: HTMLElement, data: PageData, hooks: Hooks = {}): Mounted {

@@ -142,6 +142,17 @@ def test_colours_follow_the_page_by_rules_alone(bar: lw.Mechanism) -> None:
     assert not re.search(r"\bid=", text)  # several on a page do not meet
 
 
+@pytest.mark.extended
+@pytest.mark.parametrize("name", lw.examples())
+def test_every_library_mechanism_shows_itself(name: str) -> None:
+    mechanism = lw.example(name)
+    drawn = bool(mechanism.solve().points)
+    for shown in (mechanism, mechanism.solve(), mechanism.cycle(certify=False)):
+        page = _parsed(shown)
+        assert len(_pictures(page)) == drawn
+        assert all(len(list(row)) == 2 for row in page.iter("tr"))
+
+
 def test_showing_loads_no_matplotlib() -> None:
     code = (
         "import sys, linkwork as lw; bar = lw.example('four-bar')\n"

@@ -234,9 +234,10 @@ def test_two_do_not_disturb_each_other_and_one_goes_away_whole(
     notebook.evaluate("state => { window.two = mountAt('two', state); }", other)
     assert notebook.evaluate("two.lw.querySelector('.lw').dataset.row") == "50"
     assert _shown(notebook) == 5
-    ids = "new Set([one, two].map((w) => w.lw.querySelector('.lw').id)).size"
-    assert notebook.evaluate(ids) == 2
-    notebook.evaluate("two.gone()")
+    notebook.evaluate("window.old = two.lw.querySelector('.lw'), two.gone()")
+    notebook.evaluate("document.body.dataset.jpThemeLight = 'true'")
+    notebook.wait_for_function("one.lw.querySelector('.lw').dataset.theme === 'light'")
+    assert notebook.evaluate("old.dataset.theme") == "dark"
     assert notebook.evaluate("two.model.listeners()") == 0
     assert notebook.evaluate("two.lw.querySelector('.lw')") is None
     assert _shown(notebook) == 5

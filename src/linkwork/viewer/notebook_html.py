@@ -53,7 +53,8 @@ _MOST = 12  # pictures beside each other
 # Notebooks have style sheets of their own, for tables above all: these rules go before them.
 _LAYOUT = """
 .linkwork-shown{display:inline-block;box-sizing:border-box;max-width:100%;padding:12px 16px;
-border-radius:10px;border:1px solid COLOUR-FAINT;background:COLOUR-PAGE;color:COLOUR-INK;
+border-radius:10px;border:1px solid color-mix(in srgb,COLOUR-FAINT 35%,COLOUR-PAGE);
+background:COLOUR-PAGE;color:COLOUR-INK;
 font:14px/1.45 system-ui,-apple-system,"Segoe UI",Roboto,"Noto Sans","DejaVu Sans",sans-serif}
 .linkwork-shown .what{font-weight:600;margin-bottom:8px}
 .linkwork-shown .both{display:flex;flex-wrap:wrap;gap:8px 24px;align-items:flex-start}
@@ -66,7 +67,7 @@ font-size:13px!important;font-variant-numeric:tabular-nums;color:inherit!importa
 .linkwork-shown th,.linkwork-shown td{padding:2px 14px 2px 0!important;border:0!important;
 text-align:left!important;vertical-align:top;max-width:44em;white-space:pre-wrap;color:inherit!important}
 .linkwork-shown th{font-weight:400!important;white-space:nowrap;opacity:.72}
-.linkwork-shown math{font-size:15px}
+.linkwork-shown math{font-size:15px;display:math}
 """.replace("\n", "")
 
 
