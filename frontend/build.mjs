@@ -18,5 +18,12 @@ await Promise.all([
   build({ ...common, entryPoints: ["src/live/live.ts"], format: "iife", outfile: join(folder, "live.js") }),
   build({ ...common, entryPoints: ["src/live/live.css"], outfile: join(folder, "live.css") }),
   build({ ...common, entryPoints: ["src/mount.ts"], format: "esm", outfile: join(folder, "linkwork.js") }),
+  build({
+    ...common,
+    entryPoints: ["src/widget.ts"],
+    format: "esm",
+    loader: { ".css": "text" },
+    outfile: join(folder, "widget.js"),
+  }),
   build({ ...common, entryPoints: ["src/linkwork.css"], outfile: join(folder, "linkwork.css") }),
 ]);

@@ -23,6 +23,8 @@ export interface Hooks {
   readonly row?: (motion: number, row: number) => void;
   /** Do not start to move by itself. */
   readonly still?: boolean;
+  /** A part of a page among others: keys count only while the focus is inside. */
+  readonly embedded?: boolean;
 }
 
 /** What was mounted. */
@@ -39,6 +41,8 @@ export interface Mounted {
   readonly values: Readonly<Record<string, number>>;
   /** The elements that can be added to. */
   readonly places: Places;
+  /** Show a row of a motion, by its number; if it was not found there, the first that was. */
+  goTo(motion: number, row: number): void;
   destroy(): void;
 }
 
@@ -165,6 +169,12 @@ class Page implements Mounted {
   goToRow(row: number): void {
     const index = this.view.order.indexOf(row);
     if (index >= 0) this.hold(index);
+  }
+
+  goTo(motion: number, row: number): void {
+    if (motion !== this.motion) this.show(motion, 0);
+    const index = Math.max(0, this.view.order.indexOf(row));
+    if (index !== this.player.at) this.hold(index);
   }
 
   destroy(): void {
@@ -313,7 +323,8 @@ class Page implements Mounted {
 
   private listen(): void {
     const options = { signal: this.gone.signal };
-    document.addEventListener("keydown", (event) => this.key(event), options);
+    const keys: EventTarget = this.hooks.embedded ? this.root : document;
+    keys.addEventListener("keydown", (event) => this.key(event as KeyboardEvent), options);
     this.drag(this.drawing.element);
     this.sized.observe(this.drawing.element);
   }

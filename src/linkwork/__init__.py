@@ -8,6 +8,12 @@ from linkwork.foundation.lazy import loader
 from linkwork.foundation.showing import shown_by
 
 shown_by("Motion.plot", "linkwork.drawing.charts.matplotlib_plot", "plot_motion")
+shown_by("Motion.animate", "linkwork.viewer.animation", "animate_motion")
+shown_by("Motion.widget", "linkwork.viewer.widget", "motion_widget")
+shown_by("Position.html", "linkwork.viewer.notebook_html", "position_html")
+shown_by("Motion.html", "linkwork.viewer.notebook_html", "motion_html")
+shown_by("Configurations.html", "linkwork.viewer.notebook_html", "configurations_html")
+shown_by("Circuits.html", "linkwork.viewer.notebook_html", "circuits_html")
 shown_by("Circuits.plot", "linkwork.drawing.charts.matplotlib_plot", "plot_circuits")
 
 if TYPE_CHECKING:

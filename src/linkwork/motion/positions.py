@@ -114,6 +114,7 @@ def position_of(model: Model, named: Named, row: int, evidence: Evidence, q: Arr
             for name, (x, y) in named.points.items()
         },
         outputs=_values(named.outputs, row),
+        value_units={name: model.units.of(s.quantity.kind) for name, s in everything.items()},
         first=first,
         second=second,
         velocity={} if speed is None else {n: d * speed for n, d in first.items()},

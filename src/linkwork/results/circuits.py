@@ -200,7 +200,12 @@ class Circuits:
         return shower("Circuits.plot")(self, *names, kind=kind, ax=ax, theme=theme, title=title)
 
     def __repr__(self) -> str:
-        return circuits_summary(self)
+        return str(circuits_summary(self))
+
+    def _repr_html_(self) -> str:
+        """A picture and a short table, for notebooks."""
+        shown: str = shower("Circuits.html")(self)
+        return shown
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as in the command line's JSON."""

@@ -9,6 +9,7 @@ from typing import Any
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.showing import shower
 from linkwork.results.position import Position
 from linkwork.results.summary import configurations_summary
 
@@ -120,7 +121,12 @@ class Configurations:
         return tuple(position.configuration for position in self.positions)
 
     def __repr__(self) -> str:
-        return configurations_summary(self)
+        return str(configurations_summary(self))
+
+    def _repr_html_(self) -> str:
+        """A picture and a short table, for notebooks."""
+        shown: str = shower("Configurations.html")(self)
+        return shown
 
     def to_dict(self) -> dict[str, Any]:
         """The list as JSON-ready data."""

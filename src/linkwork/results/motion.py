@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -368,8 +369,60 @@ class Motion:
         options: dict[str, Any] = {"kind": kind, "against": against, "wrapped": wrapped}
         return shower("Motion.plot")(self, *names, ax=ax, theme=theme, title=title, **options)
 
+    def animate(
+        self,
+        path: str | Path,
+        *,
+        options: Any = None,
+        progress: Callable[[float], None] | None = None,
+    ) -> None:
+        """Write the motion to a file that moves: ``motion.animate("crank.html")``.
+
+        A page (.html) works offline in any browser; films are .gif, .apng, .webp (with Pillow) and
+        .mp4 (with ffmpeg). The page of :meth:`linkwork.Mechanism.animate` shows the equations too.
+
+        Parameters
+        ----------
+        path : str or Path
+            The suffix chooses the format.
+        options : linkwork.viewer.FilmOptions, optional
+            Pictures a second, rows, size of a film.
+        progress : callable, optional
+            Told the share of a film that is done, 0 to 1.
+
+        Raises
+        ------
+        InputError
+            If the suffix names no known format, or there is nothing to draw.
+        MissingPackageError
+            Without what writes the format.
+        """
+        shower("Motion.animate")(self, path, options=options, progress=progress)
+
+    def widget(self) -> Any:
+        """The motion in a notebook, to play and to drag; needs the extra ``notebook``.
+
+        Returns
+        -------
+        anywidget.AnyWidget
+            ``row`` is the row that is shown; setting it moves the picture.
+
+        Raises
+        ------
+        InputError
+            If there is nothing to draw.
+        MissingPackageError
+            Without anywidget.
+        """
+        return shower("Motion.widget")(self)
+
     def __repr__(self) -> str:
-        return motion_summary(self)
+        return str(motion_summary(self))
+
+    def _repr_html_(self) -> str:
+        """A picture and a short table, for notebooks."""
+        shown: str = shower("Motion.html")(self)
+        return shown
 
     @property
     def counts(self) -> Counter[Status]:

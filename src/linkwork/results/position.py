@@ -13,6 +13,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.names import spelled
+from linkwork.foundation.showing import shower
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
@@ -88,6 +89,8 @@ class Position:
         Coordinates of every point.
     outputs : Mapping[str, float]
         The named formulas.
+    value_units : Mapping[str, str]
+        Units of unknowns, links, sliders, outputs, coordinates by name.
     first, second : Mapping[str, float]
         Derivatives by the input of unknowns, links, sliders, outputs, ``<point>.x``, ``<point>.y``.
     velocity, acceleration : Mapping[str, float]
@@ -121,6 +124,7 @@ class Position:
     sliders: Mapping[str, float] = FrozenDict()
     points: Mapping[str, tuple[float, float]] = FrozenDict()
     outputs: Mapping[str, float] = FrozenDict()
+    value_units: Mapping[str, str] = FrozenDict()
     first: Mapping[str, float] = FrozenDict()
     second: Mapping[str, float] = FrozenDict()
     velocity: Mapping[str, float] = FrozenDict()
@@ -155,7 +159,12 @@ class Position:
         raise UnknownNameError(f'there is no "{name}" {choices("names", [*known, *places], name)}')
 
     def __repr__(self) -> str:
-        return position_summary(self)
+        return str(position_summary(self))
+
+    def _repr_html_(self) -> str:
+        """A picture and a short table, for notebooks."""
+        shown: str = shower("Position.html")(self)
+        return shown
 
     def to_dict(self) -> dict[str, Any]:
         """The position as JSON-ready data: NaN becomes null, the status its member name."""

@@ -1,8 +1,9 @@
-"""Short aligned summaries of results, fit to be pasted into a question."""
+"""Short summaries of results: aligned text fit to be pasted into a question, rows of a table."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,35 +14,50 @@ if TYPE_CHECKING:
     from linkwork.results.motion import Motion
     from linkwork.results.position import Position
 
-__all__ = ["configurations_summary", "motion_summary", "position_summary"]
+__all__ = [
+    "Summary",
+    "circuits_summary",
+    "configurations_summary",
+    "motion_summary",
+    "position_summary",
+]
 
 
-def _aligned(rows: list[tuple[str, str]]) -> list[str]:
-    width = max((len(name) for name, _ in rows), default=0)
-    return [f"  {name:<{width}}  {text}" for name, text in rows]
+@dataclass(frozen=True)
+class Summary:
+    """A line that says what it is, and rows of a name and a text; as text, aligned."""
+
+    head: str
+    rows: tuple[tuple[str, str], ...]
+
+    def __str__(self) -> str:
+        width = max((len(name) for name, _ in self.rows), default=0)
+        return "\n".join([self.head, *(f"  {name:<{width}}  {text}" for name, text in self.rows)])
 
 
 def _driven(inputs: Mapping[str, float], units: Mapping[str, str]) -> str:
     return ", ".join(f"{name} = {value:.10g} {units[name]}" for name, value in inputs.items())
 
 
-def position_summary(position: Position) -> str:
+def position_summary(position: Position) -> Summary:
     """Status, unknowns, evidence."""
     at = _driven(position.input, position.input_units)
     head = f"Position of {position.mechanism}" + (f" at {at}" if at else "")
     if not position.status.ok:
-        return f"{head}\n  {position.status.name}: {position.message}"
-    rows = [(name, f"{value:.10g}") for name, value in position.unknowns.items()]
+        return Summary(head, ((position.status.name, position.message),))
+    values = {**position.unknowns, **position.outputs}
+    units = position.value_units
+    rows = [(n, f"{value:.10g} {units.get(n, '')}".rstrip()) for n, value in values.items()]
     rows += [
         ("residual", f"{position.residual:.1e} of the longest link"),
         ("condition", f"{position.condition:.3g}"),
         ("iterations", str(position.iterations)),
         ("certified", "yes" if position.certificate.certified else "no"),
     ]
-    return "\n".join([head, *_aligned(rows)])
+    return Summary(head, tuple(rows))
 
 
-def configurations_summary(found: Configurations) -> str:
+def configurations_summary(found: Configurations) -> Summary:
     """One row per configuration, then completeness and what became of the paths."""
     at = _driven(found.input, found.input_units)
     head = f"Configurations of {found.mechanism}" + (f" at {at}" if at else "")
@@ -55,10 +71,10 @@ def configurations_summary(found: Configurations) -> str:
         f"{count.real} real of {count.finite + count.multiple} solutions" for count in found.paths
     ]
     rows.append(("paths", "; ".join(paths)))
-    return "\n".join([head, *_aligned(rows)])
+    return Summary(head, tuple(rows))
 
 
-def circuits_summary(circuits: Circuits) -> str:
+def circuits_summary(circuits: Circuits) -> Summary:
     """One line per branch."""
     unit = circuits.input_unit
     head = f"{len(circuits)} circuit{'' if len(circuits) == 1 else 's'} of {circuits.mechanism}"
@@ -67,10 +83,10 @@ def circuits_summary(circuits: Circuits) -> str:
         for branch in circuit.branches:
             low, high = branch.input_range
             rows.append((branch.name, f"{circuits.input} {low:.10g} to {high:.10g} {unit}"))
-    return "\n".join([head, *_aligned(rows)])
+    return Summary(head, tuple(rows))
 
 
-def motion_summary(motion: Motion) -> str:
+def motion_summary(motion: Motion) -> Summary:
     """Range of the input, counts by status, limits, worst evidence, ranges of the unknowns."""
     name, values = next(iter(motion.inputs.items()))
     values = values[motion.asked]
@@ -94,7 +110,7 @@ def motion_summary(motion: Motion) -> str:
         regular = motion.condition[np.isfinite(motion.condition)]  # not so at dead points
         if len(regular):
             rows.append(("worst condition", f"{regular.max():.3g}"))
-        for unknown, series in motion.unknowns.items():
-            reached = series.value[found]
-            rows.append((unknown, f"{reached.min():.8g} … {reached.max():.8g}"))
-    return "\n".join([head, *_aligned(rows)])
+        for own, series in {**motion.unknowns, **motion.outputs}.items():
+            reached, unit = series.value[found], motion.units.of(series.quantity.kind)
+            rows.append((own, f"{reached.min():.8g} … {reached.max():.8g} {unit}".rstrip()))
+    return Summary(head, tuple(rows))

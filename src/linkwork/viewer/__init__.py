@@ -13,9 +13,11 @@ if TYPE_CHECKING:
         animation,
         check_animation,
     )
+    from linkwork.viewer.notebook_html import mechanism_html
     from linkwork.viewer.offline_page import offline_page
     from linkwork.viewer.page_building import drawn_page, motion_page
     from linkwork.viewer.page_data import PageData
+    from linkwork.viewer.widget import motions_widget
 else:
     __getattr__ = loader(
         __name__,
@@ -26,9 +28,11 @@ else:
                 "animation",
                 "check_animation",
             ),
+            "notebook_html": ("mechanism_html",),
             "offline_page": ("offline_page",),
             "page_building": ("drawn_page", "motion_page"),
             "page_data": ("PageData",),
+            "widget": ("motions_widget",),
         },
     )
 
@@ -39,6 +43,8 @@ __all__ = [
     "animation",
     "check_animation",
     "drawn_page",
+    "mechanism_html",
     "motion_page",
+    "motions_widget",
     "offline_page",
 ]

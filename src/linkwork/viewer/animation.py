@@ -20,7 +20,13 @@ from linkwork.viewer.offline_page import offline_page
 from linkwork.viewer.page_building import motion_page
 from linkwork.viewer.play_order import play_order
 
-__all__ = ["ANIMATION_FORMATS", "FilmOptions", "animation", "check_animation"]
+__all__ = [
+    "ANIMATION_FORMATS",
+    "FilmOptions",
+    "animate_motion",
+    "animation",
+    "check_animation",
+]
 
 #: Formats by suffix.
 ANIMATION_FORMATS = ("html", *FILM_FORMATS)
@@ -110,6 +116,19 @@ def animation(
     if motion is None:
         raise InputError("there is no motion to show: no position was found")
     return _film(motion, kind, options or FilmOptions(), progress)
+
+
+def animate_motion(
+    motion: Motion,
+    path: str | Path,
+    *,
+    options: FilmOptions | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Write a motion to a file; see :meth:`linkwork.results.motion.Motion.animate`."""
+    kind = check_animation(path, options)
+    content = animation({"motion": motion}, kind, options=options, progress=progress)
+    Path(path).write_bytes(content)
 
 
 def _film(

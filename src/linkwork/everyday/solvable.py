@@ -1,23 +1,19 @@
-"""The friendly face: a mechanism that can be solved, swept, checked, shown and drawn."""
+"""A mechanism that can be changed, checked and solved."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from linkwork import batch, drawing, export, motion, textfile, viewer
+from linkwork import batch, motion, textfile
 from linkwork import equations as closure
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.parts import Input, Number
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
-from linkwork.textfile.library import example_text, examples
 
 if TYPE_CHECKING:
     from linkwork.batch.family import Family
@@ -28,29 +24,11 @@ if TYPE_CHECKING:
     from linkwork.results.iterates import Iterates
     from linkwork.results.nearest_assembly import NearestAssembly
 
-__all__ = [
-    "Mechanism",
-    "example",
-    "example_text",
-    "examples",
-    "linkage",
-    "load",
-    "loads",
-    "loops",
-    "plain_equations",
-]
+__all__ = ["SolvableMechanism"]
 
 
-class Mechanism:
-    """A planar mechanism.
-
-    Made by :func:`load`, :func:`example`, :func:`linkage`, :func:`loops` or
-    :func:`plain_equations`. Immutable: changing a dimension gives a new mechanism.
-
-    Parameters
-    ----------
-    description : Description
-        What is asked: points and links, loop equations, or plain equations.
+class SolvableMechanism:
+    """A mechanism that knows no pictures: see :class:`~linkwork.everyday.mechanism.Mechanism`.
 
     Raises
     ------
@@ -68,7 +46,7 @@ class Mechanism:
             raise read.located(error) from None
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Mechanism) and self.description == other.description
+        return isinstance(other, SolvableMechanism) and self.description == other.description
 
     def __hash__(self) -> int:
         return hash((type(self.description), self.description.name))
@@ -265,64 +243,6 @@ class Mechanism:
         """
         return batch.family_of(self.model, dimensions)
 
-    def scene(
-        self,
-        at: float | Mapping[str, float] | None = None,
-        *,
-        configuration: str | None = None,
-        vectors: bool = False,
-        traces: Sequence[str] | None = None,
-        options: drawing.SceneOptions | None = None,
-        progress: Callable[[float], None] | None = None,
-    ) -> drawing.Scene:
-        """A picture of one position with the traces of points over the cycle.
-
-        Parameters
-        ----------
-        at, configuration
-            Which position, as in :meth:`solve`; the cycle is the one through it.
-        vectors : bool
-            Show the loop equations as vectors over the mechanism.
-        traces : sequence of str, optional
-            The points whose paths are shown; those of the file's ``[trace]`` unless given.
-        options : SceneOptions, optional
-            What else to show; see :class:`linkwork.drawing.SceneOptions`.
-        """
-        position = self.solve(at, configuration=configuration, throw=True)
-        chosen = options or drawing.SceneOptions()
-        if vectors:
-            chosen = replace(chosen, vectors=motion.vector_loops(self.model, position))
-        if not self.description.inputs:
-            return drawing.scene_of(position, traces=traces, options=chosen)
-        model = self.model if configuration is None else self.model.from_position(position)
-        cycle = motion.sweep(model, progress=progress)
-        found = cycle if cycle.found.any() else None
-        return drawing.scene_of(position, found, traces=traces, options=chosen)
-
-    def draw(
-        self,
-        path: str | Path,
-        at: float | Mapping[str, float] | None = None,
-        *,
-        configuration: str | None = None,
-        vectors: bool = False,
-        traces: Sequence[str] | None = None,
-        options: drawing.SceneOptions | None = None,
-        theme: str = "light",
-    ) -> None:
-        """Draw one position to a PNG, SVG or PDF file; see :meth:`scene`.
-
-        Parameters
-        ----------
-        theme : str
-            Colours of the page: ``light`` or ``dark``.
-        """
-        colours = drawing.theme_named(theme)
-        scene = self.scene(
-            at, configuration=configuration, vectors=vectors, traces=traces, options=options
-        )
-        drawing.write(scene, Path(path), theme=colours)
-
     def cycle(
         self,
         *,
@@ -355,123 +275,3 @@ class Mechanism:
             if progress is not None:
                 progress((k + 1) / len(circuits))
         return found
-
-    def animate(
-        self,
-        path: str | Path,
-        motion: Motion | None = None,
-        *,
-        all_circuits: bool = False,
-        options: viewer.FilmOptions | None = None,
-        progress: Callable[[float], None] | None = None,
-    ) -> None:
-        """Write the motion to a file that moves.
-
-        A page (.html) works offline, in any browser, without Linkwork: play, drag the crank,
-        plots, numbers with their proof. Films are .gif, .apng, .webp (with Pillow) and .mp4
-        (with ffmpeg).
-
-        Parameters
-        ----------
-        path : str or Path
-            The suffix chooses the format.
-        motion : Motion, optional
-            A sweep of this mechanism; that of the guess around its circuit unless given.
-        all_circuits : bool
-            Let a page show all circuits, to choose from.
-        options : FilmOptions, optional
-            Pictures a second, rows, size of a film.
-
-        Raises
-        ------
-        InputError
-            If the suffix names no known format, or there is nothing to draw.
-        MissingPackageError
-            Without what writes the format.
-        """
-        kind = viewer.check_animation(path, options)
-        if all_circuits and (motion is not None or kind != "html"):
-            raise InputError("all circuits are shown by a page of the mechanism's own: a .html")
-        if all_circuits:
-            motions = self.cycles(progress=progress)
-        else:
-            motions = {"motion": self.cycle() if motion is None else motion}
-        content = viewer.animation(
-            motions, kind, options=options, equations=self.equations().mathml(), progress=progress
-        )
-        Path(path).write_bytes(content)
-
-    def to_excel(self, path: str | Path, motion: Motion | None = None) -> tuple[str, ...]:
-        """Write a sweep as an Excel workbook whose formulas solve it again.
-
-        Parameters
-        ----------
-        path : str or Path
-            Name of the .xlsx file.
-        motion : Motion, optional
-            A sweep of this mechanism; :meth:`sweep` unless given.
-
-        Returns
-        -------
-        tuple of str
-            What in the workbook is values only, and does not follow its dimensions.
-
-        Raises
-        ------
-        InputError
-            If the name is no .xlsx, or the motion is not this mechanism's.
-        MissingPackageError
-            Without XlsxWriter.
-        """
-        if Path(path).suffix.lower() != ".xlsx":
-            raise InputError(f'cannot write "{path}": workbooks are written as .xlsx')
-        cycle = self.sweep() if motion is None else motion
-        written = export.workbook_of(self.model, cycle)
-        Path(path).write_bytes(written.content)
-        return written.notices
-
-    def save(self, path: str | Path) -> None:
-        """Write the mechanism as a TOML file."""
-        textfile.save(self.description, Path(path))
-
-
-def load(path: str | Path) -> Mechanism:
-    """Read a mechanism file.
-
-    Raises
-    ------
-    MechanismFileError
-        With every problem found: file, line, key.
-    """
-    read = textfile.read_file(Path(path))
-    return Mechanism(read.description, read)
-
-
-def loads(text: str, name: str = "text") -> Mechanism:
-    """Read a mechanism from the text of a file."""
-    read = textfile.read_text(text, name)
-    return Mechanism(read.description, read)
-
-
-def example(name: str) -> Mechanism:
-    """A mechanism of the library by name."""
-    return loads(example_text(name), f"{name}.toml")
-
-
-def linkage(**parts: Any) -> Mechanism:
-    """A mechanism from points and links; arguments as
-    :class:`~linkwork.mechanism.linkage.Linkage`.
-    """
-    return Mechanism(Linkage(**parts))
-
-
-def loops(**parts: Any) -> Mechanism:
-    """A mechanism from loop equations; arguments as :class:`~linkwork.mechanism.loops.Loops`."""
-    return Mechanism(Loops(**parts))
-
-
-def plain_equations(**parts: Any) -> Mechanism:
-    """A system of plain equations; arguments as
-    :class:`~linkwork.mechanism.loops.PlainEquations`.
-    """
-    return Mechanism(PlainEquations(**parts))

@@ -1,0 +1,171 @@
+"""Scenes as SVG elements for HTML: their colours follow the page, light or dark.
+
+Colours stand in custom properties whose names tell both of them, ``--lw-0072B2-607AEA``: rules of
+several pictures on one page agree. No identifiers are used, no scripts, nothing is loaded.
+"""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Iterator
+from math import floor, log10
+
+from linkwork.drawing.box import XY, Box
+from linkwork.drawing.scene import (
+    Arc,
+    Disc,
+    Hatch,
+    Polygon,
+    Polyline,
+    Primitive,
+    Scene,
+    Text,
+)
+from linkwork.drawing.theme import DARK, LIGHT
+
+__all__ = ["Inks", "inline_svg"]
+
+_FONT = "system-ui,-apple-system,'Segoe UI',Roboto,'Noto Sans','DejaVu Sans',sans-serif"
+_DIGITS = 5  # of coordinates, counted from the size of the picture
+_MARGIN = 0.02  # of the size, around the drawing
+
+
+class Inks:
+    """The colours of pictures that stand together, each as a light and a dark one."""
+
+    def __init__(self) -> None:
+        self._pairs: dict[str, tuple[str, str]] = {}
+
+    def of(self, light: str, dark: str) -> str:
+        """A colour as CSS has it; ``none`` for an empty one."""
+        if not light:
+            return "none"
+        name = f"--lw-{light[1:]}-{dark[1:]}"
+        self._pairs[name] = (light, dark)
+        return f"var({name},{light})"
+
+    def rules(self, scope: str) -> str:
+        """The style sheet that gives every colour its value inside elements of a class.
+
+        The page's own word counts where it has one (Jupyter, VS Code, Colab), else the system's.
+        """
+        light, dark = (
+            "".join(f"{name}:{pair[k]};" for name, pair in self._pairs.items()) for k in (0, 1)
+        )
+        light, dark = f"{light}color-scheme:light", f"{dark}color-scheme:dark"
+        return (
+            f".{scope}{{{light}}}"
+            f"@media (prefers-color-scheme:dark){{.{scope}{{{dark}}}}}"
+            f"{_under(_LIGHT_PAGES, scope)}{{{light}}}"
+            f"{_under(_DARK_PAGES, scope)}{{{dark}}}"
+        )
+
+
+_LIGHT_PAGES = ("[data-jp-theme-light=true]", "body.vscode-light", "html[theme=light]")
+_DARK_PAGES = ("[data-jp-theme-light=false]", "body.vscode-dark", "html[theme=dark]")
+
+
+def _under(pages: tuple[str, ...], scope: str) -> str:
+    return ",".join(f"{page} .{scope}" for page in pages)
+
+
+def inline_svg(scene: Scene, inks: Inks, *, longest: float = 400.0, view: Box | None = None) -> str:
+    """A scene as an ``<svg>`` element.
+
+    Parameters
+    ----------
+    inks : Inks
+        Collects the colours: its rules belong beside the picture.
+    longest : float
+        The longer side as it is shown, in CSS pixels; a narrow page makes it smaller.
+    view : Box, optional
+        The part of the plane that is shown; what the scene needs unless given.
+    """
+    shown = (view or scene.box).grown(_MARGIN * scene.measures.size)
+    writer = _Writer(inks, scene.measures.stroke, max(shown.width, shown.height))
+    scale = longest / writer.size
+    name = ": ".join(filter(None, (scene.title, scene.caption)))
+    box = " ".join(map(writer.number, (shown.left, -shown.top, shown.width, shown.height)))
+    parts = "".join(part for primitive in scene.primitives for part in writer.drawn(primitive))
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{html.escape(name)}" '
+        f'viewBox="{box}" width="{scale * shown.width:.0f}" height="{scale * shown.height:.0f}" '
+        f'style="max-width:100%;height:auto;font-family:{_FONT}">{parts}</svg>'
+    )
+
+
+class _Writer:
+    """Translates primitives into elements; y grows downwards there."""
+
+    def __init__(self, inks: Inks, stroke: float, size: float) -> None:
+        self.inks, self.stroke, self.size = inks, stroke, size
+        self.places = _DIGITS - floor(log10(size)) - 1
+
+    def number(self, value: float) -> str:
+        """A length, as exactly as can be seen."""
+        rounded = round(value, self.places)
+        return (
+            f"{rounded:.{max(self.places, 0)}f}".rstrip("0").rstrip(".")
+            if rounded % 1
+            else (f"{rounded:.0f}")
+        )
+
+    def drawn(self, primitive: Primitive) -> Iterator[str]:
+        """The elements of a primitive."""
+        match primitive:
+            case Polyline() | Arc():
+                yield self._line([primitive.shaft], primitive)
+                if primitive.arrow_head:
+                    yield self._area(primitive.arrow_head, primitive, width=0.3)
+            case Hatch():
+                yield self._line(list(primitive.strokes), primitive)
+            case Polygon():
+                yield self._area(primitive.points, primitive)
+            case Disc():
+                x, y = primitive.centre
+                yield (
+                    f'<circle cx="{self.number(x)}" cy="{self.number(-y)}" '
+                    f'r="{self.number(primitive.radius)}" {self._faces(primitive)}/>'
+                )
+            case Text():
+                yield self._text(primitive)
+
+    def _line(self, lines: list[tuple[XY, ...]], primitive: Primitive) -> str:
+        path = "".join(f"M{self._corners(line)}" for line in lines)
+        width = 1 - 0.5 * primitive.fade
+        return f'<path d="{path}" style="fill:none;{self._pen(primitive, width)}"/>'
+
+    def _area(self, points: tuple[XY, ...], primitive: Primitive, width: float = 1.0) -> str:
+        return f'<path d="M{self._corners(points)}Z" {self._faces(primitive, width)}/>'
+
+    def _corners(self, points: tuple[XY, ...]) -> str:
+        return " ".join(f"{self.number(x)},{self.number(-y)}" for x, y in points)
+
+    def _faces(self, primitive: Primitive, width: float = 1.0) -> str:
+        style = LIGHT.styles[primitive.role]
+        fill = self.inks.of(LIGHT.fill(primitive), DARK.fill(primitive))
+        opacity = style.opacity ** (1 + primitive.fade)
+        clear = f";fill-opacity:{opacity:.3g}" if opacity < 1 else ""
+        return f'style="fill:{fill}{clear};{self._pen(primitive, width)}"'
+
+    def _pen(self, primitive: Primitive, width: float) -> str:
+        line = self.inks.of(LIGHT.line(primitive), DARK.line(primitive))
+        if line == "none":
+            return "stroke:none"
+        style = LIGHT.styles[primitive.role]  # lines are the same in every theme
+        wide = style.width * width * self.stroke
+        dashes = ",".join(self.number(part * wide) for part in style.dashes)
+        return (
+            f"stroke:{line};stroke-width:{self.number(wide)};stroke-linecap:round;"
+            f"stroke-linejoin:round{f';stroke-dasharray:{dashes}' if dashes else ''}"
+        )
+
+    def _text(self, primitive: Text) -> str:
+        x, y = primitive.start
+        anchor = ("start", "middle", "end")[primitive.align + 1]
+        fill = self.inks.of(LIGHT.fill(primitive), DARK.fill(primitive))
+        return (
+            f'<text x="{self.number(x)}" y="{self.number(-y)}" text-anchor="{anchor}" '
+            f'style="font-size:{self.number(primitive.height)}px;fill:{fill}">'
+            f"{html.escape(primitive.text)}</text>"
+        )

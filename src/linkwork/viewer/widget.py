@@ -1,0 +1,115 @@
+"""A motion as a widget of Jupyter and its kin: the front end of pages, in step with Python.
+
+anywidget is needed only here, and only when a widget is made.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from importlib import resources
+from typing import Any
+
+import numpy as np
+
+from linkwork.foundation.errors import MissingPackageError, choices
+from linkwork.results.motion import Motion
+from linkwork.viewer.offline_page import page_json
+from linkwork.viewer.page_building import motion_page
+
+__all__ = ["motion_widget", "motions_widget"]
+
+
+def motion_widget(motion: Motion) -> Any:
+    """One motion; see :meth:`linkwork.results.motion.Motion.widget`."""
+    return motions_widget({"motion": motion})
+
+
+def motions_widget(
+    motions: Mapping[str, Motion], *, equations: Sequence[tuple[str, str]] = ()
+) -> Any:
+    """Motions of one mechanism, to choose from, to play and to drag.
+
+    Parameters
+    ----------
+    motions : Mapping[str, Motion]
+        By the name of the circuit or configuration; the first is shown first. Those of which no
+        position was found are left out.
+    equations : sequence of (str, str)
+        Labels and MathML of the loop equations.
+
+    Returns
+    -------
+    anywidget.AnyWidget
+        ``configuration`` (a name) and ``row`` (a number of a row of that motion, from 0) are what
+        is shown: both follow what the person does, and can be set.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to draw.
+    MissingPackageError
+        Without anywidget.
+    """
+    kind = _widget_class()
+    page = json.loads(page_json(motion_page(motions, equations=equations)))
+    rows = {name: np.flatnonzero(m.found) for name, m in motions.items() if m.found.any()}
+    return kind(page, {name: frozenset(found.tolist()) for name, found in rows.items()})
+
+
+@lru_cache
+def _widget_class() -> Any:
+    """The class of the widget; made once, when anywidget is first needed."""
+    try:
+        import anywidget
+        import traitlets
+    except ImportError:
+        raise MissingPackageError(
+            'widgets need anywidget: pip install "linkwork[notebook]"'
+        ) from None
+    script = resources.files("linkwork.viewer") / "static" / "widget.js"
+
+    # Types end here: anywidget and traitlets are not there wherever this is checked.
+    class MotionWidget(anywidget.AnyWidget):  # type: ignore[misc]
+        """What is shown of which motions; refuses what they do not have."""
+
+        _esm = script.read_text(encoding="utf-8")
+        page = traitlets.Dict().tag(sync=True)
+        configuration = traitlets.Unicode().tag(sync=True)
+        row = traitlets.Int().tag(sync=True)
+
+        def __init__(self, page: dict[str, Any], rows: Mapping[str, frozenset[int]]) -> None:
+            self._rows = rows
+            first = next(iter(rows))
+            super().__init__(page=page, configuration=first, row=min(rows[first]))
+
+        @traitlets.validate("configuration")  # type: ignore[untyped-decorator]
+        def _known(self, proposal: Any) -> str:
+            name: str = proposal["value"]
+            if name not in self._rows:
+                raise traitlets.TraitError(
+                    f'there is no configuration "{name}" '
+                    f"{choices('configurations', self._rows, name)}"
+                )
+            return name
+
+        @traitlets.validate("row")  # type: ignore[untyped-decorator]
+        def _found(self, proposal: Any) -> int:
+            row: int = proposal["value"]
+            if row not in self._rows[self.configuration]:
+                rows = self._rows[self.configuration]
+                raise traitlets.TraitError(
+                    f'row {row} of "{self.configuration}" has no position to show: '
+                    f"{len(rows)} rows from {min(rows)} to {max(rows)} were found"
+                )
+            return row
+
+        @traitlets.observe("configuration")  # type: ignore[untyped-decorator]
+        def _moved(self, change: Any) -> None:
+            """The same row if it was found there too, else the nearest that was."""
+            there = self._rows[change["new"]]
+            if self.row not in there:
+                self.row = min(there, key=lambda row: (abs(row - self.row), row))
+
+    return MotionWidget
