@@ -137,3 +137,15 @@ def test_rows_without_a_position_are_refused() -> None:
     assert not moving.found[180]
     with pytest.raises(lw.InputError, match="row 180 of the motion has no position to draw"):
         moving.at(180)
+
+
+@pytest.mark.parametrize("name", ["four-bar", "rapier-drive-limited", "slider-crank-engine"])
+def test_a_scene_found_from_some_rows_carries_the_same_shapes(name: str) -> None:
+    motion = lw.example(name).sweep(certify=False)
+    every, some = moving_scene(motion), moving_scene(motion, sampled=True)
+    carried = [(part.shape.role, part.shape.of, part.frame) for part in every.parts]
+    assert [(part.shape.role, part.shape.of, part.frame) for part in some.parts] == carried
+    for one, other in zip(every.parts, some.parts, strict=True):
+        assert (one.course is None) == (other.course is None)
+        if one.course is not None and other.course is not None:
+            np.testing.assert_allclose(one.course, other.course, atol=1e-9, equal_nan=True)
