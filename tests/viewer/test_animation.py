@@ -101,3 +101,14 @@ def test_a_mechanism_that_never_closes_has_nothing_to_show(motion: lw.Motion) ->
         animation({"motion": apart.sweep()}, "gif", options=_FEW)
     both = animation({"apart": apart.sweep(), "whole": motion}, "gif", options=_FEW)
     assert Image.open(io.BytesIO(both)).n_frames == 6
+
+
+def test_a_motion_writes_itself(tmp_path: Path) -> None:
+    motion = lw.example("four-bar").sweep(stop=20)
+    motion.animate(tmp_path / "part.html")
+    motion.animate(str(tmp_path / "part.gif"), options=FilmOptions(rows=3, dpi=20))
+    page = (tmp_path / "part.html").read_bytes()
+    assert page == animation({"motion": motion}, "html")
+    assert (tmp_path / "part.gif").read_bytes().startswith(b"GIF89a")
+    with pytest.raises(lw.InputError, match=r"^cannot animate \"part\.bmp\": its suffix must be "):
+        motion.animate("part.bmp")
