@@ -256,6 +256,8 @@ def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
         "circuits",
         "draw",
         "plot",
+        "animate",
+        "view",
         "study",
         "examples",
         "schema",
