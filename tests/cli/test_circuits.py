@@ -87,8 +87,8 @@ No root
 No circuits driven by u
 
   why        no position after the largest allowed number of iterations: start
-             from a nearer guess or allow more iterations; "f" stays at 2.00165
-             at best nearby
+             from a nearer guess or allow more iterations; "f" stays at 2 at
+             best nearby
   elsewhere  no position was found there from other guesses either
   complete   only the guess: the configurations of these equations cannot be
              listed
