@@ -16,7 +16,7 @@ _NAMES = ("chromium", "chromium-browser", "google-chrome")
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[object]:
+def browser(request: pytest.FixtureRequest) -> Iterator[object]:
     """A headless Chromium. Where there is none the test is skipped, but never in CI."""
     program = next(filter(None, map(shutil.which, _NAMES)), None)
     if program is None:
@@ -25,10 +25,14 @@ def browser() -> Iterator[object]:
         pytest.skip(f"none of {', '.join(_NAMES)} is on the PATH (apt-get install chromium)")
     from playwright.sync_api import sync_playwright
 
-    with sync_playwright() as playwright:
+    config = request.config  # a process can start Playwright once only
+    if not hasattr(config, "linkwork_browser"):
+        playwright = sync_playwright().start()
         found = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        yield found
-        found.close()
+        config.linkwork_browser = found  # type: ignore[attr-defined]
+        config.add_cleanup(playwright.stop)
+        config.add_cleanup(found.close)
+    yield config.linkwork_browser  # type: ignore[attr-defined]
 
 
 @pytest.fixture
