@@ -16,7 +16,7 @@ _NAMES = ("chromium", "chromium-browser", "google-chrome")
 
 
 @pytest.fixture(scope="session")
-def browser(request: pytest.FixtureRequest) -> Iterator[object]:
+def browser(request: pytest.FixtureRequest) -> object:
     """A headless Chromium. Where there is none the test is skipped, but never in CI."""
     program = next(filter(None, map(shutil.which, _NAMES)), None)
     if program is None:
@@ -32,7 +32,7 @@ def browser(request: pytest.FixtureRequest) -> Iterator[object]:
         config.linkwork_browser = found  # type: ignore[attr-defined]
         config.add_cleanup(playwright.stop)
         config.add_cleanup(found.close)
-    yield config.linkwork_browser  # type: ignore[attr-defined]
+    return config.linkwork_browser  # type: ignore[attr-defined]
 
 
 @pytest.fixture
