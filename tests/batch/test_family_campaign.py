@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tests.campaigns import families
+from tests.campaigns import families, kinds
+from tests.campaigns.motion import FAMILIES
 
 
 def test_random_four_bars_stay_on_their_branch(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -14,3 +15,12 @@ def test_random_four_bars_stay_on_their_branch(monkeypatch: pytest.MonkeyPatch) 
     assert counts["mechanisms"] == 600
     assert counts["near a change point"] > 40
     assert counts["row CERTIFIED"] > 0.9 * counts["rows found"]
+
+
+@pytest.mark.extended
+@pytest.mark.parametrize("part", range(len(FAMILIES)), ids=FAMILIES)
+def test_random_designs_of_every_kind_stay_on_their_branch(part: int) -> None:
+    counts, false = kinds.kind_campaign(part, 20)
+    assert not false
+    assert counts["mechanisms"] == 20
+    assert counts["row CERTIFIED"] > 0.9 * counts["rows found"] > 0
