@@ -73,13 +73,11 @@ class LiveServer:
             Without uvicorn or websockets.
         """
         try:
-            self._desk.prepare()  # solved while the browser starts
-            self._server = _uvicorn(self._app)
-            if not self._ended:
-                with self._ended_by_signals():
+            with self._ended_by_signals():
+                self._desk.prepare()  # solved while the browser starts
+                self._server = _uvicorn(self._app)
+                if not self._ended:
                     self._server.run(sockets=[self._socket])
-        except KeyboardInterrupt:
-            pass  # that is how people end it
         finally:
             self._desk.close()
             self._socket.close()
@@ -92,13 +90,15 @@ class LiveServer:
 
     @contextmanager
     def _ended_by_signals(self) -> Iterator[None]:
-        """SIGTERM and a closed terminal end the server as Ctrl-C does, so that nothing is lost."""
+        """Ctrl-C, SIGTERM and a closed terminal end the server at any moment, and nothing is lost.
+
+        While uvicorn runs it has handlers of its own; it raises what it got once more when it ends.
+        """
         before: dict[int, Any] = {}
         if threading.current_thread() is threading.main_thread():
-            # uvicorn ends at a SIGTERM by itself, then raises it once more for others
-            before[signal.SIGTERM] = signal.signal(signal.SIGTERM, _interrupt)
-            if hangup := getattr(signal, "SIGHUP", None):
-                before[hangup] = signal.signal(hangup, lambda *_: self.stop())
+            for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+                if number := getattr(signal, name, None):
+                    before[number] = signal.signal(number, lambda *_: self.stop())
         try:
             yield
         finally:
@@ -238,7 +238,3 @@ def _uvicorn(app: Callable[..., Any]) -> Any:
         timeout_graceful_shutdown=1,
     )
     return uvicorn.Server(config)
-
-
-def _interrupt(*_: object) -> None:
-    raise KeyboardInterrupt
