@@ -43,17 +43,20 @@ def view(file: str, port: int, no_browser: bool) -> None:
         raise InputError("the page edits a file: name one, standard input cannot be saved back")
     workbench = Workbench(MechanismFile(file), loads)
     server = LiveServer(workbench, port)
-    print_lines(
-        [
-            *title_lines(f"{file} is shown at"),
-            f"  {server.address}",
-            "Whoever knows this address can edit the file. Ctrl-C ends.",
-        ]
-    )
-    if not no_browser:
-        threading.Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
+
+    def tell() -> None:
+        print_lines(
+            [
+                *title_lines(f"{file} is shown at"),
+                f"  {server.address}",
+                "Whoever knows this address can edit the file. Ctrl-C ends.",
+            ]
+        )
+        if not no_browser:
+            threading.Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
+
     try:
-        server.run()
+        server.run(tell)
     finally:
         kept = workbench.keep_unsaved()
         if kept is not None:

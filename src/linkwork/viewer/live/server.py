@@ -64,8 +64,13 @@ class LiveServer:
         """To be opened in a browser; what stands behind # is never sent to any server."""
         return f"http://{_LOOPBACK}:{self.port}/#{self.token}"
 
-    def run(self) -> None:
+    def run(self, tell: Callable[[], None] = lambda: None) -> None:
         """Serve until :meth:`stop`, Ctrl-C or SIGTERM.
+
+        Parameters
+        ----------
+        tell : callable
+            Tells people the address; Ctrl-C ends the server from then on.
 
         Raises
         ------
@@ -74,6 +79,7 @@ class LiveServer:
         """
         try:
             with self._ended_by_signals():
+                tell()
                 self._desk.prepare()  # solved while the browser starts
                 self._server = _uvicorn(self._app)
                 if not self._ended:
