@@ -73,11 +73,11 @@ class ThreadState:
         named, blocks = programs.registers.named, len(programs.begin)
         own = {*programs.nodes.ravel().tolist(), *(named[name] for name in programs.noted)}
         noted = ["good.0", "radius.0", *(f"live{b}.0" for b in range(blocks))]
-        noted += [name for name in programs.noted if name not in noted]
+        more = [name for name in programs.noted if name not in noted]
         given = [name for name in named if named[name] not in own and name not in WEIGHTS]
         coefficients = tuple(name for name in given if name not in options)
         used = tuple(name for name in options if name in named)
-        order = [named[name] for name in (*WEIGHTS, *noted, *coefficients, *used)]
+        order = [named[name] for name in (*WEIGHTS, *noted, *coefficients, *used, *more)]
         order = [*programs.nodes.ravel().tolist(), *order]
         place = {register: k for k, register in enumerate(order)}
         return cls(place=place, coefficients=coefficients, options=used, blocks=blocks)
