@@ -237,11 +237,11 @@ def placed(choices: Sequence[Choice], drawn: Iterable[Primitive]) -> list[Text]:
         return []
     boxes = [[text.box.grown(_CLEAR * text.height) for text in choice.places] for choice in choices]
     obstacles = Obstacles.of(drawn)
-    fixed = [
-        np.array(c.cost) + np.array([obstacles.cost([box]) for box in b])
-        for c, b in zip(choices, boxes, strict=True)
-    ]
     edges = [np.array([(*box.corners[0], *box.corners[1]) for box in b]) for b in boxes]
+    fixed = [
+        np.array(c.cost) + obstacles.costs(e[:, None, :])
+        for c, e in zip(choices, edges, strict=True)
+    ]
     # Most hemmed in first: they have the least choice.
     order = sorted(range(len(choices)), key=lambda k: -float(np.min(fixed[k])))
     taken: dict[int, int] = {}

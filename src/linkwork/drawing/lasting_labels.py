@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from linkwork.drawing.box import Box
 from linkwork.drawing.label_placement import Choice, point_names
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.obstacles import Obstacles
@@ -41,14 +40,12 @@ def lasting_labels(
     """
     rows = [point_names(pose, measures) for pose in poses]
     boxes = [_boxes([row[k] for row in rows]) for k in range(len(rows[0]))]
-    obstacles = [Obstacles.of(shapes) for shapes in drawn]
-    fixed = []
-    for k, choice in enumerate(rows[0]):
-        cost = np.array([
-            [obstacle.cost([Box(*box)]) for box in boxes[k][r]]
-            for r, obstacle in enumerate(obstacles)
-        ])  # fmt: skip
-        fixed.append(np.array(choice.cost) + _over_rows(cost))
+    # (rows, names, places): what every place of every name covers
+    cost = np.array([
+        _covered(Obstacles.of(shapes), [own[row] for own in boxes])
+        for row, shapes in enumerate(drawn)
+    ])  # fmt: skip
+    fixed = [np.array(choice.cost) + _over_rows(cost[:, k]) for k, choice in enumerate(rows[0])]
     chosen = _settled(fixed, boxes)
     return [choice.places[place] for choice, place in zip(rows[0], chosen, strict=True)]
 
@@ -74,6 +71,12 @@ def _boxes(choices: Sequence[Choice]) -> Array:
         ]
         for choice in choices
     ])  # fmt: skip
+
+
+def _covered(obstacles: Obstacles, boxes: Sequence[Array]) -> Array:
+    """What the places (p, 4) of each of n names cover, (n, p)."""
+    costs: Array = obstacles.costs(np.concatenate(boxes)[:, None, :])
+    return costs.reshape(len(boxes), -1)
 
 
 def _over_rows(cost: Array) -> Array:

@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from linkwork.drawing.box import Box
-from linkwork.drawing.scene import Arc, Disc, Hatch, Polygon, Polyline, Primitive, Role, Text
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.drawing.scene import XY, Arc, Disc, Hatch, Polygon, Polyline, Primitive, Role, Text
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 
 __all__ = ["Obstacles"]
 
@@ -30,13 +30,18 @@ _OPEN = (Role.FRAME, Role.WHEEL, Role.PITCH)  # discs that names and arrows may 
 
 @dataclass(frozen=True)
 class Obstacles:
-    """Line pieces (m, 4), discs (d, 3) and plates, with penalties for covering them."""
+    """Line pieces (m, 4), discs (d, 3) and sides of plates (n, s, 4), with penalties for covering
+    them.
+
+    ``levels`` (l,): the penalties of pieces; ``level`` (m,): which of them is a piece's own.
+    """
 
     pieces: Array
-    piece_cost: Array
+    level: IndexArray
+    levels: Array
     discs: Array
     disc_cost: Array
-    plates: tuple[Array, ...]
+    plates: Array
 
     @classmethod
     def of(cls, drawn: Iterable[Primitive]) -> Obstacles:
@@ -45,9 +50,9 @@ class Obstacles:
         piece_cost: list[float] = []
         discs: list[tuple[float, float, float]] = []
         disc_cost: list[float] = []
-        plates: list[Array] = []
+        plates: list[tuple[XY, ...]] = []
         for p in drawn:
-            found = []
+            found: list[tuple[XY, XY]] = []
             penalty = _PENALTY.get(p.role, 0.0) * (1.0 - p.fade) ** 2
             if isinstance(p, Disc) and p.role in _OPEN:
                 found = list(pairwise(p.rim))
@@ -55,37 +60,47 @@ class Obstacles:
                 discs.append((*p.centre, p.radius))
                 disc_cost.append(penalty)
             elif isinstance(p, Polyline | Arc):
-                found = list(zip(p.points, p.points[1:], strict=False))
+                found = list(pairwise(p.points))
             elif isinstance(p, Polygon):
                 found = list(zip(p.points, p.points[1:] + p.points[:1], strict=True))
                 if p.role is Role.PLATE and not p.fade:
-                    plates.append(np.array(p.points))
+                    plates.append(p.points)
             elif isinstance(p, Hatch):
                 found = list(p.strokes)
             elif isinstance(p, Text):
                 found, penalty = list(pairwise(_frame(p.box))), _TEXT
-            pieces += [(*a, *b) for a, b in found]
-            piece_cost += [penalty] * len(found)
+            if penalty:
+                pieces += [(*a, *b) for a, b in found]
+                piece_cost += [penalty] * len(found)
+        levels, level = np.unique(piece_cost, return_inverse=True)
         return cls(
-            np.array(pieces).reshape(-1, 4), np.array(piece_cost),
-            np.array(discs).reshape(-1, 3), np.array(disc_cost), tuple(plates),
+            np.array(pieces).reshape(-1, 4), level, levels,
+            np.array(discs).reshape(-1, 3), np.array(disc_cost), _sides(plates),
         )  # fmt: skip
 
     def cost(self, boxes: Sequence[Box]) -> float:
         """The penalty for something that is made of these boxes."""
-        covered = np.zeros(len(self.discs), dtype=bool)
-        crossed = np.zeros(len(self.pieces), dtype=bool)
-        for box in boxes:
-            covered |= _covers(self.discs, box)
-            crossed |= _crosses(self.pieces, box)
+        edges = [(box.left, box.bottom, box.right, box.top) for box in boxes]
+        return float(self.costs(np.array(edges).reshape(1, -1, 4))[0])
+
+    def costs(self, boxes: Array) -> Array:
+        """The penalties (k,) for things that are made of b boxes each.
+
+        Parameters
+        ----------
+        boxes : array (k, b, 4)
+            Left, bottom, right, top.
+        """
         # A trace of many short pieces counts once per role's penalty, not once per piece.
-        values, counts = np.unique(self.piece_cost[crossed], return_counts=True)
-        inside = sum(any(_inside(p, box.centre) for box in boxes) for p in self.plates)
-        return (
-            float(self.disc_cost @ covered)
-            + float(values @ (1 + np.log(counts)))
-            + _INSIDE_PLATE * inside
-        )
+        found = np.zeros(len(boxes))
+        near = _near(self.pieces, boxes)
+        crossed = _crosses(self.pieces[near], boxes)
+        for k, penalty in enumerate(self.levels):
+            count = np.count_nonzero(crossed[:, self.level[near] == k], axis=1)
+            found += np.where(count, penalty * (1.0 + np.log(np.maximum(count, 1))), 0.0)
+        inside = np.count_nonzero(_inside(self.plates, boxes), axis=1)
+        total: Array = found + _covers(self.discs, boxes) @ self.disc_cost + _INSIDE_PLATE * inside
+        return total
 
 
 def _frame(box: Box) -> list[tuple[float, float]]:
@@ -95,34 +110,56 @@ def _frame(box: Box) -> list[tuple[float, float]]:
     return [*around, (right, top)]
 
 
-def _covers(discs: Array, box: Box) -> BoolArray:
-    """Which discs (d, 3) the box meets, shape (d,)."""
-    x, y, r = discs.T
-    dx = np.maximum(np.maximum(box.left - x, x - box.right), 0.0)
-    dy = np.maximum(np.maximum(box.bottom - y, y - box.top), 0.0)
-    return np.asarray(np.hypot(dx, dy) < r * (1 - 1e-9))
+def _sides(plates: Sequence[Sequence[XY]]) -> Array:
+    """The sides of convex polygons, (n, s, 4); the last one stands again where there are fewer."""
+    most = max(map(len, plates), default=0)
+    found = np.empty((len(plates), most, 4))
+    for k, corners in enumerate(plates):
+        around = np.array([*corners, corners[0]])
+        sides = np.hstack((around[:-1], around[1:]))
+        found[k, : len(sides)], found[k, len(sides) :] = sides, sides[-1]
+    return found
 
 
-def _crosses(pieces: Array, box: Box) -> BoolArray:
-    """Which line pieces (m, 4) meet the box, shape (m,): the slab method."""
+def _near(pieces: Array, boxes: Array) -> BoolArray:
+    """Which pieces (m, 4) have to be looked at, (m,): those that meet the box around all boxes."""
+    edges = boxes.reshape(-1, 4)
+    low, high = edges[:, :2].min(axis=0), edges[:, 2:].max(axis=0)
     start, end = pieces[:, :2], pieces[:, 2:]
-    step = end - start
-    low = np.array([box.left, box.bottom]) - start
-    high = np.array([box.right, box.top]) - start
-    with np.errstate(divide="ignore", invalid="ignore"):
-        a, b = low / step, high / step
-    flat = step == 0
-    within = (low <= 0) & (high >= 0)
-    enter = np.where(flat, np.where(within, -np.inf, np.inf), np.minimum(a, b))
-    leave = np.where(flat, np.where(within, np.inf, -np.inf), np.maximum(a, b))
     return np.asarray(
-        np.maximum(enter.max(axis=1, initial=0.0), 0.0)
-        <= np.minimum(leave.min(axis=1, initial=1.0), 1.0)
+        ((np.minimum(start, end) <= high) & (np.maximum(start, end) >= low)).all(axis=1)
     )
 
 
-def _inside(corners: Array, point: tuple[float, float]) -> bool:
-    """Whether a point lies in a convex polygon with counter-clockwise corners (n, 2)."""
-    sides = np.roll(corners, -1, axis=0) - corners
-    to_point = np.array(point) - corners
-    return bool(np.all(sides[:, 0] * to_point[:, 1] - sides[:, 1] * to_point[:, 0] >= 0))
+def _covers(discs: Array, boxes: Array) -> BoolArray:
+    """Which discs (d, 3) are met by one of the boxes (k, b, 4), (k, d)."""
+    x, y, r = discs.T
+    left, bottom, right, top = np.moveaxis(boxes, -1, 0)[..., None]
+    dx = np.maximum(np.maximum(left - x, x - right), 0.0)
+    dy = np.maximum(np.maximum(bottom - y, y - top), 0.0)
+    return np.asarray(np.any(np.hypot(dx, dy) < r * (1 - 1e-9), axis=1))
+
+
+def _crosses(pieces: Array, boxes: Array) -> BoolArray:
+    """Which line pieces (m, 4) meet one of the boxes (k, b, 4), (k, m).
+
+    They do unless an axis separates them: x, y, or the normal of the piece.
+    """
+    half = 0.5 * (pieces[:, 2:] - pieces[:, :2]).T
+    middle = 0.5 * (pieces[:, 2:] + pieces[:, :2]).T
+    size = 0.5 * (boxes[..., 2:] - boxes[..., :2])[..., None]  # (k, b, 2, 1)
+    x, y = np.moveaxis(0.5 * (boxes[..., 2:] + boxes[..., :2])[..., None] - middle, 2, 0)
+    wide, high = size[..., 0, :], size[..., 1, :]
+    turned = np.abs(half[0] * y - half[1] * x)
+    apart = np.abs(x) > wide + np.abs(half[0])
+    apart |= np.abs(y) > high + np.abs(half[1])
+    apart |= turned > wide * np.abs(half[1]) + high * np.abs(half[0])
+    return np.asarray(np.any(~apart, axis=1))
+
+
+def _inside(plates: Array, boxes: Array) -> BoolArray:
+    """In which convex plates (n, s, 4), counter-clockwise, a middle of the boxes lies, (k, n)."""
+    middle = 0.5 * (boxes[..., :2] + boxes[..., 2:])[:, :, None, None, :]  # (k, b, 1, 1, 2)
+    side, away = plates[..., 2:] - plates[..., :2], middle - plates[..., :2]
+    left = side[..., 0] * away[..., 1] - side[..., 1] * away[..., 0] >= 0
+    return np.asarray(np.any(np.all(left, axis=-1), axis=1))
