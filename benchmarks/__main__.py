@@ -13,6 +13,7 @@ from benchmarks import (
     configuration_time,
     cycle_time,
     design_time,
+    live_time,
     page_time,
     process_start,
 )
@@ -25,6 +26,7 @@ MEASUREMENTS = {
     "chain": chain_growth.measure,
     "designs": design_time.measure,
     "page": page_time.measure,
+    "live": live_time.measure,
 }
 PROGRAMS = {"peers": "benchmarks.peers", "scaling": "benchmarks.scaling"}
 

@@ -12,6 +12,7 @@ from tests.campaigns.circuits import dead_inputs_of, judge_circuits
 from tests.campaigns.motion import FAMILIES, random_mechanism
 from tests.laws.mechanisms import NAMES, mechanism_of
 from tests.oracles.cranked import cranked_truss
+from tests.thinned import thinned
 
 
 def two_dyads(n: float) -> lw.Mechanism:
@@ -139,7 +140,7 @@ COSTLY = frozenset({
 })  # fmt: skip
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name not in COSTLY])
+@pytest.mark.parametrize("name", thinned(name for name in NAMES if name not in COSTLY))
 def test_a_complete_list_says_how_its_dead_points_were_found(name: str) -> None:
     mechanism = mechanism_of(name)
     circuits = mechanism.circuits(certify=False)

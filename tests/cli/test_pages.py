@@ -14,6 +14,7 @@ from linkwork.cli.check import check_lines
 from linkwork.cli.main import linkwork
 from linkwork.everyday import example_text, examples, load
 from tests.cli.conftest import FILES, Run
+from tests.thinned import thinned
 
 COMMANDS = tuple(linkwork.list_commands(click.Context(linkwork)))
 PAGES = (
@@ -201,7 +202,7 @@ COSTLY = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", examples())
+@pytest.mark.parametrize("name", thinned(examples()))
 def test_every_page_of_the_library_fits_eighty_columns(run: Run, folder: Path, name: str) -> None:
     assert run("examples", name, "-o", "mechanism.toml").exit_code == 0
     for command, *options in PAGES:

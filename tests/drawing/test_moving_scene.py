@@ -10,6 +10,7 @@ from linkwork.drawing import SceneOptions, reach_of, scene_of
 from linkwork.drawing.moving_scene import moving_scene
 from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, Scene, Text
 from linkwork.drawing.shape_corners import corners
+from tests.thinned import thinned
 
 _DRAWN = [n for n in lw.examples() if lw.example(n).model.compiled.points.names]
 _FURTHEST = 1e-6  # of the drawn size: rows and positions agree to rounding
@@ -54,7 +55,7 @@ def _differences(one: Scene, other: Scene) -> dict[str, float]:
     return worst
 
 
-@pytest.mark.parametrize("name", _DRAWN)
+@pytest.mark.parametrize("name", thinned(_DRAWN))
 def test_moving_scene_agrees_with_the_scene_of_a_row(name: str) -> None:
     mechanism = lw.example(name)
     motion = mechanism.sweep(certify=False)

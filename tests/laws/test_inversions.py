@@ -16,6 +16,7 @@ from linkwork.mechanism.inversion import inverted
 from linkwork.mechanism.linkage import Linkage
 from tests.laws.contacts import KINDS, contact
 from tests.laws.mechanisms import NAMES, mechanism_of, motion_of, size_of
+from tests.thinned import thinned
 
 CYLINDER = "is part of a cylinder: write it as two links with a slider"
 LINKED = tuple(name for name in NAMES if isinstance(mechanism_of(name).description, Linkage))
@@ -66,7 +67,7 @@ def test_wheels_cams_and_curves_move_alike_whatever_is_ground(kind: str) -> None
             )
 
 
-@pytest.mark.parametrize("name", LINKED)
+@pytest.mark.parametrize("name", thinned(LINKED, 2))
 def test_an_inversion_has_the_same_relative_motion(name: str) -> None:
     mechanism, motion = mechanism_of(name), motion_of(name)
     links = mechanism.description.links
@@ -93,7 +94,7 @@ def test_an_inversion_has_the_same_relative_motion(name: str) -> None:
             np.testing.assert_allclose(turns, 0, atol=1e-12 * size)
 
 
-@pytest.mark.parametrize("name", LINKED)
+@pytest.mark.parametrize("name", thinned(LINKED))
 def test_the_inversion_of_an_inversion_is_the_mechanism(name: str) -> None:
     """Back on the old ground, every point moves as before but for where the axes are."""
     mechanism, motion = mechanism_of(name), motion_of(name)

@@ -5,11 +5,10 @@ from __future__ import annotations
 import pytest
 
 from tests.campaigns.motion import sweep_campaign
+from tests.thinned import thinned
 
 
-@pytest.mark.parametrize(
-    "part", [*range(4), *[pytest.param(k, marks=pytest.mark.extended) for k in range(4, 20)]]
-)
+@pytest.mark.parametrize("part", thinned(range(20), 20))
 def test_random_mechanisms_keep_their_branch_at_steps_of_1_10_and_60_degrees(part: int) -> None:
     tally = sweep_campaign(range(part * 50, part * 50 + 50))
     assert tally.wrong == []

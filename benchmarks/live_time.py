@@ -1,0 +1,119 @@
+"""The live page of Jansen's leg: how long the first picture takes, and how many cycles a second are
+solved and shown while a dimension is dragged.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.resources import files
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+__all__ = ["measure"]
+
+_PICTURE_BAR = 1.0  # s from the command to the first picture, in a browser that runs
+_RATE_BAR = 30.0  # solved cycles a second while a dimension is dragged
+_DRAG = 4.0  # s
+_DRAGGED = """async ([name, seconds]) => {
+  const page = document.getElementById('linkwork');
+  const slider = document.querySelector(`[data-number="${name}"] input[type=range]`);
+  const middle = Number(slider.value);
+  const count = () => Number(page.dataset.updates);
+  const began = performance.now(), before = count();
+  let k = 0;
+  while (performance.now() - began < 1000 * seconds) {
+    slider.value = String(middle * (1 + 0.05 * Math.sin(0.05 * k++)));
+    slider.dispatchEvent(new Event('input'));
+    await new Promise(requestAnimationFrame);
+  }
+  const rate = 1000 * (count() - before) / (performance.now() - began);
+  slider.dispatchEvent(new Event('change'));
+  return rate;
+}"""
+
+
+def measure(repeats: int = 7) -> bool:
+    """Bars: 1 s to the first picture; 30 solved cycles a second."""
+    print("the live page of Jansen's leg")
+    rates = [_over_socket() for _ in range(3)]
+    print(f"  cycles a second while a length is dragged, told over the socket: {median(rates):.0f}")
+    program = shutil.which("chromium")
+    if program is None:
+        print("  in a browser: not measured, there is no chromium on the PATH")
+        return True
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - an extra of tests
+
+    printed, shown, dragged = [], [], []
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        for _ in range(repeats):
+            page = browser.new_page(viewport={"width": 1280, "height": 800})
+            began = time.perf_counter()
+            with _served() as address:
+                printed.append(time.perf_counter() - began)
+                page.goto(address)
+                page.wait_for_selector(".lw[data-row]")
+                shown.append(time.perf_counter() - began)
+                dragged.append(float(page.evaluate(_DRAGGED, ["O A", _DRAG])))
+            page.close()
+        browser.close()
+    print(
+        f"  from the command to its address: median {median(printed):.2f} s, to the first picture "
+        f"in a browser that runs: {median(shown):.2f} s ({min(shown):.2f} to {max(shown):.2f})"
+    )
+    print(
+        f"  cycles a second shown while a length is dragged: median {median(dragged):.0f} "
+        f"({min(dragged):.0f} to {max(dragged):.0f})"
+    )
+    return median(shown) <= _PICTURE_BAR and median(dragged) >= _RATE_BAR
+
+
+@contextmanager
+def _served() -> Iterator[str]:
+    """The command as a process of its own; the address that it prints."""
+    with tempfile.TemporaryDirectory() as folder:
+        target = Path(folder) / "jansen-leg.toml"
+        target.write_bytes((files("linkwork") / "library" / "jansen-leg.toml").read_bytes())
+        words = [sys.executable, "-m", "linkwork", "view", str(target), "--no-browser"]
+        process = subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=dict(os.environ))
+        assert process.stdout is not None
+        try:
+            yield next(line.strip() for line in process.stdout if "http://" in line)
+        finally:
+            process.terminate()
+            process.communicate()
+
+
+def _over_socket() -> float:
+    """Cycles a second that are solved and told, two requests under way."""
+    from websockets.sync.client import connect  # noqa: PLC0415 - an extra of the live page
+
+    with _served() as address:
+        home, token = address.split("/#")
+        host = home.removeprefix("http://")
+        settings: dict[str, Any] = {"origin": home, "max_size": None}
+        protocols = ["linkwork", f"token.{token}"]
+        with connect(f"ws://{host}/live", subprotocols=protocols, **settings) as page:
+            while json.loads(page.recv())["kind"] != "motion_found":
+                pass
+            began, told, asked = time.perf_counter(), 0, 0
+            while time.perf_counter() - began < _DRAG:
+                while asked < told + 2:
+                    asked += 1
+                    value = 15.0 + 0.01 * (asked % 100)
+                    page.send(
+                        json.dumps(
+                            {"kind": "set_number", "name": "O A", "value": value, "live": True}
+                        )
+                    )
+                told += json.loads(page.recv())["kind"] == "motion_found"
+            return told / (time.perf_counter() - began)
