@@ -101,7 +101,7 @@ def _over_socket() -> float:
         home, token = address.split("/#")
         host = home.removeprefix("http://")
         settings: dict[str, Any] = {"origin": home, "max_size": None}
-        protocols = ["linkwork", f"token.{token}"]
+        protocols: list[Any] = ["linkwork", f"token.{token}"]
         with connect(f"ws://{host}/live", subprotocols=protocols, **settings) as page:
             while json.loads(page.recv())["kind"] != "motion_found":
                 pass

@@ -3,7 +3,7 @@
 
 import type { MotionView, Series } from "./motion";
 import { degreeTicks, shortNumber, ticks, trimmed } from "./numbers";
-import { html, svg } from "./svg";
+import { html, put, say, svg } from "./svg";
 
 const WIDTH = 420;
 const HEIGHT = 190;
@@ -26,8 +26,11 @@ export class Chart {
   private chosen: string;
   private x!: Scale;
   private y!: Scale;
-  private dot!: SVGCircleElement;
-  private line!: SVGLineElement;
+  private readonly grid: SVGGElement;
+  private readonly path: SVGPathElement;
+  private readonly limits: SVGGElement;
+  private readonly dot: SVGCircleElement;
+  private readonly line: SVGLineElement;
   private value!: HTMLElement;
   private series!: Series;
 
@@ -42,6 +45,11 @@ export class Chart {
     this.select = html("select", { "aria-label": "Quantity to plot" }, head);
     this.value = html("output", { class: "lw-value" }, head);
     this.plot = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img" }, this.element);
+    this.grid = svg("g", {}, this.plot);
+    this.path = svg("path", { class: "lw-curve" }, this.plot);
+    this.limits = svg("g", {}, this.plot);
+    this.line = svg("line", { class: "lw-now", y1: ABOVE, y2: HEIGHT - BELOW }, this.plot);
+    this.dot = svg("circle", { class: "lw-dot", r: 4.5 }, this.plot);
     this.select.addEventListener("change", () => {
       this.chosen = this.select.value;
       this.redraw();
@@ -49,39 +57,48 @@ export class Chart {
     this.listen();
   }
 
-  show(view: MotionView): void {
+  /** The curve of another motion; `steady` lets the scales grow only, while something is dragged. */
+  show(view: MotionView, steady = false): void {
     this.view = view;
     const names = view.series.slice(1);
-    this.select.replaceChildren();
-    for (const one of names) html("option", { value: one.name }, this.select, labelled(one));
-    if (!names.some((one) => one.name === this.chosen)) this.chosen = names[0]?.name ?? "";
-    this.select.value = this.chosen;
-    this.redraw();
+    const listed = names.map(labelled).join("\n");
+    if (listed !== this.select.dataset.listed) {
+      this.select.dataset.listed = listed;
+      this.select.replaceChildren();
+      for (const one of names) html("option", { value: one.name }, this.select, labelled(one));
+      if (!names.some((one) => one.name === this.chosen)) this.chosen = names[0]?.name ?? "";
+      this.select.value = this.chosen;
+    }
+    this.redraw(steady);
   }
 
   draw(row: number): void {
     const value = this.series.values[row]!;
     const input = this.view.input.values[row]!;
-    this.dot.setAttribute("cx", String(this.x.at(input)));
-    this.dot.setAttribute("cy", String(this.y.at(value)));
-    this.line.setAttribute("x1", String(this.x.at(input)));
-    this.line.setAttribute("x2", String(this.x.at(input)));
-    this.value.textContent = `${shortNumber(value)}${unitText(this.series.unit)}`;
+    const x = this.x.at(input);
+    put(this.dot, { cx: x, cy: this.y.at(value) });
+    put(this.line, { x1: x, x2: x });
+    say(this.value, `${shortNumber(value)}${unitText(this.series.unit)}`);
   }
 
-  private redraw(): void {
+  private redraw(steady = false): void {
     const { input, order } = this.view;
     this.series = this.view.series.find((one) => one.name === this.chosen) ?? input;
+    const values = order.map((row) => this.series.values[row]!);
+    if (steady) values.push(this.y.low, this.y.high);
     this.x = scale(Array.from(input.values), LEFT, WIDTH - RIGHT);
-    this.y = scale(order.map((row) => this.series.values[row]!), HEIGHT - BELOW, ABOVE, 0.06);
-    this.plot.replaceChildren();
+    this.y = scale(values, HEIGHT - BELOW, ABOVE, steady ? 0 : 0.06);
     const name = `${labelled(this.series)} over ${labelled(input)}`;
-    this.plot.setAttribute("aria-label", name);
-    this.axes(input);
-    svg("path", { class: "lw-curve", d: this.curve() }, this.plot);
+    const axes = [name, this.x.low, this.x.high, this.y.low, this.y.high].join(" ");
+    if (axes !== this.grid.dataset.axes) {
+      this.grid.dataset.axes = axes;
+      this.grid.replaceChildren();
+      put(this.plot, { "aria-label": name });
+      this.axes(input);
+    }
+    put(this.path, { d: this.curve() });
+    this.limits.replaceChildren();
     for (const limit of this.view.data.limits) this.limit(limit.row, limit.text);
-    this.line = svg("line", { class: "lw-now", y1: ABOVE, y2: HEIGHT - BELOW }, this.plot);
-    this.dot = svg("circle", { class: "lw-dot", r: 4.5 }, this.plot);
   }
 
   private axes(input: Series): void {
@@ -89,17 +106,17 @@ export class Chart {
     const digits = (value: number): string => trimmed(shortNumber(value, 5));
     for (const value of across) {
       const x = this.x.at(value);
-      svg("line", { class: "lw-grid", x1: x, x2: x, y1: ABOVE, y2: HEIGHT - BELOW }, this.plot);
-      svg("text", { x, y: HEIGHT - BELOW + 14, "text-anchor": "middle" }, this.plot).textContent = digits(value);
+      svg("line", { class: "lw-grid", x1: x, x2: x, y1: ABOVE, y2: HEIGHT - BELOW }, this.grid);
+      svg("text", { x, y: HEIGHT - BELOW + 14, "text-anchor": "middle" }, this.grid).textContent = digits(value);
     }
     const up = (this.series.unit === "deg" ? degreeTicks : ticks)(this.y.low, this.y.high, 4);
     for (const value of up) {
       const y = this.y.at(value);
-      svg("line", { class: "lw-grid", x1: LEFT, x2: WIDTH - RIGHT, y1: y, y2: y }, this.plot);
-      svg("text", { x: LEFT - 6, y: y + 3.5, "text-anchor": "end" }, this.plot).textContent = digits(value);
+      svg("line", { class: "lw-grid", x1: LEFT, x2: WIDTH - RIGHT, y1: y, y2: y }, this.grid);
+      svg("text", { x: LEFT - 6, y: y + 3.5, "text-anchor": "end" }, this.grid).textContent = digits(value);
     }
     const where = { x: WIDTH - RIGHT, y: HEIGHT - 3, "text-anchor": "end", class: "lw-axis" };
-    svg("text", where, this.plot).textContent = labelled(input);
+    svg("text", where, this.grid).textContent = labelled(input);
   }
 
   /** The curve in the order of the motion, broken where the input begins a new turn. */
@@ -165,7 +182,7 @@ export class Chart {
         cy: this.y.at(this.series.values[row]!),
         r: 3.5,
       },
-      this.plot,
+      this.limits,
     );
     svg("title", {}, mark).textContent = text;
   }

@@ -2,7 +2,7 @@
 
 import type { MotionView } from "./motion";
 import { measured } from "./numbers";
-import { html, svg } from "./svg";
+import { html, put, say, svg } from "./svg";
 
 const PLAY = "M7 4.5v15l12.5-7.5z";
 const PAUSE = "M6.5 5h4v14h-4zM13.5 5h4v14h-4z";
@@ -37,12 +37,14 @@ export class Transport {
 
   show(view: MotionView): void {
     const last = view.order.length - 1;
-    this.bar.max = String(last);
+    put(this.bar, { max: last });
+    const marks = view.data.limits.map((limit) => ({ at: view.order.indexOf(limit.row), text: limit.text })).filter(({ at }) => at >= 0);
+    const wanted = JSON.stringify([last, marks]);
+    if (wanted === this.marks.dataset.made) return;
+    this.marks.dataset.made = wanted;
     this.marks.replaceChildren();
-    for (const limit of view.data.limits) {
-      const at = view.order.indexOf(limit.row);
-      if (at < 0) continue;
-      const mark = html("span", { title: limit.text }, this.marks);
+    for (const { at, text } of marks) {
+      const mark = html("span", { title: text }, this.marks);
       mark.style.left = `${(100 * at) / Math.max(1, last)}%`;
     }
   }
@@ -51,8 +53,8 @@ export class Transport {
     const { input } = view;
     const text = `${input.shown} = ${measured(input.values[row]!, input.unit)}`;
     this.bar.value = String(index);
-    this.bar.setAttribute("aria-valuetext", `${text}, ${index + 1} of ${view.order.length}`);
-    this.readout.textContent = text;
+    put(this.bar, { "aria-valuetext": `${text}, ${index + 1} of ${view.order.length}` });
+    say(this.readout, text);
   }
 
   playing(on: boolean): void {

@@ -1,8 +1,8 @@
 // The mechanism in SVG. What one frame carries is one group; a new row only moves groups.
 
-import type { MotionView } from "./motion";
+import type { Course, MotionView } from "./motion";
 import type { PageData, Part } from "./page_data";
-import { pathOf, strokesOf, svg } from "./svg";
+import { pathOf, put, strokesOf, svg } from "./svg";
 import { toneClass } from "./theme";
 
 /** The frame of a shape that changes its form. */
@@ -13,6 +13,9 @@ const SMALLEST = 12.5;
 
 type Moved = (row: number) => void;
 
+/** Gives elements that are there the measures of a part like the one they were made for. */
+type Renewed = (part: Part) => void;
+
 const LABELS = new Set(["label", "link_name", "limit_name"]);
 
 export class Drawing {
@@ -22,6 +25,8 @@ export class Drawing {
   private readonly shapes: SVGGElement;
   private readonly handles: SVGGElement;
   private moved: Moved[] = [];
+  private renewed: Renewed[] = [];
+  private made = "";
   private view!: MotionView;
 
   constructor(
@@ -43,7 +48,9 @@ export class Drawing {
   renew(data: PageData): void {
     this.data = data;
     const [left, bottom, right, top] = data.view as [number, number, number, number];
-    this.element.setAttribute("viewBox", `${left} ${-top} ${right - left} ${top - bottom}`);
+    const box = `${left} ${-top} ${right - left} ${top - bottom}`;
+    if (box === this.element.getAttribute("viewBox")) return;
+    this.element.setAttribute("viewBox", box);
     this.fit();
   }
 
@@ -55,12 +62,19 @@ export class Drawing {
     this.element.style.setProperty("--grow", String(Math.min(1.6, Math.max(1, grow))));
   }
 
-  /** Draw another motion. */
+  /** Draw another motion; where it has the same shapes, they are kept and only get its measures. */
   show(view: MotionView): void {
     this.view = view;
+    const wanted = madeOf(view);
+    if (wanted === this.made) {
+      view.data.parts.forEach((part, k) => this.renewed[k]!(part));
+      return;
+    }
+    this.made = wanted;
     this.shapes.replaceChildren();
     this.handles.replaceChildren();
     this.moved = [];
+    this.renewed = [];
     let group: SVGGElement | null = null;
     let carried = Number.NaN;
     for (const part of view.data.parts) {
@@ -119,23 +133,30 @@ export class Drawing {
   private shape(part: Part, group: SVGGElement): void {
     const look = this.look(part);
     if (part.kind === "disc") {
-      const [x, y] = part.points as [number, number];
-      svg("circle", { ...look, cx: x, cy: -y, r: part.radius }, group);
+      const circle = svg("circle", look, group);
+      this.measured(part, ({ points: [x, y], radius }) => put(circle, { cx: x!, cy: -y!, r: radius }));
       return;
     }
-    const d = part.kind === "strokes" ? strokesOf(part.points) : pathOf(part.points, part.kind === "area");
-    svg("path", { ...look, d }, group);
-    if (part.head.length) {
-      const { class: name, ...rest } = look;
-      svg("path", { ...rest, class: `${name} filled lw-head`, d: pathOf(part.head, true) }, group);
-    }
+    const path = svg("path", look, group);
+    const head = part.head.length ? svg("path", { ...look, class: `${look.class} filled lw-head` }, group) : null;
+    this.measured(part, ({ kind, points, head: corners }) => {
+      put(path, { d: kind === "strokes" ? strokesOf(points) : pathOf(points, kind === "area") });
+      if (head) put(head, { d: pathOf(corners, true) });
+    });
+  }
+
+  /** What gives a part its measures, now and whenever they change. */
+  private measured(part: Part, renewed: Renewed): void {
+    renewed(part);
+    this.renewed.push(renewed);
   }
 
   private changing(part: Part): void {
-    const course = this.view.course(part);
+    let course: Course;
     const path = svg("path", this.look(part), this.shapes);
     path.classList.add("lw-changing");
     const closed = part.kind === "area";
+    this.measured(part, (own) => (course = this.view.course(own)));
     this.moved.push((row) => {
       const there = course.shown[row] === 1;
       const corners = course.corners.map((corner) => corner[row]!);
@@ -147,27 +168,23 @@ export class Drawing {
   }
 
   private text(part: Part): void {
-    const [u, v] = part.points as [number, number];
-    const [dx, dy] = part.offset as [number, number];
-    const element = svg(
-      "text",
-      {
-        ...this.look(part),
-        "text-anchor": (["start", "middle", "end"] as const)[part.align + 1]!,
-        x: dx,
-        y: -dy,
-      },
-      this.shapes,
-    );
+    const anchor = (["start", "middle", "end"] as const)[part.align + 1]!;
+    const element = svg("text", { ...this.look(part), "text-anchor": anchor }, this.shapes);
     element.textContent = part.text;
-    element.style.fontSize = `calc(var(--grow, 1) * ${part.height}px)`;
+    let [u, v] = [0, 0];
     const place = (row: number): void => {
       const { x, y, angle } = this.view.pose(part.frame, row);
       const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
-      element.setAttribute("transform", `translate(${x + cos * u - sin * v} ${-(y + sin * u + cos * v)})`);
+      put(element, { transform: `translate(${x + cos * u - sin * v} ${-(y + sin * u + cos * v)})` });
     };
-    if (part.frame < 0) place(0);
-    else this.moved.push(place);
+    this.measured(part, ({ points, offset: [dx, dy], height }) => {
+      [u, v] = points as [number, number];
+      put(element, { x: dx!, y: -dy! });
+      const size = `calc(${height}px * var(--grow, 1))`;
+      if (element.style.fontSize !== size) element.style.fontSize = size;
+      if (part.frame < 0) place(0);
+    });
+    if (part.frame >= 0) this.moved.push(place);
   }
 
   private look(part: Part): { class: string; "data-role": string; "data-of": string } {
@@ -184,11 +201,19 @@ export class Drawing {
     );
     this.view.points.forEach((point, k) => {
       if (!point.moving || !drawn.has(point.name)) return;
-      const handle = svg("circle", { class: "lw-handle", "data-point": k, r: 3.2 * this.data.pin }, this.handles);
+      const handle = svg("circle", { class: "lw-handle", "data-point": k }, this.handles);
       this.moved.push((row) => {
-        handle.setAttribute("cx", String(point.x[row]));
-        handle.setAttribute("cy", String(-point.y[row]!));
+        const { x, y } = this.view.points[k]!;
+        put(handle, { cx: x[row]!, cy: -y[row]!, r: 3.2 * this.data.pin });
       });
     });
   }
+}
+
+/** What elements a motion needs: two motions of which it is the same can use the same ones. */
+function madeOf(view: MotionView): string {
+  const parts = view.data.parts.map(({ kind, role, of, tone, frame, text, align, head }) =>
+    [kind, role, of, tone, frame, text, align, head.length > 0].join(" "),
+  );
+  return [...parts, ...view.points.map(({ name, moving }) => `${name} ${moving}`)].join("\n");
 }

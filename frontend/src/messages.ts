@@ -195,10 +195,6 @@ export interface MotionFound {
   rows: number;
   missing: number;
   certified: number;
-  inputs: Record<string, readonly (number)[]>;
-  points: Record<string, readonly [readonly (number | null)[], readonly (number | null)[]]>;
-  columns: Record<string, readonly (number | null)[]>;
-  status: readonly (string)[];
   limits: readonly (LimitFound)[];
   worst_residual: number | null;
   message: string;

@@ -9,7 +9,7 @@ import { MotionView } from "./motion";
 import { measured } from "./numbers";
 import type { PageData } from "./page_data";
 import { Player } from "./player";
-import { html } from "./svg";
+import { html, say } from "./svg";
 import { RowTable } from "./table";
 import { themeRules } from "./theme";
 
@@ -56,6 +56,9 @@ export interface Places {
   readonly drawing: Drawing;
 }
 
+/** Updates follow each other within so much time [ms] while something is dragged. */
+const UPDATED_WITHIN = 120;
+
 let mounted = 0;
 
 /** Show a motion in an element. */
@@ -76,6 +79,7 @@ function checked(data: PageData): PageData {
 class Page implements Mounted {
   private readonly root: HTMLElement;
   private readonly style = new CSSStyleSheet();
+  private rules = "";
   readonly places: Places;
   private readonly drawing: Drawing;
   private readonly arrows: readonly Arrows[];
@@ -93,6 +97,7 @@ class Page implements Mounted {
   private frame = 0;
   private last = 0;
   private drawn = -1;
+  private steady = -Infinity;
   private spoken = 0;
   private readonly gone = new AbortController();
   private readonly sized = new ResizeObserver(() => this.drawing.fit());
@@ -139,18 +144,23 @@ class Page implements Mounted {
   }
 
   update(data: PageData, steady = false): void {
+    if (steady) this.pass(performance.now(), false);
     const here = this.input;
     const index = this.player.at;
-    const view = steady ? around(this.data.view, data.view) : data.view;
-    this.data = { ...checked(data), view };
+    const { view, stroke, pin, text } = this.data;
+    this.data = checked(data);
+    if (steady) {
+      this.data = { ...data, view: around(view, data.view), stroke, pin, text };
+      this.steady = performance.now();
+    }
     this.views = [];
-    this.style.replaceSync(themeRules(data, `#${this.root.id}`));
-    this.title.textContent = data.title;
+    this.dress();
+    say(this.title, data.title);
     this.drawing.renew(this.data);
     for (const arrows of this.arrows) arrows.renew(this.data);
     if (data.equations.length) this.equations();
     this.motion = Math.min(this.motion, data.motions.length - 1);
-    this.show(this.motion, this.nearest(here, index));
+    this.show(this.motion, this.nearest(here, index), steady);
   }
 
   get input(): number {
@@ -191,16 +201,16 @@ class Page implements Mounted {
   }
 
   /** Show a motion from one of its rows on. */
-  private show(motion: number, index: number): void {
+  private show(motion: number, index: number, steady = false): void {
     this.motion = motion;
     const view = this.view;
     this.drawn = -1;
     this.drawing.show(view);
     for (const arrows of this.arrows) arrows.show(view);
     this.transport.show(view);
-    for (const chart of this.charts) chart.show(view);
+    for (const chart of this.charts) chart.show(view, steady);
     this.table.show(view);
-    this.summary.textContent = view.data.summary;
+    say(this.summary, view.data.summary);
     if (this.choice) this.choice.selectedIndex = motion;
     this.player.restart(view.order.length, view.data.closed, index);
   }
@@ -224,9 +234,15 @@ class Page implements Mounted {
 
   /** The colours, as a sheet that no content security policy minds. */
   private adopt(): void {
-    this.style.replaceSync(themeRules(this.data, `#${this.root.id}`));
+    this.dress();
     const sheets = this.sheets();
     sheets.adoptedStyleSheets = [...sheets.adoptedStyleSheets, this.style];
+  }
+
+  private dress(): void {
+    const rules = themeRules(this.data, `#${this.root.id}`);
+    if (rules !== this.rules) this.style.replaceSync(rules);
+    this.rules = rules;
   }
 
   private sheets(): Document | ShadowRoot {
@@ -256,10 +272,16 @@ class Page implements Mounted {
   }
 
   private tick(now: number): void {
-    const passed = Math.min(0.1, (now - this.last) / 1000);
-    this.last = now;
-    this.player.advance(passed);
+    // While something is dragged every update is a frame: none is drawn between two of them.
+    if (now - this.steady > UPDATED_WITHIN) this.pass(now);
     this.frame = requestAnimationFrame((next) => this.tick(next));
+  }
+
+  /** Time has passed: show where the motion is now, or only go there. */
+  private pass(now: number, shown = true): void {
+    const passed = Math.min(0.1, Math.max(0, now - this.last) / 1000);
+    this.last = now;
+    this.player.advance(passed, shown);
   }
 
   private heading(): HTMLElement {

@@ -53,8 +53,8 @@ export class Player {
     this.tell();
   }
 
-  /** Time has passed [s]. */
-  advance(seconds: number): void {
+  /** Time has passed [s]; `told` to those who listen if another row is reached. */
+  advance(seconds: number, told = true): void {
     if (!this.playing) return;
     const before = this.at;
     const way = (this.sense * this.speed * seconds * this.count) / lasting(this.count);
@@ -67,7 +67,7 @@ export class Player {
       place = Math.min(Math.max(place, 0), last);
     }
     this.place = place;
-    if (this.at !== before) this.tell();
+    if (told && this.at !== before) this.tell();
   }
 
   private tell(): void {

@@ -28,6 +28,19 @@ export function html<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
+/** Attributes of an element that is there already; those that are the same are left alone. */
+export function put(element: Element, attributes: Attributes): void {
+  for (const [key, value] of Object.entries(attributes)) {
+    const text = String(value);
+    if (element.getAttribute(key) !== text) element.setAttribute(key, text);
+  }
+}
+
+/** Other text; the same is left alone. */
+export function say(element: Element, text: string): void {
+  if (element.textContent !== text) element.textContent = text;
+}
+
 /** A coordinate in a path: short, and exact beyond what a screen shows. */
 function short(number: number): string {
   return String(Number(number.toPrecision(8)));

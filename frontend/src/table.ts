@@ -2,7 +2,7 @@
 
 import type { MotionView } from "./motion";
 import { powerOfTen, shortNumber } from "./numbers";
-import { html } from "./svg";
+import { html, say } from "./svg";
 import { unitText } from "./chart";
 
 type Fill = (row: number) => string;
@@ -14,6 +14,8 @@ interface Cell {
 
 export class RowTable {
   private cells: Cell[] = [];
+  private view!: MotionView;
+  private made = "";
   private readonly box: HTMLElement;
   private readonly proof: HTMLElement;
 
@@ -26,7 +28,12 @@ export class RowTable {
     this.proof = html("dl", { class: "lw-proof" }, parent);
   }
 
+  /** The numbers of another motion; where they have the same names, in the cells that are there. */
   show(view: MotionView): void {
+    this.view = view;
+    const wanted = madeOf(view);
+    if (wanted === this.made) return;
+    this.made = wanted;
     this.cells = [];
     this.box.replaceChildren();
     this.proof.replaceChildren();
@@ -36,46 +43,48 @@ export class RowTable {
   }
 
   draw(row: number): void {
-    for (const { element, fill } of this.cells) element.textContent = fill(row);
+    for (const { element, fill } of this.cells) say(element, fill(row));
   }
 
   private quantities(view: MotionView): void {
     const input = view.input;
     const least = (unit: string): number => (unit === "deg" || unit === "rad" ? 1e-9 : this.rounding);
     const body = this.table(["", "value", `by ${input.shown}`]);
-    for (const one of view.series) {
+    view.series.forEach(({ shown, unit, firstUnit }, k) => {
       const line = html("tr", {}, body);
-      html("th", { scope: "row" }, line, one.shown);
-      this.cell(line, (row) => shortNumber(one.values[row]!, 6, least(one.unit)) + unitText(one.unit));
-      const first = one.first;
-      this.cell(line, (row) => (first ? `${shortNumber(first[row]!, 4, least(one.unit))} ${one.firstUnit}` : ""));
-    }
+      html("th", { scope: "row" }, line, shown);
+      this.cell(line, (row) => shortNumber(this.view.series[k]!.values[row]!, 6, least(unit)) + unitText(unit));
+      this.cell(line, (row) => {
+        const first = this.view.series[k]!.first;
+        return first ? `${shortNumber(first[row]!, 4, least(unit))} ${firstUnit}` : "";
+      });
+    });
   }
 
   private points(view: MotionView): void {
-    const moving = view.points.filter((point) => point.moving);
-    if (!moving.length) return;
+    if (!view.points.some((point) => point.moving)) return;
     const body = this.table(["point", "x", "y"]);
-    for (const point of moving) {
+    view.points.forEach(({ shown, moving }, k) => {
+      if (!moving) return;
       const line = html("tr", {}, body);
-      html("th", { scope: "row" }, line, point.shown);
-      this.cell(line, (row) => shortNumber(point.x[row]!, 6, this.rounding));
-      this.cell(line, (row) => shortNumber(point.y[row]!, 6, this.rounding));
-    }
+      html("th", { scope: "row" }, line, shown);
+      this.cell(line, (row) => shortNumber(this.view.points[k]!.x[row]!, 6, this.rounding));
+      this.cell(line, (row) => shortNumber(this.view.points[k]!.y[row]!, 6, this.rounding));
+    });
   }
 
   private evidence(view: MotionView): void {
-    const { evidence } = view.data;
-    this.fact("position", (row) => evidence.status_texts[view.status[row]!] ?? "");
-    this.fact("residual", (row) => `${powerOfTen(view.residual[row]!)} of the longest link`);
+    const texts = (): MotionView["data"]["evidence"] => this.view.data.evidence;
+    this.fact("position", (row) => texts().status_texts[this.view.status[row]!] ?? "");
+    this.fact("residual", (row) => `${powerOfTen(this.view.residual[row]!)} of the longest link`);
     this.fact("proof", (row) =>
-      view.certified[row] === 1
-        ? `a true position lies within ${powerOfTen(view.radius[row]!)} of the longest link`
-        : (evidence.certification_texts[view.certification[row]!] ?? ""),
+      this.view.certified[row] === 1
+        ? `a true position lies within ${powerOfTen(this.view.radius[row]!)} of the longest link`
+        : (texts().certification_texts[this.view.certification[row]!] ?? ""),
     );
-    this.fact("Newton steps", (row) => String(view.iterations[row] ?? "–"));
-    if (evidence.branch_names.some(Boolean)) {
-      this.fact("branch", (row) => evidence.branch_names[view.branch[row]!] || "–");
+    this.fact("Newton steps", (row) => String(this.view.iterations[row] ?? "–"));
+    if (hasBranches(view)) {
+      this.fact("branch", (row) => texts().branch_names[this.view.branch[row]!] || "–");
     }
   }
 
@@ -94,4 +103,15 @@ export class RowTable {
     html("dt", {}, this.proof, name);
     this.cells.push({ element: html("dd", { "data-fact": name }, this.proof), fill });
   }
+}
+
+function hasBranches(view: MotionView): boolean {
+  return view.data.evidence.branch_names.some(Boolean);
+}
+
+/** What cells a motion needs. */
+function madeOf(view: MotionView): string {
+  const rows = view.series.map(({ shown, unit, firstUnit }) => `${shown} ${unit} ${firstUnit}`);
+  const points = view.points.map(({ shown, moving }) => `${shown} ${moving}`);
+  return [...rows, "points", ...points, hasBranches(view)].join("\n");
 }

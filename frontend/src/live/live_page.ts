@@ -147,7 +147,7 @@ export class LivePage {
       if (this.page === null) this.begin(found);
       else this.page.update(found.page, found.live);
       this.element.dataset.live = String(found.live);
-    } else if (!found.inputs || found.missing < found.rows) {
+    } else if (found.missing < found.rows) {
       this.still({}, "This mechanism has no points to draw: see its numbers with linkwork sweep.");
     }
     this.notices.limits(found, unit, (input) => this.page?.goToInput(input));

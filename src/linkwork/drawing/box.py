@@ -43,6 +43,11 @@ class Box:
     def corners(self) -> tuple[XY, XY]:
         return (self.left, self.bottom), (self.right, self.top)
 
+    @property
+    def edges(self) -> tuple[float, float, float, float]:
+        """Left, bottom, right, top."""
+        return self.left, self.bottom, self.right, self.top
+
     def grown(self, by: float) -> Box:
         """The box with ``by`` added on every side."""
         return Box(self.left - by, self.bottom - by, self.right + by, self.top + by)

@@ -73,9 +73,11 @@ def input_arrows(
 
 def _freest(places: Sequence[_Place], obstacles: Obstacles, measures: Measures) -> Primitive:
     """The arrow that covers least; the first of several."""
-    return min(
-        places, key=lambda place: place.cost + obstacles.cost(_boxes(place.arrow, measures))
-    ).arrow
+    boxes = [[box.edges for box in _boxes(place.arrow, measures)] for place in places]
+    most = max(map(len, boxes))
+    filled = np.array([own + own[-1:] * (most - len(own)) for own in boxes])
+    cost = np.array([place.cost for place in places]) + obstacles.costs(filled)
+    return places[int(np.argmin(cost))].arrow
 
 
 def _boxes(arrow: Arc | Polyline, measures: Measures) -> list[Box]:

@@ -235,9 +235,11 @@ def placed(choices: Sequence[Choice], drawn: Iterable[Primitive]) -> list[Text]:
     """
     if not choices:
         return []
-    boxes = [[text.box.grown(_CLEAR * text.height) for text in choice.places] for choice in choices]
     obstacles = Obstacles.of(drawn)
-    edges = [np.array([(*box.corners[0], *box.corners[1]) for box in b]) for b in boxes]
+    edges = [
+        np.array([text.box.grown(_CLEAR * text.height).edges for text in choice.places])
+        for choice in choices
+    ]
     fixed = [
         np.array(c.cost) + obstacles.costs(e[:, None, :])
         for c, e in zip(choices, edges, strict=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from linkwork.drawing.label_placement import Choice, point_names
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
-from linkwork.drawing.scene import Primitive, Text
+from linkwork.drawing.scene import Primitive, Text, xy
 from linkwork.foundation.arrays import Array
 
 __all__ = ["labels_as_before", "lasting_labels"]
@@ -52,22 +53,24 @@ def lasting_labels(
 
 def labels_as_before(pose: Pose, measures: Measures, before: Sequence[Text]) -> list[Text]:
     """The names of a pose of the same mechanism, each in the direction that it had ``before``."""
-    had = {text.of: text for text in before}
-    found = []
-    for choice in point_names(pose, measures):
-        text = had[choice.places[0].of]
-        off = complex(*text.offset) * choice.places[0].height / text.height
-        away = [abs(complex(*place.offset) - off) for place in choice.places]
-        found.append(choice.places[int(np.argmin(away))])
-    return found
+    height = measures.text
+    return [
+        replace(
+            text,
+            anchor=xy(pose.points[text.of]),
+            offset=(text.offset[0] * height / text.height, text.offset[1] * height / text.height),
+            height=height,
+        )
+        for text in before
+    ]
 
 
 def _boxes(choices: Sequence[Choice]) -> Array:
     """The boxes of one name, shape (rows, places, 4)."""
     return np.array([
         [
-            (box.left, box.bottom, box.right, box.top)
-            for box in (text.box.grown(_CLEAR * text.height) for text in choice.places)
+            text.box.grown(_CLEAR * text.height).edges
+            for text in choice.places
         ]
         for choice in choices
     ])  # fmt: skip
@@ -75,8 +78,7 @@ def _boxes(choices: Sequence[Choice]) -> Array:
 
 def _covered(obstacles: Obstacles, boxes: Sequence[Array]) -> Array:
     """What the places (p, 4) of each of n names cover, (n, p)."""
-    costs: Array = obstacles.costs(np.concatenate(boxes)[:, None, :])
-    return costs.reshape(len(boxes), -1)
+    return np.array([obstacles.costs(own[:, None, :]) for own in boxes])
 
 
 def _over_rows(cost: Array) -> Array:

@@ -250,7 +250,8 @@ def _attached(
 
 def _some(rows: CountArray, count: int) -> CountArray:
     """At most so many rows from the first to the last."""
-    some: CountArray = rows[np.unique(np.linspace(0, len(rows) - 1, count).round().astype(int))]
+    spread = np.linspace(0, len(rows) - 1, count).round().astype(int)
+    some: CountArray = rows[list(dict.fromkeys(spread.tolist()))]
     return some
 
 

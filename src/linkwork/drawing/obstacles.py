@@ -72,16 +72,17 @@ class Obstacles:
             if penalty:
                 pieces += [(*a, *b) for a, b in found]
                 piece_cost += [penalty] * len(found)
-        levels, level = np.unique(piece_cost, return_inverse=True)
+        levels = sorted(set(piece_cost))
+        number = {penalty: k for k, penalty in enumerate(levels)}
+        level = np.array([number[penalty] for penalty in piece_cost], dtype=np.intp)
         return cls(
-            np.array(pieces).reshape(-1, 4), level, levels,
+            np.array(pieces).reshape(-1, 4), level, np.array(levels),
             np.array(discs).reshape(-1, 3), np.array(disc_cost), _sides(plates),
         )  # fmt: skip
 
     def cost(self, boxes: Sequence[Box]) -> float:
         """The penalty for something that is made of these boxes."""
-        edges = [(box.left, box.bottom, box.right, box.top) for box in boxes]
-        return float(self.costs(np.array(edges).reshape(1, -1, 4))[0])
+        return float(self.costs(np.array([[box.edges for box in boxes]]))[0])
 
     def costs(self, boxes: Array) -> Array:
         """The penalties (k,) for things that are made of b boxes each.

@@ -9,11 +9,9 @@ import numpy as np
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Path, Pose
 from linkwork.drawing.scene import Disc, Polyline, Primitive, Role, xy
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import ComplexArray, IndexArray
 
 __all__ = ["drawn_once", "thinned", "trace_symbols"]
-
-_AT_ONCE = 256  # points compared with a whole path at a time: bounds the memory
 
 
 def trace_symbols(pose: Pose, names: tuple[str, ...], measures: Measures) -> Iterator[Primitive]:
@@ -45,26 +43,56 @@ def drawn_once(path: Path, width: float) -> list[Path]:
 
     The point of a rocker goes forth and back on one arc: drawn twice, dots would close to a line.
     Pieces count as lying over each other within ``width``. A run of one point is a lone position.
-    Costs O(m²) time.
     """
     finite = np.isfinite(path)
-    start, step = path[:-1], np.diff(path)
-    length = np.abs(step)
+    length = np.abs(np.diff(path))
     # Over a gap the way grows by enough to leave everything before it behind.
     reached = np.concatenate(([0.0], np.cumsum(np.where(np.isfinite(length), length, 9 * width))))
-    squared = np.where(length > 0, length**2, 1.0)
     covered = np.zeros(len(path), dtype=bool)
-    for rows in np.split(np.arange(len(path)), range(_AT_ONCE, len(path), _AT_ONCE)):
-        # Distance of every point (rows) from every piece (columns).
-        offset = path[rows, None] - start
-        share = np.clip((offset * step.conj()).real / squared, 0.0, 1.0)
-        distance: Array = np.abs(offset - share * step)
-        # Neighbours along the path are always near: only pieces left behind for a while count.
-        behind = reached[rows, None] - reached[1:] > 4 * width
-        covered[rows] = np.any((distance <= width) & behind, axis=1)
+    point, piece = _near_each_other(path, width)
+    # Neighbours along the path are always near: only pieces left behind for a while count.
+    behind = reached[point] - reached[piece + 1] > 4 * width
+    point, piece = point[behind], piece[behind]
+    step, offset = path[piece + 1] - path[piece], path[point] - path[piece]
+    squared = np.where(step == 0, 1.0, step.real**2 + step.imag**2)
+    share = np.clip((offset.real * step.real + offset.imag * step.imag) / squared, 0.0, 1.0)
+    covered[point[np.abs(offset - share * step) <= width]] = True
     kept = np.isfinite(length) & ~(covered[:-1] & covered[1:])
     edges = np.flatnonzero(np.diff(np.concatenate(([0], kept.astype(int), [0]))))
     runs = [(a, b + 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
     padded = np.concatenate(([False], finite, [False]))
     lone = np.flatnonzero(finite & ~padded[:-2] & ~padded[2:] & ~covered)
     return [path[a:b] for a, b in sorted([*runs, *((k, k + 1) for k in lone)])]
+
+
+def _near_each_other(path: Path, width: float) -> tuple[IndexArray, IndexArray]:
+    """Points and pieces among which are all that lie within ``width`` of each other.
+
+    The plane is cut into squares as wide as a piece is long at most: what is near has its middle
+    in the same square or in one of the eight around it.
+    """
+    points, pieces = np.flatnonzero(np.isfinite(path)), np.flatnonzero(np.isfinite(np.diff(path)))
+    if not len(pieces):
+        return pieces, pieces
+    middles, places = 0.5 * (path[pieces] + path[pieces + 1]), path[points]
+    side = width + 0.5 * float(np.abs(path[pieces + 1] - path[pieces]).max())
+    corner = complex(places.real.min(), places.imag.min())
+    column, row = _squares((middles - corner) / side)
+    high = int(row.max()) + 4
+    number = column * high + row
+    order = np.argsort(number, kind="stable")
+    column, row = _squares((places - corner) / side)
+    found_points, found_pieces = [], []
+    for beside in (-1, 0, 1):
+        middle = (column + beside) * high + row
+        first = np.searchsorted(number[order], middle - 1)
+        count = np.searchsorted(number[order], middle + 1, side="right") - first
+        found_points.append(np.repeat(points, count))
+        within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+        found_pieces.append(pieces[order[np.repeat(first, count) + within]])
+    return np.concatenate(found_points), np.concatenate(found_pieces)
+
+
+def _squares(places: ComplexArray) -> tuple[IndexArray, IndexArray]:
+    """Whole coordinates from 1 on, so that there are squares around."""
+    return np.floor(places.real).astype(np.intp) + 1, np.floor(places.imag).astype(np.intp) + 1

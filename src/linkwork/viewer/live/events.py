@@ -117,22 +117,17 @@ class LimitFound:
 
 @dataclass(frozen=True, kw_only=True)
 class MotionFound:
-    """The whole cycle, one entry per row; rows without position hold ``None``.
+    """The whole cycle.
 
-    ``live``: found from the cycle before while something is dragged, nothing proved; some of the
-    rows, ``missing`` and ``certified`` count them all.
-    ``points``: for every point its x and its y. ``page``: all rows as they are drawn, its
-    equations only where the cycle is not ``live``; ``None`` where there is nothing to draw.
+    ``live``: found from the cycle before while something is dragged, nothing proved. ``missing``,
+    ``certified``: how many of the rows. ``page``: all rows with their numbers, as they are drawn,
+    its equations only where the cycle is not ``live``; ``None`` where there is nothing to draw.
     """
 
     live: bool
     rows: int
     missing: int
     certified: int
-    inputs: dict[str, tuple[float, ...]]
-    points: dict[str, tuple[tuple[float | None, ...], tuple[float | None, ...]]]
-    columns: dict[str, tuple[float | None, ...]]
-    status: tuple[str, ...]
     limits: tuple[LimitFound, ...]
     worst_residual: float | None
     message: str

@@ -75,7 +75,7 @@ def encoded(event: Event, answers: int | None = None) -> str:
 
 def _own_fields(message: Any) -> dict[str, Any]:
     """The fields of a dataclass, not copied: a cycle has thousands of numbers."""
-    return {field.name: getattr(message, field.name) for field in dataclasses.fields(message)}
+    return {name: getattr(message, name) for name in message.__dataclass_fields__}
 
 
 def _refuse(message: str) -> NoReturn:

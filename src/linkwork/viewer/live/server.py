@@ -80,8 +80,8 @@ class LiveServer:
         try:
             with self._ended_by_signals():
                 tell()
-                self._desk.prepare()  # solved while the browser starts
                 self._server = _uvicorn(self._app)
+                self._desk.prepare()  # solved while the browser loads the page
                 if not self._ended:
                     self._server.run(sockets=[self._socket])
         finally:

@@ -5,11 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 
-import numpy as np
-
 from linkwork.equations.notation import PlainText
 from linkwork.equations.writing import EquationSheet
-from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.errors import MechanismError, key_text
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
@@ -41,28 +38,17 @@ __all__ = [
 
 Numbers = dict[str, float | None]
 
-_LIVE_ROWS = 181
-
 
 def motion_found(
     motion: Motion, *, live: bool, message: str = "", page: PageData | None = None
 ) -> tell.MotionFound:
-    """The cycle; every column without its rates. On the way, some of its rows will do."""
-    tables = (motion.unknowns, motion.links, motion.sliders, motion.outputs)
+    """The cycle, as it is drawn on a page."""
     name, unit = next(iter(motion.input_units.items()))
-    found, rows = motion.found, _rows_shown(motion, live)
     return tell.MotionFound(
         live=live,
-        rows=len(rows),
-        missing=int((motion.asked & ~found).sum()),
+        rows=len(motion),
+        missing=int((motion.asked & ~motion.found).sum()),
         certified=int(motion.certified.sum()),
-        inputs={name: tuple(values[rows].tolist()) for name, values in motion.inputs.items()},
-        points={
-            point: (_column(x.value[rows]), _column(y.value[rows]))
-            for point, (x, y) in motion.points.items()
-        },
-        columns={n: _column(s.value[rows]) for table in tables for n, s in table.items()},
-        status=tuple(motion.status[row].name for row in rows),
         limits=tuple(
             tell.LimitFound(
                 what=limit.kind.word,
@@ -76,17 +62,6 @@ def motion_found(
         message=message or motion.message,
         page=page,
     )
-
-
-def _rows_shown(motion: Motion, live: bool) -> IndexArray:
-    """Which rows are told: all of them, or about so many that all limits are among them."""
-    every = np.arange(len(motion))
-    if not live:
-        return every
-    stride = -(-len(motion) // _LIVE_ROWS)
-    at_limits = np.array([bool(what) for what in motion.limit], dtype=bool)
-    shown: IndexArray = every[(every % stride == 0) | (every == every[-1]) | at_limits]
-    return shown
 
 
 def position_found(position: Position) -> tell.PositionFound:
@@ -277,11 +252,6 @@ def form_of(description: Description) -> str:
     if isinstance(description, Linkage):
         return "points-and-links"
     return "loops" if isinstance(description, Loops) else "plain-equations"
-
-
-def _column(values: Array) -> tuple[float | None, ...]:
-    numbers: list[float] = values.tolist()
-    return tuple(numbers) if np.isfinite(values).all() else _row(numbers)
 
 
 def _row(values: Iterable[float]) -> tuple[float | None, ...]:
