@@ -23,6 +23,11 @@ __all__ = ["measure"]
 _PICTURE_BAR = 1.0  # s from the command to the first picture, in a browser that runs
 _RATE_BAR = 30.0  # solved cycles a second while a dimension is dragged
 _DRAG = 4.0  # s
+_SHOWN = """() => new Promise(done => {
+  const look = () =>
+    document.querySelector('.lw[data-row]') ? done() : requestAnimationFrame(look);
+  look();
+})"""
 _DRAGGED = """async ([name, seconds]) => {
   const page = document.getElementById('linkwork');
   const slider = document.querySelector(`[data-number="${name}"] input[type=range]`);
@@ -60,8 +65,8 @@ def measure(repeats: int = 7) -> bool:
             began = time.perf_counter()
             with _served() as address:
                 printed.append(time.perf_counter() - began)
-                page.goto(address)
-                page.wait_for_selector(".lw[data-row]")
+                page.goto(address, wait_until="commit")
+                page.evaluate(_SHOWN)
                 shown.append(time.perf_counter() - began)
                 dragged.append(float(page.evaluate(_DRAGGED, ["O A", _DRAG])))
             page.close()
