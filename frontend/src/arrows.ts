@@ -19,6 +19,8 @@ interface Arrow {
 export class Arrows {
   private readonly group: SVGGElement;
   private arrows: Arrow[] = [];
+  /** A motion that is made arrows for when they are to be seen. */
+  private waiting: MotionView | null = null;
   private ends: (row: number) => number[][] = () => [];
   shown = false;
 
@@ -35,16 +37,22 @@ export class Arrows {
   }
 
   show(view: MotionView): void {
-    this.group.replaceChildren();
-    this.arrows = [];
-    if (this.kind === "vectors") this.vectors(view);
-    else this.velocities(view);
+    this.waiting = view;
   }
 
   draw(row: number): void {
     this.group.style.display = this.shown ? "" : "none";
     if (!this.shown) return;
+    if (this.waiting) this.make(this.waiting);
     this.ends(row).forEach((ends, k) => this.place(this.arrows[k]!, ends));
+  }
+
+  private make(view: MotionView): void {
+    this.waiting = null;
+    this.group.replaceChildren();
+    this.arrows = [];
+    if (this.kind === "vectors") this.vectors(view);
+    else this.velocities(view);
   }
 
   private vectors(view: MotionView): void {

@@ -1,6 +1,6 @@
 // A motion as arrays over its rows: what the drawing, the plots and the table read.
 
-import type { Column, MotionData, Part } from "./page_data";
+import type { Column, MotionData, Part, PointData } from "./page_data";
 import { dense, unpacked } from "./unpack";
 
 /** A frame in one row: where its origin is, and how it is turned [rad]. */
@@ -53,18 +53,10 @@ export class MotionView {
   constructor(readonly data: MotionData) {
     const evidence = data.evidence;
     this.found = Array.from(dense(evidence.found), (is) => is === 1);
-    const own = (column: Parameters<typeof dense>[0]): Float64Array => unpacked(column, this.found);
+    const own: Own = (column) => unpacked(column, this.found);
     this.order = Array.from(dense(data.order));
     this.series = data.columns.map((column) => seriesOf(column, own));
-    this.points = data.points.map((point) => ({
-      name: point.name,
-      shown: point.shown,
-      moving: point.drawn,
-      x: own(point.x),
-      y: own(point.y),
-      dx: own(point.dx),
-      dy: own(point.dy),
-    }));
+    this.points = data.points.map((point) => pointOf(point, own));
     this.turns = data.turns.map((turn) => own(turn.angle));
     this.status = dense(evidence.status);
     this.certification = dense(evidence.certification);
@@ -113,17 +105,42 @@ export class MotionView {
   }
 }
 
-function seriesOf(
-  column: Column,
-  own: (packed: Column["values"]) => Float64Array,
-): Series {
+/** Numbers that are unpacked when they are asked for. */
+function lazily<T>(make: () => T): () => T {
+  let made: { readonly value: T } | null = null;
+  return () => (made ??= { value: make() }).value;
+}
+
+type Own = (packed: Column["values"]) => Float64Array;
+
+function seriesOf(column: Column, own: Own): Series {
+  const first = lazily(() => column.first && own(column.first));
   return {
     name: column.name,
     shown: column.shown,
     unit: column.unit,
     group: column.group,
     values: own(column.values),
-    first: column.first && own(column.first),
+    get first() {
+      return first();
+    },
     firstUnit: column.first_unit,
+  };
+}
+
+function pointOf(point: PointData, own: Own): Point {
+  const rates = lazily(() => ({ dx: own(point.dx), dy: own(point.dy) }));
+  return {
+    name: point.name,
+    shown: point.shown,
+    moving: point.drawn,
+    x: own(point.x),
+    y: own(point.y),
+    get dx() {
+      return rates().dx;
+    },
+    get dy() {
+      return rates().dy;
+    },
   };
 }

@@ -47,7 +47,7 @@ export interface MotionData {
   readonly limits: readonly LimitMark[];
 }
 
-/** Numbers of the rows that were found: whole multiples of `step`, differenced `order` times, zigzag integers of seven bits a byte, in base64. Order -1: plain floats of eight bytes, the lowest first. */
+/** Numbers of the rows that were found: whole multiples of `step`, differenced `order` times, zigzag integers of seven bits a byte, in base64. Order -1: plain floats of eight bytes, the lowest first; -2: of four. */
 export interface PackedColumn {
   readonly step: number;
   readonly order: number;

@@ -2,11 +2,16 @@
 
 import type { PackedColumn } from "./page_data";
 
-/** The order of a column that holds plain floats. */
+/** The order of a column that holds plain floats, of eight bytes or of four. */
 const PLAIN = -1;
+const SHORT = -2;
+
+/** What new browsers do themselves. */
+const native = (Uint8Array as unknown as { fromBase64?: (text: string) => Uint8Array }).fromBase64;
 
 /** The bytes of a base64 text. */
 export function bytesOf(base64: string): Uint8Array {
+  if (native) return native.call(Uint8Array, base64);
   const text = atob(base64);
   const bytes = new Uint8Array(text.length);
   for (let k = 0; k < text.length; k++) bytes[k] = text.charCodeAt(k);
@@ -34,6 +39,7 @@ export function wholeNumbers(bytes: Uint8Array): number[] {
 export function dense(column: PackedColumn): Float64Array {
   const bytes = bytesOf(column.content);
   if (column.order === PLAIN) return new Float64Array(bytes.buffer as ArrayBuffer);
+  if (column.order === SHORT) return Float64Array.from(new Float32Array(bytes.buffer as ArrayBuffer));
   const whole = Float64Array.from(wholeNumbers(bytes));
   for (let again = 0; again < column.order; again++) {
     for (let k = 1; k < whole.length; k++) whole[k]! += whole[k - 1]!;
@@ -44,6 +50,7 @@ export function dense(column: PackedColumn): Float64Array {
 /** The numbers of all rows, NaN where there is no position. */
 export function unpacked(column: PackedColumn, found: readonly boolean[]): Float64Array {
   const numbers = dense(column);
+  if (numbers.length === found.length) return numbers;
   const values = new Float64Array(found.length).fill(NaN);
   let k = 0;
   found.forEach((is, row) => {

@@ -26,6 +26,11 @@ describe("packed columns", () => {
     expect(Array.from(dense({ step: 1, order: -1, content }))).toEqual([0.1, -1e300, 3]);
   });
 
+  it("reads floats of four bytes", () => {
+    const content = Buffer.from(new Float32Array([0.5, -3, 1e30]).buffer).toString("base64");
+    expect(Array.from(dense({ step: 1, order: -2, content }))).toEqual([0.5, -3, Math.fround(1e30)]);
+  });
+
   it("leaves rows without a position open", () => {
     const column = { step: 1, order: 0, content: base64([2, 4]) };
     expect(Array.from(unpacked(column, [true, false, true]))).toEqual([1, NaN, 2]);

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwork.viewer.packing import packed, unpacked, unpressed
+from linkwork.viewer.packing import packed, shortened, unpacked, unpressed
 
 _NUMBERS = st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=60)
 
@@ -52,3 +52,11 @@ def test_plain_columns_come_back_exactly(numbers: list[float]) -> None:
     values = np.array(numbers)
     found = np.ones(len(values), dtype=bool)
     assert unpacked(unpressed(values, found), found).tolist() == values.tolist()
+
+
+def test_short_columns_have_seven_digits_and_half_the_size() -> None:
+    values, found = np.array([0.1, -2e5, np.inf, 3e-8]), np.array([True, True, True, False])
+    short = unpacked(shortened(values, found), found)
+    assert short[:3] == pytest.approx([0.1, -2e5, 0.0], rel=1e-7)
+    assert np.isnan(short[3])
+    assert len(shortened(values, found).content) == len(unpressed(values, found).content) / 2

@@ -14,7 +14,7 @@ from linkwork.drawing.drawn_box import reach_of
 from linkwork.drawing.moving_scene import MovingScene, moving_scene
 from linkwork.drawing.scene import Role
 from linkwork.drawing.theme import DARK, LIGHT, Theme
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion, Series
 from linkwork.results.quantity import Rate
@@ -41,7 +41,6 @@ FORMAT = 1
 
 _MARGIN = 0.05  # of the drawing, left free around it
 _COARSE = 0.001  # of a decade: how exactly residuals and radii are kept
-_RATE_DIGITS = 7  # of derivatives
 
 
 def motion_page(
@@ -90,7 +89,7 @@ def drawn_page(
     """The data of a page from motions that are drawn already.
 
     ``pack`` writes the columns: :func:`~linkwork.viewer.packing.unpressed` is quick, for a page
-    that is renewed while a dimension is dragged, and needs eight times the room.
+    that is soon renewed, and needs eight times the room.
     """
     first, measures = next(iter(motions.values())), scenes[0].scene.measures
     view = Box.around(corner for scene in scenes for corner in scene.view.corners)
@@ -178,7 +177,7 @@ def _columns(motion: Motion, pack: Pack) -> Iterator[Column]:
             unit=motion.units.of(kind),
             group=group,
             values=pack(series.value, found),
-            first=_rate(series.first, found, pack),
+            first=pack(series.first, found, rate=True),
             first_unit=Rate.FIRST.unit(kind, motion.units, motion.derivative_unit),
         )
 
@@ -192,20 +191,9 @@ def _points(motion: Motion, pack: Pack) -> Iterator[PointData]:
             drawn=name not in still,
             x=pack(x.value, found),
             y=pack(y.value, found),
-            dx=_rate(x.first, found, pack),
-            dy=_rate(y.first, found, pack),
+            dx=pack(x.first, found, rate=True),
+            dy=pack(y.first, found, rate=True),
         )
-
-
-def _rate(values: Array, found: BoolArray, pack: Pack) -> PackedColumn:
-    """A derivative, to seven digits; infinite ones (at dead points) count as 0."""
-    finite = np.where(np.isfinite(values), values, 0.0)[found]
-    largest = float(np.abs(finite).max(initial=0.0))
-    # Beside a dead point derivatives grow without bound: digits are counted from the usual ones.
-    usual = min(largest, 1e3 * float(np.median(np.abs(finite)))) or largest
-    step = 10.0 ** np.floor(np.log10(usual) - _RATE_DIGITS) if usual else 1.0
-    clipped = np.clip(np.where(np.isfinite(values), values, 0.0), -1e4 * usual, 1e4 * usual)
-    return pack(clipped, found, step=float(step))
 
 
 def _evidence(motion: Motion, pack: Pack) -> RowEvidence:

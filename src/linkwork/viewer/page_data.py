@@ -30,7 +30,7 @@ __all__ = [
 class PackedColumn:
     """Numbers of the rows that were found: whole multiples of ``step``, differenced ``order``
     times, zigzag integers of seven bits a byte, in base64. Order -1: plain floats of eight bytes,
-    the lowest first.
+    the lowest first; -2: of four.
     """
 
     step: float

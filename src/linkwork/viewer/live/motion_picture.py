@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from linkwork.drawing.moving_scene import MovingScene, moving_scene
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
-from linkwork.viewer.packing import unpressed
+from linkwork.viewer.packing import shortened, unpressed
 from linkwork.viewer.page_building import drawn_page
 from linkwork.viewer.page_data import PageData
 
@@ -22,8 +22,13 @@ class MotionPicture:
     def __init__(self) -> None:
         self._scene: MovingScene | None = None
 
-    def page(self, motion: Motion, equations: Sequence[tuple[str, str]] = ()) -> PageData | None:
-        """The data of a page; ``None`` where no position was found, or nothing has a place."""
+    def page(
+        self, motion: Motion, equations: Sequence[tuple[str, str]] = (), *, brief: bool = False
+    ) -> PageData | None:
+        """The data of a page; ``None`` where no position was found, or nothing has a place.
+
+        ``brief``: numbers to seven digits, for a picture that is renewed in a moment.
+        """
         if not motion.found.any() or not motion.points:
             return None
         try:
@@ -31,4 +36,6 @@ class MotionPicture:
         except InputError:
             return None
         name = next((branch for branch in motion.branch if branch), motion.mechanism)
-        return drawn_page({name: motion}, [self._scene], equations, pack=unpressed)
+        return drawn_page(
+            {name: motion}, [self._scene], equations, pack=shortened if brief else unpressed
+        )
