@@ -75,28 +75,11 @@ export interface RemoveJoint {
   point: string;
 }
 
-export interface AddSlider {
-  kind: "add_slider";
+export interface AddPart {
+  kind: "add_part";
   id?: number;
-  name: string;
-  link: string;
-  points: readonly (string)[];
-  on: string;
-  line: readonly (string)[];
-  offset?: number;
-  angle?: number | null;
-}
-
-export interface AddGear {
-  kind: "add_gear";
-  id?: number;
-  name: string;
-  wheels: readonly (string)[];
-  centers: readonly (string)[];
-  radii?: readonly (number)[];
-  teeth?: readonly (number)[];
-  arm?: string | null;
-  internal?: boolean;
+  table: string;
+  typed: Record<string, string | readonly (string)[]>;
 }
 
 export interface RemovePart {
@@ -143,6 +126,9 @@ export interface NewtonSteps {
   at: Record<string, number>;
   full_steps?: boolean;
   max_steps?: number;
+  pull?: string;
+  x?: number;
+  y?: number;
 }
 
 export interface Undo {
@@ -184,6 +170,8 @@ export interface FileState {
   inputs: readonly (DrivenInput)[];
   points: Record<string, readonly [number, number]>;
   links: readonly (Link)[];
+  parts: readonly (string)[];
+  drives: readonly (Drive)[];
   traced: readonly (string)[];
   equations: readonly (string)[];
 }
@@ -242,6 +230,8 @@ export interface ConfigurationsFound {
 export interface NewtonShown {
   kind: "newton_shown";
   answers: number | null;
+  guess: Record<string, number>;
+  guessed: readonly (string)[];
   iterates: readonly (NewtonIterate)[];
   status: string;
   trouble: string;
@@ -316,6 +306,11 @@ export interface Link {
   points: readonly (string)[];
 }
 
+export interface Drive {
+  kind: string;
+  name: string;
+}
+
 export interface LimitFound {
   what: string;
   input: number;
@@ -363,8 +358,7 @@ export type LiveEdit =
   | RemoveLink
   | AddJoint
   | RemoveJoint
-  | AddSlider
-  | AddGear
+  | AddPart
   | RemovePart
   | ChooseConfiguration;
 
@@ -378,8 +372,7 @@ export type LiveRequest =
   | RemoveLink
   | AddJoint
   | RemoveJoint
-  | AddSlider
-  | AddGear
+  | AddPart
   | RemovePart
   | ChooseConfiguration
   | Together

@@ -1,5 +1,5 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { sizes, PIECES } from "../src/live/build";
+import { partOf, PIECES } from "../src/live/build";
 import { Latest, PATIENCE, UNDER_WAY } from "../src/live/latest";
 import { reach, told } from "../src/live/notices";
 import { clean, rangeAround, roundStep, typed } from "../src/live/ranges";
@@ -108,14 +108,24 @@ describe("configurations", () => {
 });
 
 describe("the palette", () => {
-  it("tells teeth from radii", () => {
-    expect(sizes("20 40 teeth")).toEqual({ teeth: [20, 40] });
-    expect(sizes("20, 40.5")).toEqual({ radii: [20, 40.5] });
+  it("has every kind of part that a file can hold", () => {
+    expect(PIECES.map((piece) => piece.title)).toEqual([
+      "Point", "Link", "Joint", "Pin in slot", "Slider", "Cylinder", "Weld", "Gear pair", "Belt or chain",
+      "Rack and pinion", "Rolling wheel", "Cam", "Curve",
+    ]);
+  });
+
+  it("leaves out what was left empty", () => {
+    expect(partOf("gears", { name: "g", wheels: ["a", "b"], radii: [], arm: "" })).toEqual({
+      kind: "add_part",
+      table: "gears",
+      typed: { name: "g", wheels: ["a", "b"] },
+    });
   });
 
   it("makes a link of the points that were chosen", () => {
     const link = PIECES.find((piece) => piece.title === "Link")!;
-    expect(link.edit({ Name: "rod", Points: "A B" })).toEqual({ kind: "add_link", name: "rod", points: ["A", "B"] });
+    expect(link.edit({ name: "rod", points: ["A", "B"] })).toEqual({ kind: "add_link", name: "rod", points: ["A", "B"] });
   });
 });
 

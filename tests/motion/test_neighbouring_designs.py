@@ -212,3 +212,47 @@ def test_a_guess_needs_names_and_numbers() -> None:
     assert str(caught.value) == '"coupler" is not an unknown of four-bar (unknowns: rod, rocker)'
     with pytest.raises(lw.InputError, match="the guess of rod must be a finite number, got nan"):
         four_bar().iterates({"rod": math.nan})
+
+
+# The guess, dragged
+
+
+@pytest.mark.parametrize("name", ["four-bar", "jansen-leg", "rapier-drive", "excavator"])
+def test_one_unknown_follows_a_dragged_point(name: str) -> None:
+    design = lw.example(name)
+    position = design.solve()
+    still = dict(position.unknowns)
+    moved = []
+    for point, (x, y) in position.points.items():
+        before = design.pulled_guess(point, (x, y), still)
+        assert before == pytest.approx(still, abs=1e-9)
+        guess = design.pulled_guess(point, (x + 3.0, y - 2.0), still)
+        changed = [unknown for unknown in guess if abs(guess[unknown] - still[unknown]) > 1e-9]
+        assert len(changed) <= 1
+        moved += changed and [point]
+        for unknown in changed:  # no other value brings the point nearer
+            far = [
+                math.dist(at.points[point], (x + 3.0, y - 2.0))
+                for by in (0.0, -0.01, 0.01)
+                for at in design.iterates(still | {unknown: guess[unknown] + by}).iterates[:1]
+            ]
+            assert far[0] == min(far)
+    assert set(moved) == set(design.guessed_points())
+
+
+def test_a_sliding_point_is_dragged_along_its_line() -> None:
+    design = lw.example("crank-slider")
+    (x, y) = design.solve().points["B"]
+    still = dict(design.solve().unknowns)
+    guess = design.pulled_guess("B", (x + 7.0, y + 50.0), still)
+    assert guess == pytest.approx({**still, "d": still["d"] + 7.0})
+
+
+def test_what_cannot_be_dragged_is_said() -> None:
+    design = lw.example("four-bar")
+    still = dict(design.solve().unknowns)
+    assert design.pulled_guess("O2", (5.0, 5.0), still) == pytest.approx(still)
+    with pytest.raises(lw.UnknownNameError, match='there is no point "Z"'):
+        design.pulled_guess("Z", (0.0, 0.0))
+    with pytest.raises(lw.InputError, match="the place of B must be two finite numbers"):
+        design.pulled_guess("B", (math.nan, 0.0))

@@ -79,13 +79,13 @@ def test_entries_are_added_and_removed() -> None:
     text = TextEdits(TEXT)
     text.append("sliders", {"name": "u", "points": ["A", "B"]})
     assert text.text == TEXT + '\n[[sliders]]\nname = "u"\npoints = ["A", "B"]\n'
-    text.remove_named("sliders", "s")
+    text.remove(("sliders", 0))
     text.remove(("lengths", "O A"))
     assert [row["name"] for _, row in text.entries("sliders")] == ["t", "u"]
     assert not text.has(("lengths",))
     assert "# driven" in text.text
     text.append("gears", {"name": "g"})
-    text.remove_named("gears", "g")
+    text.remove(("gears", 0))
     assert not text.has(("gears",))
 
 
@@ -95,9 +95,6 @@ def test_what_is_not_there_is_said_with_its_key() -> None:
         with pytest.raises(lw.UnknownNameError) as caught:
             wrong(("points", "Z Z"))
         assert str(caught.value) == 'points."Z Z" is not in the file'
-    with pytest.raises(lw.UnknownNameError) as caught:
-        text.remove_named("sliders", "x")
-    assert str(caught.value) == 'there is no "x" (sliders: s, t)'
     with pytest.raises(lw.InputError, match="nothing can be put there"):
         text.put(("sliders", 5, "offset"), 1)
     with pytest.raises(lw.InputError, match=r"is written as one table: make it \[\[input\]\]"):

@@ -1,98 +1,64 @@
 // A palette of what a mechanism is made of, the input, and the text of the file.
 
-import type { FileState, LiveEdit } from "../messages";
+import type { DrivenInput, FileState, LiveEdit } from "../messages";
+import { PALETTE } from "../palette";
 import { html } from "../svg";
 import type { Desk } from "./asking";
 import { typed } from "./ranges";
 
 /** One thing to fill in: a name or number to type, or points and links to choose. */
-interface Field {
-  readonly label: string;
-  readonly kind: "text" | "number" | "point" | "link" | "points";
-  readonly optional?: boolean;
+export interface Field {
+  readonly name: string;
+  readonly entry: string;
+  readonly required: boolean;
+  readonly doc?: string;
+  readonly words?: readonly string[];
+  readonly named?: readonly string[];
 }
 
-type Values = Readonly<Record<string, string>>;
+/** What was typed or chosen: one entry, or several. */
+export type Entry = string | readonly string[];
+type Entries = Readonly<Record<string, Entry>>;
 
 interface Piece {
   readonly title: string;
+  readonly doc?: string;
   readonly fields: readonly Field[];
-  readonly edit: (values: Values) => LiveEdit;
+  readonly edit: (entries: Entries) => LiveEdit;
 }
 
-const names = (text: string): string[] => text.split(/[\s,]+/).filter(Boolean);
-const number = (text: string): number => Number(text.replace("\u2212", "-").replace(",", "."));
+const number = (text: Entry): number => Number(String(text).replace("\u2212", "-").replace(",", "."));
+const one = (name: string, entry: string, required = true): Field => ({ name, entry, required });
 
 export const PIECES: readonly Piece[] = [
   {
     title: "Point",
-    fields: [
-      { label: "Name", kind: "text" },
-      { label: "x", kind: "number" },
-      { label: "y", kind: "number" },
-      { label: "On link", kind: "link", optional: true },
-    ],
-    edit: (v) => ({ kind: "add_point", name: v.Name!, x: number(v.x!), y: number(v.y!), links: v["On link"] ? [v["On link"]] : [] }),
+    fields: [one("name", "text"), one("x", "number"), one("y", "number"), one("on link", "link", false)],
+    edit: (v) => ({
+      kind: "add_point",
+      name: String(v.name),
+      x: number(v.x!),
+      y: number(v.y!),
+      links: v["on link"] ? [String(v["on link"])] : [],
+    }),
   },
   {
     title: "Link",
-    fields: [
-      { label: "Name", kind: "text" },
-      { label: "Points", kind: "points" },
-    ],
-    edit: (v) => ({ kind: "add_link", name: v.Name!, points: names(v.Points!) }),
+    fields: [one("name", "text"), one("points", "points")],
+    edit: (v) => ({ kind: "add_link", name: String(v.name), points: v.points as string[] }),
   },
   {
     title: "Joint",
-    fields: [
-      { label: "Link", kind: "link" },
-      { label: "Point", kind: "point" },
-    ],
-    edit: (v) => ({ kind: "add_joint", link: v.Link!, point: v.Point! }),
+    fields: [one("link", "link"), one("point", "point")],
+    edit: (v) => ({ kind: "add_joint", link: String(v.link), point: String(v.point) }),
   },
-  {
-    title: "Slider",
-    fields: [
-      { label: "Name", kind: "text" },
-      { label: "Link", kind: "link" },
-      { label: "Its points", kind: "points" },
-      { label: "Slides on", kind: "link" },
-      { label: "Along line", kind: "points" },
-    ],
-    edit: (v) => ({
-      kind: "add_slider",
-      name: v.Name!,
-      link: v.Link!,
-      points: names(v["Its points"]!),
-      on: v["Slides on"]!,
-      line: names(v["Along line"]!),
-    }),
-  },
-  {
-    title: "Gear pair",
-    fields: [
-      { label: "Name", kind: "text" },
-      { label: "First wheel", kind: "link" },
-      { label: "Second wheel", kind: "link" },
-      { label: "Centres", kind: "points" },
-      { label: "Radii or teeth", kind: "text" },
-      { label: "Arm", kind: "link", optional: true },
-    ],
-    edit: (v) => ({
-      kind: "add_gear",
-      name: v.Name!,
-      wheels: [v["First wheel"]!, v["Second wheel"]!],
-      centers: names(v.Centres!),
-      ...sizes(v["Radii or teeth"]!),
-      ...(v.Arm ? { arm: v.Arm } : {}),
-    }),
-  },
+  ...PALETTE.map(({ table, title, doc, fields }) => ({ title, doc, fields, edit: (v: Entries): LiveEdit => partOf(table, v) })),
 ];
 
-/** "20 40" are radii, "20 40 teeth" teeth. */
-export function sizes(text: string): { teeth: number[] } | { radii: number[] } {
-  const numbers = names(text).map(number).filter(Number.isFinite);
-  return /teeth/i.test(text) ? { teeth: numbers } : { radii: numbers };
+/** What was filled in of a part; what was left empty is left out. */
+export function partOf(table: string, entries: Entries): LiveEdit {
+  const filled = Object.entries(entries).filter(([, entry]) => entry.length > 0);
+  return { kind: "add_part", table, typed: Object.fromEntries(filled) };
 }
 
 export class Build {
@@ -164,26 +130,37 @@ export class Build {
 
   private inputs(file: FileState): void {
     this.input.querySelectorAll("form").forEach((form) => form.remove());
-    file.inputs.forEach((one, k) => {
-      const form = html("form", { class: "lw-form" }, this.input);
-      html("strong", {}, form, `${one.drive} ${one.name}`);
-      const unit = one.unit ? ` [${one.unit}]` : "";
-      const step = one.rows > 1 ? (one.stop - one.start) / (one.rows - 1) : 1;
-      const start = field(form, `From${unit}`, String(one.start));
-      const stop = field(form, `To${unit}`, String(one.stop));
-      const by = field(form, `Step${unit}`, String(Number(step.toPrecision(8))));
-      const speed = field(form, "Speed", one.speed);
-      html("button", { type: "submit" }, form, "Set the input");
-      form.addEventListener("submit", (event) => {
-        event.preventDefault();
-        this.make({
-          kind: "set_input",
-          number: k,
-          start: typed(start.value),
-          stop: typed(stop.value),
-          step: typed(by.value),
-          ...(speed.value.trim() ? { speed: typed(speed.value) } : {}),
-        });
+    const none = { name: "", drive: "", unit: "", start: NaN, stop: NaN, rows: 0, speed: "" };
+    (file.inputs.length ? file.inputs : [none]).forEach((one, k) => this.inputForm(file, one, k));
+  }
+
+  private inputForm(file: FileState, one: DrivenInput, k: number): void {
+    const form = html("form", { class: "lw-form" }, this.input);
+    const drives = file.drives.map(({ kind, name }) => ({ text: `${kind} ${name}`, kind, name }));
+    const now = drives.find(({ kind, name }) => kind === one.drive && name === one.name);
+    const driven = html("select", {}, html("label", { class: "lw-wide" }, form, "Driven"));
+    if (!now) html("option", { value: "" }, driven, one.name ? `${one.drive} ${one.name}` : "nothing yet");
+    drives.forEach(({ text }) => html("option", { value: text }, driven, text));
+    driven.value = now?.text ?? "";
+    const unit = one.unit ? ` [${one.unit}]` : "";
+    const step = one.rows > 1 ? (one.stop - one.start) / (one.rows - 1) : NaN;
+    const shown = (value: number): string => (Number.isFinite(value) ? String(Number(value.toPrecision(8))) : "");
+    const fields = [
+      { key: "start", label: `From${unit}`, value: shown(one.start) },
+      { key: "stop", label: `To${unit}`, value: shown(one.stop) },
+      { key: "step", label: `Step${unit}`, value: shown(step) },
+      { key: "speed", label: "Speed", value: one.speed },
+    ].map(({ key, label, value }) => ({ key, value, input: field(form, label, value) }));
+    html("button", { type: "submit" }, form, "Set the input");
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      const wanted = drives.find(({ text }) => text === driven.value);
+      const changed = fields.filter(({ value, input }) => input.value.trim() && input.value !== value);
+      this.make({
+        kind: "set_input",
+        number: k,
+        ...(wanted && wanted !== now ? { drive: wanted.kind, name: wanted.name } : {}),
+        ...Object.fromEntries(changed.map(({ key, input }) => [key, typed(input.value)])),
       });
     });
   }
@@ -196,14 +173,24 @@ export class Build {
       const box = html("details", { class: "lw-piece" });
       this.palette.querySelector("summary")!.after(box);
       html("summary", {}, box, piece.title);
-      const form = html("form", { class: "lw-form" }, box);
-      const entries = piece.fields.map((one) => [one.label, entry(form, one, file)] as const);
-      html("button", { type: "submit" }, form, `Add ${piece.title.toLowerCase()}`);
-      form.addEventListener("submit", (event) => {
-        event.preventDefault();
-        this.make(piece.edit(Object.fromEntries(entries.map(([label, read]) => [label, read()]))));
-      });
+      // made when it is opened: most of them never are
+      box.addEventListener("toggle", () => box.open && box.childElementCount === 1 && this.form(box, piece, file));
     }
+  }
+
+  private form(box: HTMLElement, piece: Piece, file: FileState): void {
+    const form = html("form", { class: "lw-form" }, box);
+    if (piece.doc) html("p", { class: "lw-lead" }, form, `${piece.doc}.`);
+    const rest = piece.fields.some((one) => !one.required) ? html("details", { class: "lw-more" }) : null;
+    if (rest) html("summary", {}, rest, "More");
+    const more = rest && html("div", { class: "lw-form" }, rest);
+    const entries = piece.fields.map((one) => [one.name, entry(one.required ? form : more!, one, file)] as const);
+    if (rest) form.append(rest);
+    html("button", { type: "submit" }, form, `Add ${piece.title.toLowerCase()}`);
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.make(piece.edit(Object.fromEntries(entries.map(([name, read]) => [name, read()]))));
+    });
   }
 
   private removable(file: FileState): void {
@@ -217,8 +204,7 @@ export class Build {
       chip(`link ${link.name}`, { kind: "remove_link", name: link.name });
     }
     for (const point of Object.keys(file.points)) chip(`point ${point}`, { kind: "remove_point", name: point });
-    const sliders = new Set(file.numbers.filter((one) => one.table === "sliders").map((one) => one.name.replace(/\.\w+$/, "")));
-    for (const name of sliders) chip(`slider ${name}`, { kind: "remove_part", name });
+    for (const name of file.parts) chip(name, { kind: "remove_part", name });
   }
 }
 
@@ -230,37 +216,56 @@ function field(form: Element, label: string, value: string): HTMLInputElement {
 }
 
 /** A field of a piece, and what reads it. */
-function entry(form: Element, one: Field, file: FileState): () => string {
-  if (one.kind === "text" || one.kind === "number") {
-    const input = field(form, one.label, "");
-    input.required = !one.optional;
-    return () => input.value.trim();
-  }
+function entry(form: Element, what: Field, file: FileState): () => Entry {
+  const { name, entry: kind, required, doc = "", words = [], named = [] } = what;
+  const label = name.replaceAll("_", " ");
   const points = Object.keys(file.points);
-  if (one.kind === "points") {
-    const box = html("fieldset", { class: "lw-points" }, form);
-    html("legend", {}, box, one.label);
+  const links = file.links.map((link) => link.name);
+  const sliders = file.drives.filter((drive) => drive.kind === "slider").map((drive) => drive.name);
+  const listed = { point: points, link: links, slider: sliders, choice: words }[kind];
+  if (listed) {
+    const select = html("select", {}, html("label", { title: doc }, form, label));
+    for (const word of [...(required ? [] : [""]), ...listed]) html("option", { value: word }, select, word || "none");
+    return () => select.value;
+  }
+  if (kind === "points" || kind === "links") {
+    const box = html("fieldset", { class: "lw-points", title: doc }, form);
+    html("legend", {}, box, label);
     const chosen: string[] = [];
-    for (const point of points) {
-      const label = html("label", { class: "lw-toggle" }, box);
-      const check = html("input", { type: "checkbox" }, label);
-      label.append(point);
+    for (const word of kind === "points" ? points : links) {
+      const toggle = html("label", { class: "lw-toggle" }, box);
+      const check = html("input", { type: "checkbox" }, toggle);
+      toggle.append(word);
       check.addEventListener("change", () => {
-        if (check.checked) chosen.push(point);
-        else chosen.splice(chosen.indexOf(point), 1);
+        if (check.checked) chosen.push(word);
+        else chosen.splice(chosen.indexOf(word), 1);
       });
     }
-    return () => chosen.join(" ");
+    return () => [...chosen];
   }
-  const select = html("select", {}, html("label", {}, form, one.label));
-  const listed = one.kind === "point" ? points : file.links.map((link) => link.name);
-  for (const name of [...(one.optional ? [""] : []), ...listed]) html("option", { value: name }, select, name || "none");
-  return () => select.value;
+  if (kind === "flag") {
+    const toggle = html("label", { class: "lw-toggle", title: doc }, form);
+    const check = html("input", { type: "checkbox" }, toggle);
+    toggle.append(label);
+    return () => (check.checked ? "true" : "");
+  }
+  if (kind === "lines") {
+    const holder = html("label", { class: "lw-wide", title: doc }, form, `${label}: ${named.join(", ")} in each line`);
+    const area = html("textarea", { rows: 4, spellcheck: "false" }, holder);
+    return () => area.value.split("\n").filter((line) => line.trim());
+  }
+  const input = field(form, label, "");
+  input.required = required;
+  input.parentElement!.title = doc;
+  if (kind !== "numbers") return () => input.value.trim();
+  input.placeholder = "20, 40";
+  return () => [input.value].filter((text) => text.trim());
 }
 
 /** A change in a few words. */
 export function described(edit: LiveEdit): string {
   const what = edit.kind.replace("_", " ");
   const fields = edit as unknown as Readonly<Record<string, unknown>>;
-  return `${what} ${String(fields.name ?? fields.point ?? "")}`.trim();
+  const typed = fields.typed as Entries | undefined;
+  return `${what} ${String(fields.name ?? fields.point ?? typed?.name ?? "")}`.trim();
 }

@@ -25,6 +25,10 @@ export class Newton {
   private readonly outcome: HTMLElement;
   private readonly full: HTMLInputElement;
   private readonly group = svg("g", { class: "lw-iterate" });
+  private readonly links = svg("g", {}, this.group);
+  private readonly handles = svg("g", {}, this.group);
+  private readonly shownGuess = new Map<string, (value: number) => void>();
+  private held = "";
   private guess: Record<string, number> = {};
   private at: Record<string, number> = {};
   private found: NewtonShown | null = null;
@@ -33,7 +37,7 @@ export class Newton {
   private on = false;
 
   constructor(private readonly desk: Desk) {
-    html("p", { class: "lw-lead" }, this.element, "Drag the guess and watch where Newton–Raphson goes from it, step by step, at the input shown.");
+    html("p", { class: "lw-lead" }, this.element, "Drag the guess, in the drawing or by its sliders, and watch where Newton–Raphson goes from it, step by step, at the input shown.");
     this.guesses = html("div", {}, this.element);
     const row = html("div", { class: "lw-newton-row" }, this.element);
     this.button(row, "Guess of the file", () => this.begin());
@@ -57,7 +61,12 @@ export class Newton {
     this.on = on;
     this.page?.places.drawing.dim(on);
     if (on) this.begin();
-    else this.group.replaceChildren();
+    else this.clear();
+  }
+
+  private clear(): void {
+    this.links.replaceChildren();
+    this.handles.replaceChildren();
   }
 
   renew(): void {
@@ -67,6 +76,8 @@ export class Newton {
   show(found: NewtonShown): void {
     if (!this.on) return;
     this.found = found;
+    this.guess = { ...found.guess };
+    for (const [name, value] of Object.entries(found.guess)) this.shownGuess.get(name)?.(value);
     const trouble = TROUBLES[found.trouble] ?? "";
     this.outcome.textContent = [trouble, found.message].filter(Boolean).join(" ");
     this.outcome.dataset.trouble = found.trouble;
@@ -92,6 +103,7 @@ export class Newton {
 
   private sliders(file: FileState): void {
     this.guesses.replaceChildren();
+    this.shownGuess.clear();
     const size = Math.max(...file.numbers.map((one) => Math.abs(one.value)), 1e-3);
     for (const unknown of file.unknowns) {
       const line = html("div", { class: "lw-number", "data-guess": unknown.name }, this.guesses);
@@ -113,6 +125,10 @@ export class Newton {
       );
       slider.value = String(unknown.guess);
       const value = html("output", { class: "lw-value" }, line, text(unknown.guess, unknown.unit));
+      this.shownGuess.set(unknown.name, (now) => {
+        if (document.activeElement !== slider || this.held) slider.value = String(now);
+        value.textContent = text(now, unknown.unit);
+      });
       slider.addEventListener("input", () => {
         this.guess[unknown.name] = clean(Number(slider.value));
         value.textContent = text(Number(slider.value), unknown.unit);
@@ -122,8 +138,8 @@ export class Newton {
     }
   }
 
-  private find(): void {
-    this.desk.latest({ kind: "newton_steps", guess: this.guess, at: this.at, full_steps: this.full.checked });
+  private find(pull: { pull?: string; x?: number; y?: number } = {}): void {
+    this.desk.latest({ kind: "newton_steps", guess: this.guess, at: this.at, full_steps: this.full.checked, ...pull });
   }
 
   /** Every iterate in a line: which can be chosen. */
@@ -184,7 +200,37 @@ export class Newton {
     const matrix = this.page?.places.drawing.element.getScreenCTM();
     if (!matrix) return;
     const stroke = 1.2 / matrix.a;
-    drawLinks(this.group, this.desk.file().links, iterate.points, { stroke, names: 11 * stroke });
+    drawLinks(this.links, this.desk.file().links, iterate.points, { stroke, names: 11 * stroke });
+    if (!this.held) this.handles.replaceChildren();
+    if (this.held || this.chosen !== 0) return;
+    for (const name of this.found!.guessed) {
+      const place = iterate.points[name];
+      if (place) this.handle(name, place, 11 * stroke);
+    }
+  }
+
+  /** Where the guess can be taken hold of: one unknown follows the point. */
+  private handle(name: string, [x, y]: readonly [number, number], r: number): void {
+    const handle = svg("circle", { class: "lw-sketched", "data-guessed": name, cx: x, cy: -y, r }, this.handles);
+    svg("title", {}, handle).textContent = `Drag ${name} to change the guess`;
+    handle.addEventListener("pointerdown", (event) => {
+      event.preventDefault();
+      event.stopPropagation();
+      this.held = name;
+      handle.setPointerCapture(event.pointerId);
+    });
+    handle.addEventListener("pointermove", (event) => {
+      if (this.held !== name) return;
+      const [left, top] = this.page!.places.drawing.placeAt(event);
+      this.chosen = 0;
+      this.find({ pull: name, x: clean(left), y: clean(top) });
+    });
+    for (const end of ["pointerup", "pointercancel"] as const) {
+      handle.addEventListener(end, () => {
+        this.held = "";
+        this.choose(this.chosen);
+      });
+    }
   }
 }
 

@@ -222,6 +222,20 @@ class SolvableMechanism:
         """Newton-Raphson from a guess, step by step; see :func:`linkwork.motion.iterates`."""
         return motion.iterates(self.model, guess, at, options=options)
 
+    def guessed_points(self) -> tuple[str, ...]:
+        """The points that a guess of the unknowns places."""
+        return motion.guessed_points(self.model)
+
+    def pulled_guess(
+        self,
+        point: str,
+        place: tuple[float, float],
+        guess: Mapping[str, float] | None = None,
+        at: float | Mapping[str, float] | None = None,
+    ) -> dict[str, float]:
+        """A guess that brings a point near a place; see :func:`linkwork.motion.pulled_guess`."""
+        return motion.pulled_guess(self.model, point, place, guess, at)
+
     def configurations(self, at: float | Mapping[str, float] | None = None) -> Configurations:
         """Every way to put it together at one input; see :func:`linkwork.motion.configurations`."""
         return motion.configurations(self.model, at)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from linkwork.motion.classifying.inverting import driven_otherwise, inversion, inversions
     from linkwork.motion.described import as_described
     from linkwork.motion.extremes import check_quantities
-    from linkwork.motion.iterating import iterates
+    from linkwork.motion.iterating import guessed_points, iterates, pulled_guess
     from linkwork.motion.model import Model, model_of
     from linkwork.motion.nearest_assembling import nearest_assembly
     from linkwork.motion.renewing import renewed
@@ -34,7 +34,7 @@ else:
             "circuit.circuits": ("branch_start", "circuits"),
             "extremes": ("check_quantities",),
             "classifying.inverting": ("driven_otherwise", "inversion", "inversions"),
-            "iterating": ("iterates",),
+            "iterating": ("guessed_points", "iterates", "pulled_guess"),
             "model": ("Model", "model_of"),
             "nearest_assembling": ("nearest_assembly",),
             "renewing": ("renewed",),
@@ -53,11 +53,13 @@ __all__ = [
     "circuits",
     "configurations",
     "driven_otherwise",
+    "guessed_points",
     "inversion",
     "inversions",
     "iterates",
     "model_of",
     "nearest_assembly",
+    "pulled_guess",
     "renewed",
     "solve",
     "solve_configuration",

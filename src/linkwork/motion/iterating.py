@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.motion.model import Model
 from linkwork.motion.positions import target_values
 from linkwork.motion.reading import named_series
@@ -16,7 +17,10 @@ from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.iterates import Iterate, Iterates
 from linkwork.results.quantity import Kind
 
-__all__ = ["iterates"]
+__all__ = ["guessed_points", "iterates", "pulled_guess"]
+
+_PULLS = 4  # one will do where a point runs on a circle or line
+_STEP = 1e-4  # of an unknown, for central differences
 
 
 def iterates(
@@ -53,6 +57,101 @@ def iterates(
         found += watched.told(model, v)
         v[watched.block.unknowns] = done.v[0, watched.block.unknowns]
     return Iterates(position=position, iterates=tuple(found))
+
+
+def pulled_guess(
+    model: Model,
+    point: str,
+    place: tuple[float, float],
+    guess: Mapping[str, float] | None = None,
+    at: float | Mapping[str, float] | None = None,
+) -> dict[str, float]:
+    """A guess of which one unknown is changed so that a point comes as near to a place as it can.
+
+    Of the unknowns that move the point the one is changed that moves fewest points: that of the
+    link which carries it last. The mechanism need not close.
+
+    Parameters
+    ----------
+    point : str
+    place : (float, float)
+        Where the point is wanted, in the mechanism's length unit.
+    guess, at
+        As for :func:`iterates`.
+
+    Returns
+    -------
+    dict[str, float]
+        All unknowns in everyday units; as they were where none of them moves the point.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        For names that are no unknowns or no points, and values that are no numbers.
+    """
+    model = model.guessed(guess or {})
+    names, unknowns = model.compiled.points.names, model.equations.unknowns
+    if point not in names:
+        raise UnknownNameError(f'there is no point "{point}" {choices("points", names, point)}')
+    if not np.isfinite(place).all():
+        raise InputError(f"the place of {point} must be two finite numbers, got {place}")
+    v = model.equations.start.copy()
+    v[len(unknowns) :] = target_values(model, at) * model.input_scale
+    wanted = complex(*place)
+    moving = _moving(model, v, point)
+    for _ in range(_PULLS if moving >= 0 else 0):
+        here, rate = _moved_by(model, v, moving, point)
+        if unknowns[moving].kind == "angle":
+            centre = here + 1j * rate  # of the circle on which it runs
+            change = float(np.angle((wanted - centre) / (here - centre)))
+        else:
+            change = float(((wanted - here) * rate.conjugate()).real) / abs(rate) ** 2
+        trial = v.copy()
+        trial[moving] += change
+        if abs(wanted - _moved_by(model, trial, moving, point)[0]) >= abs(wanted - here):
+            break
+        v = trial
+    scales = [model.units.scale(Kind(u.kind)) for u in unknowns]
+    return {u.name: float(v[k] / scales[k]) for k, u in enumerate(unknowns)}
+
+
+def guessed_points(model: Model) -> tuple[str, ...]:
+    """The points that a guess of the unknowns places: those that :func:`pulled_guess` can move."""
+    moved = set[str]().union(*_moved(model, model.equations.start))
+    return tuple(name for name in model.compiled.points.names if name in moved)
+
+
+def _moving(model: Model, v: Array, point: str) -> int:
+    """The unknown that moves a point and fewest others; -1 if there is none."""
+    moved = _moved(model, v)
+    movers = [k for k, points in enumerate(moved) if point in points]
+    return min(movers, key=lambda k: (len(moved[k]), -k), default=-1)
+
+
+def _moved(model: Model, v: Array) -> list[set[str]]:
+    """The points that each unknown moves."""
+    n = model.compiled.solver.unknowns
+    rows = np.repeat(v[None, :], n + 1, axis=0)
+    steps = _STEP * model.compiled.solver.variable_scale[:n]
+    rows[np.arange(n), np.arange(n)] += steps
+    found = _points(model, rows)
+    own = {name: complex(*place) for name, place in found[-1].items()}
+    first = next(iter(own.values()), 0j)
+    size = 1e-6 * _STEP * (max((abs(place - first) for place in own.values()), default=0.0) or 1.0)
+    return [
+        {name for name, place in found[k].items() if abs(complex(*place) - own[name]) > size}
+        for k in range(n)
+    ]
+
+
+def _moved_by(model: Model, v: Array, unknown: int, point: str) -> tuple[complex, complex]:
+    """Where a point is, and how fast it moves with an unknown."""
+    step = _STEP * float(model.compiled.solver.variable_scale[unknown])
+    rows = np.repeat(v[None, :], 3, axis=0)
+    rows[1, unknown] -= step
+    rows[2, unknown] += step
+    here, below, above = (complex(*points[point]) for points in _points(model, rows))
+    return here, (above - below) / (2.0 * step)
 
 
 class _Seen:

@@ -30,9 +30,10 @@ class Constant:
 
 @dataclass(frozen=True)
 class Text:
-    """Text, or one of a few words."""
+    """Text, or one of a few words; ``of`` is what it names: a point, link or slider."""
 
     words: tuple[str, ...] = ()
+    of: str = ""
 
 
 @dataclass(frozen=True)
@@ -154,6 +155,7 @@ class Form:
         return self.title.replace("-", "_").replace(" ", "_")
 
 
+_POINT, _LINK, _SLIDING = Text(of="point"), Text(of="link"), Text(of="slider")
 _NAME_LIST = ListOf(Text(), "name")
 _POINT_PAIR = ListOf(Text(), "point", 2, 2)
 
@@ -215,20 +217,20 @@ _VARIABLE = (
 )
 _SLOT = (
     Key("name", Text(), "Name of the displacement, zero at the first point of the line", True),
-    Key("point", Text(), "The pin: a point of another link", required=True),
-    Key("on", Text(), "The link with the slot", required=True),
+    Key("point", _POINT, "The pin: a point of another link", required=True),
+    Key("on", _LINK, "The link with the slot", required=True),
     Key("line", _POINT_PAIR, "Two points of that link; positive from first to second", True),
 )
 _SLIDER = (
     Key("name", Text(), "Name of the displacement, zero at the first point of the line", True),
-    Key("link", Text(), "The link that slides without turning", required=True),
+    Key("link", _LINK, "The link that slides without turning", required=True),
     Key(
         "points",
         ListOf(Text(), "point", 1, 2),
         "Two points of the sliding link on the line, or one point and angle",
         required=True,
     ),
-    Key("on", Text(), "The link along which it slides", required=True),
+    Key("on", _LINK, "The link along which it slides", required=True),
     Key("line", _POINT_PAIR, "Two points of that link; positive from first to second", True),
     Key("offset", Number(), "Distance of the points from the line, positive to its left"),
     Key("angle", Number(), "With one point: the angle from the line to the sliding link"),
@@ -247,7 +249,7 @@ _WELD = (
 _WHEELS = (
     Key("wheels", ListOf(Text(), "link", 2, 2), "The two links that turn", required=True),
     Key("centers", ListOf(Text(), "point", 2, 2), "The points at which they turn", required=True),
-    Key("arm", Text(), "The link that carries both centres; ground if left out"),
+    Key("arm", _LINK, "The link that carries both centres; ground if left out"),
     Key("radii", _NUMBER_PAIR, "Pitch radii"),
     Key("teeth", _NUMBER_PAIR, "Numbers of teeth, instead of radii"),
     Key("phase", Number(), "Angle of the second wheel where the first one's is zero"),
@@ -264,21 +266,21 @@ _BELT = (
 )
 _RACK = (
     Key("name", Text(), "Name of the rack and pinion", required=True),
-    Key("pinion", Text(), "The link that turns", required=True),
-    Key("center", Text(), "The point at which it turns", required=True),
-    Key("slider", Text(), "The slider of the rack", required=True),
+    Key("pinion", _LINK, "The link that turns", required=True),
+    Key("center", _POINT, "The point at which it turns", required=True),
+    Key("slider", _SLIDING, "The slider of the rack", required=True),
     Key("radius", Number(), "Pitch radius of the pinion", required=True),
 )
 _ROLLING = (
     Key(
         "name", Text(), "Way of the point of contact along the line, or angle of the centres", True
     ),
-    Key("wheel", Text(), "The link that rolls", required=True),
-    Key("center", Text(), "Its centre", required=True),
+    Key("wheel", _LINK, "The link that rolls", required=True),
+    Key("center", _POINT, "Its centre", required=True),
     Key("radius", Number(), "Its radius", required=True),
-    Key("on", Text(), "The link on which it rolls; ground if left out"),
+    Key("on", _LINK, "The link on which it rolls; ground if left out"),
     Key("line", _POINT_PAIR, "Two points of that link: it rolls along this line"),
-    Key("circle", Text(), "Or the centre of the circle on which it rolls"),
+    Key("circle", _POINT, "Or the centre of the circle on which it rolls"),
     Key("circle_radius", Number(), "The radius of that circle"),
     Key("inside", Flag(), "One of wheel and circle runs inside the other"),
 )
@@ -289,12 +291,12 @@ _SEGMENT = (
 )
 _CAM = (
     Key("name", Text(), "Name of the cam", required=True),
-    Key("cam", Text(), "The link that turns", required=True),
-    Key("center", Text(), "The point about which it turns", required=True),
-    Key("slider", Text(), "The slider that it moves"),
-    Key("link", Text(), "Or the link that it swings"),
-    Key("pivot", Text(), "With link: the point about which that swings"),
-    Key("point", Text(), "With link: its edge, its roller's centre or the end of its face"),
+    Key("cam", _LINK, "The link that turns", required=True),
+    Key("center", _POINT, "The point about which it turns", required=True),
+    Key("slider", _SLIDING, "The slider that it moves"),
+    Key("link", _LINK, "Or the link that it swings"),
+    Key("pivot", _POINT, "With link: the point about which that swings"),
+    Key("point", _POINT, "With link: its edge, its roller's centre or the end of its face"),
     Key("contact", Text(("knife", "roller", "flat")), "Kind of the follower; knife if left out"),
     Key("radius", Number(), "Radius of the roller"),
     Key("base", Number(), "Radius of the base circle, with segments"),
@@ -304,9 +306,9 @@ _CAM = (
 )
 _CURVE = (
     Key("name", Text(), "Name of the place on the curve", required=True),
-    Key("point", Text(), "The point that runs along it, of another link", required=True),
-    Key("on", Text(), "The link that carries the curve", required=True),
-    Key("origin", Text(), "The point of that link about which coordinates are given", True),
+    Key("point", _POINT, "The point that runs along it, of another link", required=True),
+    Key("on", _LINK, "The link that carries the curve", required=True),
+    Key("origin", _POINT, "The point of that link about which coordinates are given", True),
     Key("through", _COORDINATES, "Points of the curve in that link's own frame", required=True),
     Key("closed", Flag(), "Whether the curve leads back to its first point"),
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from linkwork.foundation.errors import InputError, UnknownNameError, choices, key_text
+from linkwork.foundation.errors import InputError, UnknownNameError, key_text
 from linkwork.foundation.names import canonical
 
 __all__ = ["TextEdits"]
@@ -125,20 +125,6 @@ class TextEdits:
         del holder[key]
         if len(path) > 1 and not len(holder) and holder is not self._document:
             self.remove(path[:-1])
-
-    def remove_named(self, table: str, name: str) -> None:
-        """Take out the entry of a ``[[table]]`` that has this name.
-
-        Raises
-        ------
-        UnknownNameError
-            With the names that there are.
-        """
-        names = {canonical(str(row.get("name", ""))): k for k, row in self.entries(table)}
-        if canonical(name) not in names:
-            known = [str(row.get("name", "")) for _, row in self.entries(table)]
-            raise UnknownNameError(f'there is no "{name}" {choices(table, known, name)}')
-        self.remove((table, names[canonical(name)]))
 
     def _found(self, path: Sequence[str | int]) -> tuple[Any, Any] | None:
         """The holder of what stands at a path and its own key there."""

@@ -16,6 +16,14 @@ from tests.viewer.live.conftest import FOUR_BAR, Served
 
 Open = Callable[..., Any]
 
+BELT = """
+[[belts]]
+name = "belt"
+wheels = ["crank", "wheel"]
+centers = ["O2", "O4"]
+radii = [20, 30]
+"""
+
 
 @pytest.fixture
 def open_live(browser: Any, served: Served) -> Iterator[Open]:
@@ -233,10 +241,11 @@ def test_a_point_is_added_from_the_palette_and_removed_again(
     page = open_live()
     page.get_by_role("tab", name="Build").click()
     piece = page.locator(".lw-piece").first
-    piece.locator("summary").click()
-    for label, text in (("Name", "Q"), ("x", "120"), ("y", "40")):
+    piece.locator("summary").first.click()
+    for label, text in (("name", "Q"), ("x", "120"), ("y", "40")):
         piece.get_by_label(label, exact=True).fill(text)
-    piece.get_by_label("On link").select_option("rocker")
+    piece.locator("summary", has_text="More").click()
+    piece.get_by_label("on link").select_option("rocker")
     piece.get_by_role("button", name="Add point").click()
     page.locator(".lw-drawing text[data-of=Q]").wait_for()
     mechanism = lw.loads(served.workbench.text)
@@ -245,6 +254,90 @@ def test_a_point_is_added_from_the_palette_and_removed_again(
     page.get_by_role("button", name="Remove point Q").click()
     page.locator(".lw-drawing text[data-of=Q]").wait_for(state="detached")
     assert "Q" not in lw.loads(served.workbench.text).description.points
+
+
+def test_a_belt_is_added_and_removed_with_its_wheel(open_live: Open, served: Served) -> None:
+    page = open_live()
+    page.get_by_role("tab", name="Build").click()
+    page.get_by_label("Collect changes, then make them as one").check()
+    link = page.locator(".lw-piece", has=page.get_by_text("Link", exact=True))
+    link.locator("summary").first.click()
+    link.get_by_label("name", exact=True).fill("wheel")
+    link.get_by_label("O4", exact=True).check()
+    link.get_by_role("button", name="Add link").click()
+    page.get_by_text("add link wheel").wait_for()
+    assert "wheel" not in served.workbench.text  # only collected
+    page.get_by_role("button", name="Forget them").click()
+    page.get_by_label("Collect changes, then make them as one").uncheck()
+    link.get_by_role("button", name="Add link").click()
+    page.locator(".lw-message li").wait_for()  # a wheel that nothing turns is no mechanism
+    served.path.write_text(FOUR_BAR.replace("rocker = [", 'wheel = ["O4"]\nrocker = [') + BELT)
+    page.get_by_text("has been read again").wait_for()
+    page.locator(".lw-group summary", has_text="Remove").click()
+    page.get_by_label("Collect changes, then make them as one").check()
+    page.get_by_role("button", name="Remove belt", exact=True).click()
+    page.get_by_role("button", name="Remove link wheel").click()
+    page.get_by_role("button", name="Make 2 as one").click()
+    page.locator("[data-of=wheel]").first.wait_for(state="detached")
+    assert lw.loads(served.workbench.text).description == lw.loads(FOUR_BAR).description
+
+
+def test_a_part_is_added_from_the_palette(open_live: Open, served: Served) -> None:
+    served.path.write_text(FOUR_BAR.replace("rocker = [", 'wheel = ["O4"]\nrocker = [') + BELT)
+    page = open_live()
+    page.get_by_text("has been read again").wait_for()
+    page.get_by_role("tab", name="Build").click()
+    page.locator(".lw-group summary", has_text="Remove").click()
+    page.get_by_label("Collect changes, then make them as one").check()
+    page.get_by_role("button", name="Remove belt", exact=True).click()
+    piece = page.locator(".lw-piece", has=page.get_by_text("Gear pair", exact=True))
+    piece.locator("summary").first.click()
+    piece.get_by_label("name", exact=True).fill("mesh")
+    for name in ("crank", "wheel", "O2", "O4"):
+        piece.get_by_label(name, exact=True).first.check()
+    piece.locator("summary", has_text="More").click()
+    piece.get_by_label("radii").fill("70, 30")
+    piece.get_by_role("button", name="Add gear pair").click()
+    page.get_by_role("button", name="Make 2 as one").click()
+    page.get_by_role("button", name="Remove mesh").wait_for()
+    (gear,) = lw.loads(served.workbench.text).description.gears
+    assert (gear.name, gear.wheels, gear.radii) == ("mesh", ("crank", "wheel"), (70, 30))
+
+
+def test_something_else_is_driven(open_live: Open, served: Served) -> None:
+    page = open_live()
+    page.get_by_role("tab", name="Build").click()
+    form = page.locator(".lw-build form", has_text="Driven")
+    form.get_by_label("Driven").select_option("link rocker")
+    form.get_by_role("button", name="Set the input").click()
+    page.locator(".lw-limit-button").first.wait_for()  # a rocker cannot turn all around
+    assert lw.loads(served.workbench.text).description.inputs[0].link == "rocker"
+
+
+def test_the_guess_is_dragged_in_the_drawing(open_live: Open) -> None:
+    page = open_live()
+    page.get_by_role("tab", name="Newton").click()
+    handle = page.locator("[data-guessed=B]")
+    handle.wait_for()
+    slider = page.locator("[data-guess=rocker] input")
+    before = float(slider.input_value())
+    box = handle.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x - 90, y + 20, steps=6)
+    page.mouse.up()
+    page.wait_for_function(
+        "old => Math.abs(document.querySelector('[data-guess=rocker] input').value - old) > 5",
+        arg=before,
+    )
+    page.wait_for_timeout(300)  # the last place is solved
+    guess = {"rocker": float(slider.input_value())}
+    crank = float(lw.loads(FOUR_BAR).sweep()["crank"][shown_row(page)])
+    iterates = lw.loads(FOUR_BAR).iterates(guess, {"crank": crank}).iterates
+    assert page.locator(".lw-steps tbody tr").count() == len(iterates)
+    first = page.locator(".lw-steps tbody tr td").first.text_content()
+    assert float(first) == pytest.approx(iterates[0].norm, rel=2e-2)  # sliders have whole steps
 
 
 def test_the_range_of_the_input_is_set(open_live: Open, served: Served) -> None:

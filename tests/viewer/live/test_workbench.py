@@ -305,33 +305,29 @@ def test_lengths_go_with_the_link_that_had_them(bench: Workbench) -> None:
 
 
 def test_joints_sliders_and_gears_come_and_go(bench: Workbench) -> None:
-    assert (
-        "coupler"
-        in only(bench.handle(ask.RemoveJoint(link="coupler", point="A")), tell.ProblemsFound)
-        .problems[0]
-        .message
-        or True
-    )
-    gear = ask.AddGear(
-        name="g", wheels=("wheel", "pinion"), centers=("O2", "O4"), radii=(60.0, 40.0)
-    )
+    loose = only(bench.handle(ask.RemoveJoint(link="coupler", point="A")), tell.ProblemsFound)
+    assert "coupler" in loose.problems[0].message
+    wheels = {"name": "g", "centers": ("O2", "O4"), "radii": ("60 40",)}
     edits = (
         ask.AddLink(name="wheel", points=("O2",)),
         ask.AddLink(name="pinion", points=("O4",)),
-        gear,
+        ask.AddPart(table="gears", typed={**wheels, "wheels": ("wheel", "pinion")}),
     )
     events = bench.handle(ask.Together(edits=edits))
     assert kinds(events) == ["ProblemsFound"]  # nothing turns the wheels
     crank = ask.Together(
         edits=(
             ask.AddLink(name="pinion", points=("O4",)),
-            ask.AddGear(name="g", wheels=("crank", "pinion"), centers=("O2", "O4"), radii=(60, 40)),
+            ask.AddPart(table="gears", typed={**wheels, "wheels": ("crank", "pinion")}),
         )
     )
     state = only(bench.handle(crank), tell.FileState)
     assert 'wheels = ["crank", "pinion"]' in state.text
+    assert state.parts == ("g",)
     gone = ask.Together(edits=(ask.RemovePart(name="g"), ask.RemoveLink(name="pinion")))
-    assert "[[gears]]" not in only(bench.handle(gone), tell.FileState).text
+    left = only(bench.handle(gone), tell.FileState)
+    assert "[[gears]]" not in left.text
+    assert left.parts == ()
 
 
 def test_a_slider_is_added(tmp_path: Path) -> None:
@@ -348,9 +344,12 @@ def test_a_slider_is_added(tmp_path: Path) -> None:
     swap = ask.Together(
         edits=(
             ask.RemovePart(name="s"),
-            ask.AddSlider(
-                name="t", link="piston", points=("B",), on="ground", line=("O2", "X"),
-                offset=5.0, angle=0.0,
+            ask.AddPart(
+                table="sliders",
+                typed={
+                    "name": "t", "link": "piston", "points": ("B",), "on": "ground",
+                    "line": ("O2", "X"), "offset": "5", "angle": "0",
+                },
             ),
         )
     )  # fmt: skip
@@ -358,6 +357,25 @@ def test_a_slider_is_added(tmp_path: Path) -> None:
     assert number(state, "t.offset").value == 5.0
     changed = only(bench.handle(ask.SetNumber(name="t.offset", value=7)), tell.FileState)
     assert "offset = 7" in changed.text
+
+
+def test_something_else_is_driven(bench: Workbench) -> None:
+    state = only(bench.opened(), tell.FileState)
+    drives = [(drive.kind, drive.name) for drive in state.drives]
+    assert drives == [("link", "crank"), ("link", "coupler"), ("link", "rocker")]
+    state = only(bench.handle(ask.SetInput(drive="link", name="rocker")), tell.FileState)
+    assert [(one.drive, one.name) for one in state.inputs] == [("link", "rocker")]
+
+
+def test_the_guess_is_dragged_by_a_point(bench: Workbench) -> None:
+    asked = ask.NewtonSteps(guess={}, at={"crank": 60.0}, pull="B", x=100.0, y=200.0)
+    shown = only(bench.handle(asked), tell.NewtonShown)
+    assert shown.guess["rocker"] == pytest.approx(90.0)  # straight up from O4 = (100, 0)
+    first = shown.iterates[0]
+    assert first.unknowns == pytest.approx(shown.guess)
+    assert first.points["B"] == pytest.approx((100.0, 80.0), rel=1e-6)
+    wrong = only(bench.handle(ask.NewtonSteps(guess={}, at={}, pull="Z")), tell.Refused)
+    assert wrong.message == 'there is no point "Z" (points: O2, O4, A, B, P)'
 
 
 def test_the_input_is_set(bench: Workbench) -> None:

@@ -14,6 +14,7 @@ from linkwork.mechanism.linkage import GROUND, PART_KINDS, Linkage
 from linkwork.mechanism.quantities import Quantity, quantity_named
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import requests as ask
+from linkwork.viewer.live.palette import part_name, part_of
 
 __all__ = ["Before", "Followed", "applied"]
 
@@ -262,34 +263,8 @@ def _(edit: ask.RemovePoint, text: TextEdits, before: Before) -> Followed:
 
 
 @applied.register
-def _(edit: ask.AddSlider, text: TextEdits, before: Before) -> Followed:
-    fields: dict[str, object] = {
-        "name": edit.name,
-        "link": edit.link,
-        "points": list(edit.points),
-        "on": edit.on,
-        "line": list(edit.line),
-    }
-    if edit.offset:
-        fields["offset"] = edit.offset
-    if edit.angle is not None:
-        fields["angle"] = edit.angle
-    text.append("sliders", fields)
-    return Followed()
-
-
-@applied.register
-def _(edit: ask.AddGear, text: TextEdits, before: Before) -> Followed:
-    fields = {
-        "name": edit.name,
-        "wheels": list(edit.wheels),
-        "centers": list(edit.centers),
-        "radii": list(edit.radii),
-        "teeth": list(edit.teeth),
-        "arm": edit.arm,
-        "internal": edit.internal,
-    }
-    text.append("gears", {key: entry for key, entry in fields.items() if entry})
+def _(edit: ask.AddPart, text: TextEdits, before: Before) -> Followed:
+    text.append(edit.table, part_of(edit.table, edit.typed))
     return Followed()
 
 
@@ -297,11 +272,12 @@ def _(edit: ask.AddGear, text: TextEdits, before: Before) -> Followed:
 def _(edit: ask.RemovePart, text: TextEdits, before: Before) -> Followed:
     names: list[str] = []
     for table in PART_KINDS:
-        own = [str(row.get("name", "")) for _, row in text.entries(table)]
-        if canonical(edit.name) in map(canonical, own):
-            text.remove_named(table, edit.name)
-            return Followed()
-        names += filter(None, own)
+        for k, row in text.entries(table):
+            name = part_name(row)
+            if canonical(edit.name) == canonical(name):
+                text.remove((table, k))
+                return Followed()
+            names.append(name)
     raise UnknownNameError(f'there is no "{edit.name}" {choices("parts", names, edit.name)}')
 
 

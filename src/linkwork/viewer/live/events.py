@@ -14,6 +14,7 @@ __all__ = [
     "CannotClose",
     "ChangeableNumber",
     "ConfigurationsFound",
+    "Drive",
     "DrivenInput",
     "Event",
     "FileChanged",
@@ -75,6 +76,14 @@ class DrivenInput:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Drive:
+    """What could be an input: link, slider, cylinder or variable, and its name."""
+
+    kind: str
+    name: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class Link:
     """A link and the points it carries."""
 
@@ -84,7 +93,11 @@ class Link:
 
 @dataclass(frozen=True, kw_only=True)
 class FileState:
-    """The file as it is being edited."""
+    """The file as it is being edited.
+
+    ``parts``: names of sliders, gears, cams, …; of a weld its two links. ``drives``: what could be
+    an input.
+    """
 
     file: str
     title: str
@@ -101,6 +114,8 @@ class FileState:
     inputs: tuple[DrivenInput, ...]
     points: dict[str, Point]
     links: tuple[Link, ...]
+    parts: tuple[str, ...]
+    drives: tuple[Drive, ...]
     traced: tuple[str, ...]
     equations: tuple[str, ...]
 
@@ -212,9 +227,13 @@ class NewtonIterate:
 class NewtonShown:
     """Newton-Raphson from a guess: every iterate, where it ended, and which trouble it met.
 
-    ``trouble``: SINGULAR_DERIVATIVE, INFLECTION, ANOTHER_ROOT, LOCAL_EXTREMUM, or "".
+    ``guess``: what was asked for, as it was dragged; ``guessed``: points that can be dragged.
+    ``trouble``: SINGULAR_DERIVATIVE, INFLECTION,
+    ANOTHER_ROOT, LOCAL_EXTREMUM, or "".
     """
 
+    guess: dict[str, float]
+    guessed: tuple[str, ...]
     iterates: tuple[NewtonIterate, ...]
     status: str
     trouble: str

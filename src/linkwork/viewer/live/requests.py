@@ -12,11 +12,10 @@ from dataclasses import dataclass
 __all__ = [
     "EDITS",
     "REQUESTS",
-    "AddGear",
     "AddJoint",
     "AddLink",
+    "AddPart",
     "AddPoint",
-    "AddSlider",
     "ChooseConfiguration",
     "Edit",
     "ListConfigurations",
@@ -133,34 +132,22 @@ class RemoveJoint:
 
 
 @dataclass(frozen=True, kw_only=True)
-class AddSlider:
-    """A link slides along the line through two points of another one."""
+class AddPart:
+    """An entry of a table of parts: sliders, gears, cams, …
 
-    name: str
-    link: str
-    points: tuple[str, ...]
-    on: str
-    line: tuple[str, ...]
-    offset: float = 0.0
-    angle: float | None = None
+    ``typed``: by key, as people type it: text, a number, a formula, true or false; a list of names;
+    a list of lines, each with the numbers or words of one row.
+    """
 
-
-@dataclass(frozen=True, kw_only=True)
-class AddGear:
-    """Two wheels in mesh: by pitch ``radii`` or by ``teeth``."""
-
-    name: str
-    wheels: tuple[str, ...]
-    centers: tuple[str, ...]
-    radii: tuple[float, ...] = ()
-    teeth: tuple[float, ...] = ()
-    arm: str | None = None
-    internal: bool = False
+    table: str
+    typed: dict[str, str | tuple[str, ...]]
 
 
 @dataclass(frozen=True, kw_only=True)
 class RemovePart:
-    """A named slider, slot, cylinder, gear, belt, rack, rolling wheel, cam or curve goes."""
+    """A slider, slot, cylinder, gear, belt, rack, rolling wheel, cam or curve goes; a weld by the
+    names of its two links.
+    """
 
     name: str
 
@@ -183,8 +170,7 @@ Edit = (
     | RemoveLink
     | AddJoint
     | RemoveJoint
-    | AddSlider
-    | AddGear
+    | AddPart
     | RemovePart
     | ChooseConfiguration
 )
@@ -224,12 +210,17 @@ class NewtonSteps:
     """Newton-Raphson from a guess of some or all unknowns, everyday units, step by step.
 
     ``full_steps``: the textbook's bare method, whose steps may turn a link as far as they like.
+    ``pull``: a point by which the guess is dragged before: one unknown changes so that it comes as
+    near as it can to ``x``, ``y``.
     """
 
     guess: dict[str, float]
     at: dict[str, float]
     full_steps: bool = False
     max_steps: int = 50
+    pull: str = ""
+    x: float = 0.0
+    y: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -52,6 +52,18 @@ class Solvable(Protocol):
     ) -> Iterates:
         """Newton-Raphson from a guess, step by step."""
 
+    def guessed_points(self) -> tuple[str, ...]:
+        """The points that a guess places."""
+
+    def pulled_guess(
+        self,
+        point: str,
+        place: tuple[float, float],
+        guess: Mapping[str, float] | None = None,
+        at: At = None,
+    ) -> dict[str, float]:
+        """A guess that brings a point near a place."""
+
     def nearest_assembly(self, at: At = None) -> NearestAssembly:
         """As near to closing as it gets."""
 

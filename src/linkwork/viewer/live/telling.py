@@ -8,8 +8,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from linkwork.equations.notation import PlainText
 from linkwork.equations.writing import EquationSheet
 from linkwork.foundation.errors import MechanismError, key_text
+from linkwork.mechanism.contacts import Weld
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.linkage import GROUND, PART_KINDS, Linkage
 from linkwork.mechanism.loops import Loops
 from linkwork.mechanism.quantities import Quantity, quantities
 from linkwork.results.configurations import Configurations
@@ -25,11 +26,13 @@ __all__ = [
     "changeable_numbers",
     "configurations_found",
     "driven_inputs",
+    "drives_of",
     "form_of",
     "links_of",
     "loop_texts",
     "motion_found",
     "newton_shown",
+    "parts_of",
     "position_found",
     "problems_found",
     "sketched_points",
@@ -115,11 +118,18 @@ def configurations_found(found: Configurations) -> tell.ConfigurationsFound:
     )
 
 
-def newton_shown(shown: Iterates) -> tell.NewtonShown:
-    """The iterates and their end."""
+def newton_shown(
+    shown: Iterates, guess: Mapping[str, float], guessed: tuple[str, ...]
+) -> tell.NewtonShown:
+    """The iterates and their end.
+
+    ``guess`` is what of the mechanism's own was changed, ``guessed`` the points that it places.
+    """
     position = shown.position
     trouble = None if position.failure is None else position.failure.trouble
     return tell.NewtonShown(
+        guess=dict(guess),
+        guessed=guessed,
         iterates=tuple(map(_iterate, shown.iterates)),
         status=position.status.name,
         trouble="" if trouble is None else trouble.name,
@@ -238,6 +248,26 @@ def links_of(description: Description) -> tuple[tell.Link, ...]:
     """The links that a file names."""
     links: Mapping[str, tuple[str, ...]] = getattr(description, "links", {})
     return tuple(tell.Link(name=name, points=tuple(points)) for name, points in links.items())
+
+
+def parts_of(description: Description) -> tuple[str, ...]:
+    """What a linkage is made of besides points and links, by name."""
+    if not isinstance(description, Linkage):
+        return ()
+    parts = [part for table in PART_KINDS for part in getattr(description, table)]
+    return tuple(" ".join(p.links) if isinstance(p, Weld) else str(p.name) for p in parts)
+
+
+def drives_of(sheet: EquationSheet, description: Description) -> tuple[tell.Drive, ...]:
+    """What could be driven: links, displacements and lengths of a linkage, else any variable."""
+    if isinstance(description, Linkage):
+        named = [("link", name) for name in description.links if name != GROUND]
+        named += [("slider", slider.name) for slider in description.sliders]
+        named += [("slider", slot.name) for slot in description.slots]
+        named += [("cylinder", part.name) for part in description.cylinders]
+    else:
+        named = [("variable", variable.name) for variable in sheet.equations.variables]
+    return tuple(tell.Drive(kind=kind, name=name) for kind, name in named)
 
 
 def loop_texts(sheet: EquationSheet) -> tuple[str, ...]:

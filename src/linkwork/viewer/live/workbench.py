@@ -228,8 +228,11 @@ class Workbench:
         options = NewtonOptions(max_steps=request.max_steps)
         if request.full_steps:
             options = replace(options, largest_turn=math.inf)
-        shown = self._mechanism.iterates(request.guess, request.at or None, options=options)
-        return [telling.newton_shown(shown)]
+        mechanism, guess, at = self._mechanism, request.guess, request.at or None
+        if request.pull:
+            guess = mechanism.pulled_guess(request.pull, (request.x, request.y), guess, at)
+        shown = mechanism.iterates(guess, at, options=options)
+        return [telling.newton_shown(shown, guess, mechanism.guessed_points())]
 
     # The text and what is solved from it
 
@@ -346,6 +349,8 @@ class Workbench:
             inputs=telling.driven_inputs(sheet, description),
             points=telling.sketched_points(description),
             links=telling.links_of(description),
+            parts=telling.parts_of(description),
+            drives=telling.drives_of(sheet, description),
             traced=description.trace,
             equations=telling.loop_texts(sheet),
         )
