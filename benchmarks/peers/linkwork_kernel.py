@@ -26,20 +26,21 @@ class LinkworkKernel(Peer):
     distribution = "linkwork"
     module = "linkwork"
 
-    def __init__(self, *, certify: bool) -> None:
-        self.certify = certify
-        self.name = "kernel, certified" if certify else "kernel"
+    def __init__(self, *, certify: bool, compiled: bool) -> None:
+        self.certify, self.compiled = certify, compiled
+        words = ["compiled"] * compiled + ["certified"] * certify
+        self.name = ", ".join(["kernel", *words])
 
     def cannot(self, work: Work) -> str:
         return "" if len(work.members) == 1 else "one mechanism only"
 
     def prepare(self, work: Work) -> Prepared:
         family = family_of(work)
-        motion = family.sweep(certify=self.certify, threads=1, specialised=False)
+        motion = family.sweep(certify=self.certify, threads=1, specialised=self.compiled)
         model = family.designs.base
         path = Path.of(model)
         assert path is not None
-        march = path.march(family.designs, self.certify, 1, Gear(specialised=False))
+        march = path.march(family.designs, self.certify, 1, Gear(specialised=self.compiled))
         t = model.rows[:, path.lead]
         t = np.ascontiguousarray(t[::-1] if path.falling else t)
         unknowns = len(model.equations.unknowns)
