@@ -58,11 +58,11 @@ export class Arrows {
   private vectors(view: MotionView): void {
     const vectors = view.data.vectors;
     for (const vector of vectors) this.add(toneClass(vector.tone, this.data), vector.name);
-    this.ends = (row) =>
-      vectors.map(({ start, end }) => {
-        const [a, b] = [view.points[start]!, view.points[end]!];
-        return [a.x[row]!, a.y[row]!, b.x[row]!, b.y[row]!];
-      });
+    const ends = vectors.map(({ start, end, course }) => {
+      const [a, b] = [view.points[start], view.points[end]];
+      return a && b ? [a.x, a.y, b.x, b.y] : course.map((column) => view.numbers(column));
+    });
+    this.ends = (row) => ends.map((columns) => columns.map((values) => values[row]!));
   }
 
   private velocities(view: MotionView): void {

@@ -1,6 +1,6 @@
 // A motion as arrays over its rows: what the drawing, the plots and the table read.
 
-import type { Column, MotionData, Part, PointData } from "./page_data";
+import type { Column, MotionData, PackedColumn, Part, PointData } from "./page_data";
 import { dense, unpacked } from "./unpack";
 
 /** A frame in one row: where its origin is, and how it is turned [rad]. */
@@ -84,10 +84,15 @@ export class MotionView {
     };
   }
 
+  /** A column of all rows. */
+  numbers(column: PackedColumn): Float64Array {
+    return unpacked(column, this.found);
+  }
+
   /** The coordinates of a shape that changes its form. */
   course(part: Part): Course {
     return {
-      corners: part.course.map((column) => unpacked(column, this.found)),
+      corners: part.course.map((column) => this.numbers(column)),
       shown: dense(part.shown!),
     };
   }

@@ -7,7 +7,7 @@ import { stepTowards, type Step } from "./drag";
 import { Drawing } from "./drawing";
 import { MotionView } from "./motion";
 import { measured } from "./numbers";
-import type { PageData } from "./page_data";
+import type { MotionData, PageData } from "./page_data";
 import { Player } from "./player";
 import { html, say } from "./svg";
 import { RowTable } from "./table";
@@ -69,6 +69,12 @@ export function mount(element: HTMLElement, data: PageData, hooks: Hooks = {}): 
 /** The box around two boxes. */
 function around(one: readonly number[], other: readonly number[]): number[] {
   return one.map((side, k) => (k < 2 ? Math.min : Math.max)(side, other[k]!));
+}
+
+/** A motion with the vectors between points that it had before, if it says nothing of vectors. */
+function withVectors(motion: MotionData, before: MotionData | undefined): MotionData {
+  if (motion.vectors.length || !before) return motion;
+  return { ...motion, vectors: before.vectors.filter(({ course }) => !course.length) };
 }
 
 function checked(data: PageData): PageData {
@@ -147,10 +153,11 @@ class Page implements Mounted {
     if (steady) this.pass(performance.now(), false);
     const here = this.input;
     const index = this.player.at;
-    const { view, stroke, pin, text } = this.data;
+    const { view, stroke, pin, text, motions } = this.data;
     this.data = checked(data);
     if (steady) {
-      this.data = { ...data, view: around(view, data.view), stroke, pin, text };
+      const kept = data.motions.map((motion, k) => withVectors(motion, motions[k]));
+      this.data = { ...data, view: around(view, data.view), stroke, pin, text, motions: kept };
       this.steady = performance.now();
     }
     this.views = [];
@@ -311,6 +318,7 @@ class Page implements Mounted {
     toggle(box, "Paths", true, (on) => this.drawing.toggle("paths", on));
     toggle(box, "Names", true, (on) => this.drawing.toggle("names", on));
     this.arrows.forEach((arrows, k) => {
+      if (k === 0 && !this.data.motions.some((motion) => motion.vectors.length)) return;
       toggle(box, ["Vectors", "Velocities"][k]!, false, (on) => {
         arrows.shown = on;
         if (k === 0) this.drawing.dim(on);

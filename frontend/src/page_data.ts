@@ -144,10 +144,11 @@ export interface TurnData {
   readonly angle: PackedColumn;
 }
 
-/** A vector from one point to another, by their numbers, with its name. */
+/** A vector of a loop equation with its name, from one point to another by their numbers. Where it does not lie between points these are -1, and `course` has x and y of its tail and tip. */
 export interface VectorData {
   readonly name: string;
   readonly start: number;
   readonly end: number;
   readonly tone: number;
+  readonly course: readonly PackedColumn[];
 }

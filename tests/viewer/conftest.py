@@ -43,8 +43,8 @@ def open_page(browser: object, tmp_path: Path) -> Iterator[Callable[..., object]
 
     def opened(motions: dict[str, lw.Motion], **options: object) -> object:
         target = tmp_path / "page.html"
-        equations = options.pop("equations", ())
-        target.write_text(offline_page(motion_page(motions, equations=equations)), "utf-8")
+        shown = {key: options.pop(key) for key in ("equations", "loops") if key in options}
+        target.write_text(offline_page(motion_page(motions, **shown)), "utf-8")  # type: ignore[arg-type]
         settings = {"reduced_motion": "reduce", "viewport": {"width": 1280, "height": 800}}
         context = browser.new_context(offline=True, **(settings | options))  # type: ignore[attr-defined]
         contexts.append(context)

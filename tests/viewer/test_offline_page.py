@@ -165,7 +165,7 @@ def test_choosing_a_circuit_shows_it_at_the_same_input(open_page: Open) -> None:
 def test_paths_names_vectors_and_velocities_can_be_shown_and_hidden(
     open_page: Open, jansen: lw.Motion
 ) -> None:
-    page = open_page({"motion": jansen})
+    page = open_page({"motion": jansen}, loops=lw.example("jansen-leg").moving_loops)
     page.evaluate("linkwork.goToRow(40)")
     trace, name = page.locator(".r-trace").first, page.locator("text.r-label").first
     for what, shape in (("Paths", trace), ("Names", name)):
@@ -179,7 +179,12 @@ def test_paths_names_vectors_and_velocities_can_be_shown_and_hidden(
     drawn = complex(x1 - x0, y0 - y1)
     assert drawn / abs(drawn) == pytest.approx(velocity / abs(velocity), abs=1e-4)
     page.get_by_label("Vectors").check()
-    assert page.locator(".lw-vectors .shaft").first.is_visible()
+    arrow = page.locator(".lw-vectors g", has_text="AB∠").first
+    ends = arrow.locator(".shaft").get_attribute("d")
+    x0, y0, x1, y1 = map(float, re.findall(r"-?[\d.]+(?:e-?\d+)?", ends))
+    way = jansen.trace("B")[40] - jansen.trace("A")[40]
+    assert complex(x0, -y0) == pytest.approx(jansen.trace("A")[40], rel=1e-4)
+    assert (x1 - x0) / (y0 - y1) == pytest.approx(way.real / way.imag, rel=1e-3)
 
 
 def _moving(motion: lw.Motion) -> list[str]:

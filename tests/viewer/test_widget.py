@@ -35,7 +35,9 @@ def _page(motions: dict[str, lw.Motion], **options: Any) -> Any:
 def test_its_state_is_the_data_of_the_page(circuits: dict[str, lw.Motion]) -> None:
     bar = lw.example("four-bar")
     widget = bar.widget(all_circuits=True)
-    assert widget.get_state()["page"] == _page(circuits, equations=bar.equations().mathml())
+    assert widget.get_state()["page"] == _page(
+        circuits, equations=bar.equations().mathml(), loops=bar.moving_loops
+    )
     assert widget.configuration == "circuit 1"
     assert widget.row == 0
 

@@ -83,6 +83,7 @@ def animate(
             kind,
             options=options,
             equations=mechanism.equations().mathml(),
+            loops=mechanism.moving_loops,
             progress=tell,
         )
     write_bytes(output, [content])

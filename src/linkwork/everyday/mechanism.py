@@ -128,7 +128,12 @@ class Mechanism(SolvableMechanism):
             raise InputError("all circuits are shown by a page of the mechanism's own: a .html")
         motions = self._shown(motion, all_circuits, progress)
         content = viewer.animation(
-            motions, kind, options=options, equations=self.equations().mathml(), progress=progress
+            motions,
+            kind,
+            options=options,
+            equations=self.equations().mathml(),
+            loops=self.moving_loops,
+            progress=progress,
         )
         Path(path).write_bytes(content)
 
@@ -158,7 +163,8 @@ class Mechanism(SolvableMechanism):
         if all_circuits and motion is not None:
             raise InputError("a widget shows the motion that is given, or all circuits: not both")
         motions = self._shown(motion, all_circuits)
-        return viewer.motions_widget(motions, equations=self.equations().mathml())
+        equations = self.equations().mathml()
+        return viewer.motions_widget(motions, equations=equations, loops=self.moving_loops)
 
     def _shown(
         self,

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from linkwork.results.configurations import Configurations
     from linkwork.results.iterates import Iterates
     from linkwork.results.nearest_assembly import NearestAssembly
+    from linkwork.results.vector_loop import MovingLoop
 
 __all__ = ["SolvableMechanism"]
 
@@ -207,6 +208,10 @@ class SolvableMechanism:
         if renewed is None:
             renewed = motion.sweep(self.model, certify=False, explained=False)
         return renewed
+
+    def moving_loops(self, cycle: Motion) -> tuple[MovingLoop, ...]:
+        """The loop equations over a motion, as vectors; none if there are no loops."""
+        return motion.moving_loops(self.model, cycle)
 
     def nearest_assembly(self, at: float | Mapping[str, float] | None = None) -> NearestAssembly:
         """As near to closing as it gets; see :func:`linkwork.motion.nearest_assembly`."""

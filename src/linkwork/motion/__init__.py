@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from linkwork.motion.renewing import renewed
     from linkwork.motion.solving import solve
     from linkwork.motion.sweeping import sweep
-    from linkwork.motion.vector_loops import vector_loops
+    from linkwork.motion.vector_loops import moving_loops, vector_loops
 else:
     __getattr__ = loader(
         __name__,
@@ -40,7 +40,7 @@ else:
             "renewing": ("renewed",),
             "solving": ("solve",),
             "sweeping": ("sweep",),
-            "vector_loops": ("vector_loops",),
+            "vector_loops": ("moving_loops", "vector_loops"),
         },
     )
 
@@ -58,6 +58,7 @@ __all__ = [
     "inversions",
     "iterates",
     "model_of",
+    "moving_loops",
     "nearest_assembly",
     "pulled_guess",
     "renewed",

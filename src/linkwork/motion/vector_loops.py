@@ -1,21 +1,23 @@
-"""The terms of the loop equations at a position, as vectors for a diagram."""
+"""The terms of the loop equations at a position or over a motion, as vectors for a diagram."""
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Mapping
+
+import numpy as np
 
 from linkwork.equations.model import Term
 from linkwork.equations.notation import PlainText
 from linkwork.expression.tree import Number
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.motion.model import Model
+from linkwork.results.motion import Motion
 from linkwork.results.position import Position
-from linkwork.results.quantity import Kind
-from linkwork.results.vector_loop import LoopVector, VectorLoop
+from linkwork.results.vector_loop import MovingLoop, MovingVector, VectorLoop
 
-__all__ = ["vector_loops"]
+__all__ = ["moving_loops", "vector_loops"]
 
 _PLAIN = PlainText()
 
@@ -32,34 +34,48 @@ def vector_loops(model: Model, position: Position) -> tuple[VectorLoop, ...]:
         raise InputError(f'"{model.description.name}" has no loop equations to show as vectors')
     if not position.status.ok:
         raise InputError(f'"{model.description.name}" has no position here: {position.message}')
-    values = _values(model, position)
-    shown = {variable.symbol: variable.shown for variable in model.equations.variables}
+    equations = model.equations
+    found = np.append(position.q, [position.input[v.name] for v in equations.inputs])
+    found[len(position.q) :] *= model.input_scale
+    return tuple(loop.at(0) for loop in _loops(model, found[None, :]))
+
+
+def moving_loops(model: Model, motion: Motion) -> tuple[MovingLoop, ...]:
+    """Every loop equation over the rows of a motion of the mechanism, term by term; none if it is
+    not written in loops.
+    """
+    inputs = [motion.inputs[v.name] for v in model.equations.inputs]
+    v = np.column_stack([motion.q, *inputs])
+    v[:, motion.q.shape[1] :] *= model.input_scale
+    return _loops(model, v)
+
+
+def _loops(model: Model, v: Array) -> tuple[MovingLoop, ...]:
+    """The loops at variables (N, n), internal units."""
+    equations = model.equations
+    values = {variable.symbol: v[:, k] for k, variable in enumerate(equations.variables)}
+    shown = {variable.symbol: variable.shown for variable in equations.variables}
     return tuple(
-        VectorLoop(
+        MovingLoop(
             label=loop.label,
             left=tuple(_vector(term, values, shown) for term in loop.left),
             right=tuple(_vector(term, values, shown) for term in loop.right),
         )
-        for loop in model.equations.loops
+        for loop in equations.loops
     )
 
 
-def _values(model: Model, position: Position) -> dict[str, float]:
-    """Every variable by its symbol, internal units."""
-    equations = model.equations
-    found = {v.symbol: float(x) for v, x in zip(equations.unknowns, position.q, strict=True)}
-    for variable in equations.inputs:
-        scale = model.units.scale(Kind(variable.kind))
-        found[variable.symbol] = position.input[variable.name] * scale
-    return found
-
-
-def _vector(term: Term, values: Mapping[str, float], shown: Mapping[str, str]) -> LoopVector:
-    angle = sum(weight * values[name] for name, weight in term.phase)
-    length = 1.0 if term.length is None else values[term.length]
-    return LoopVector(
+def _vector(term: Term, values: Mapping[str, Array], shown: Mapping[str, str]) -> MovingVector:
+    any_of_them = next(iter(values.values()))
+    angle = np.zeros_like(any_of_them)
+    for name, weight in term.phase:
+        angle = angle + weight * values[name]
+    length = np.where(np.isnan(any_of_them), np.nan, 1.0)
+    if term.length is not None:
+        length = values[term.length]
+    return MovingVector(
         name=_name(term, shown),
-        value=complex(term.value * length * cmath.exp(1j * angle)),
+        values=term.value * length * np.exp(1j * angle),
         backwards=term.sign < 0,
     )
 

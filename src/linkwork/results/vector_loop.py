@@ -1,10 +1,12 @@
-"""The loop equations of one position as vectors: what a vector diagram shows."""
+"""The loop equations of a position or a motion as vectors: what a vector diagram shows."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["LoopVector", "VectorLoop"]
+from linkwork.foundation.arrays import ComplexArray
+
+__all__ = ["LoopVector", "MovingLoop", "MovingVector", "VectorLoop"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,3 +38,36 @@ class VectorLoop:
     label: str
     left: tuple[LoopVector, ...]
     right: tuple[LoopVector, ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MovingVector:
+    """One term of a loop equation over the rows of a motion: ``values`` (N,), NaN where there is no
+    position; else as :class:`LoopVector`.
+    """
+
+    name: str
+    values: ComplexArray
+    backwards: bool = False
+
+    def at(self, row: int) -> LoopVector:
+        """The vector in a row."""
+        value = complex(self.values[row])
+        return LoopVector(name=self.name, value=value, backwards=self.backwards)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MovingLoop:
+    """A loop equation over the rows of a motion."""
+
+    label: str
+    left: tuple[MovingVector, ...]
+    right: tuple[MovingVector, ...]
+
+    def at(self, row: int) -> VectorLoop:
+        """The loop in a row."""
+        return VectorLoop(
+            label=self.label,
+            left=tuple(vector.at(row) for vector in self.left),
+            right=tuple(vector.at(row) for vector in self.right),
+        )

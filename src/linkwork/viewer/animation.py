@@ -17,7 +17,7 @@ from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
 from linkwork.viewer.film_file import FILM_FORMATS, check_film, film_bytes
 from linkwork.viewer.offline_page import offline_page
-from linkwork.viewer.page_building import motion_page
+from linkwork.viewer.page_building import Loops, motion_page
 from linkwork.viewer.play_order import play_order
 
 __all__ = [
@@ -88,6 +88,7 @@ def animation(
     *,
     options: FilmOptions | None = None,
     equations: Sequence[tuple[str, str]] = (),
+    loops: Loops | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> bytes:
     """The content of a file that shows motions of one mechanism.
@@ -102,6 +103,8 @@ def animation(
         For films.
     equations : sequence of (str, str)
         Labels and MathML of the loop equations, for a page.
+    loops : callable, optional
+        See :func:`~linkwork.viewer.page_building.motion_page`.
     progress : callable, optional
         Told the share of a film that is done, 0 to 1.
 
@@ -111,7 +114,7 @@ def animation(
         If there is nothing to draw, or the format cannot be written here.
     """
     if kind == "html":
-        return offline_page(motion_page(motions, equations=equations)).encode()
+        return offline_page(motion_page(motions, equations=equations, loops=loops)).encode()
     motion = next((motion for motion in motions.values() if motion.found.any()), None)
     if motion is None:
         raise InputError("there is no motion to show: no position was found")

@@ -26,6 +26,7 @@ _RATE_DIGITS = 7
 _BITS = 34  # of the largest value: ten digits
 _ORDERS = range(8)
 _LARGEST = 2.0**52
+_LEAST = -1022  # power of two of the smallest number that is written in full
 
 
 class Pack(Protocol):
@@ -55,7 +56,8 @@ def packed(
     if rate:
         kept, step = _clipped(kept)
     largest = float(np.abs(kept).max(initial=0.0))
-    size = 2.0 ** (math.floor(math.log2(largest)) + 1 - _BITS) if largest > 0 else 1.0
+    power = math.floor(math.log2(largest)) + 1 - _BITS if largest > 0 else 0
+    size = 2.0 ** max(power, _LEAST)
     chosen = size if step is None else step
     whole = np.rint(kept / chosen)
     if np.abs(whole).max(initial=0.0) > _LARGEST / 2 ** max(_ORDERS):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from importlib.metadata import version
 
@@ -18,6 +18,8 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion, Series
 from linkwork.results.quantity import Rate
+from linkwork.results.vector_loop import MovingLoop
+from linkwork.viewer.loop_arrows import loop_arrows
 from linkwork.viewer.packing import Pack, packed
 from linkwork.viewer.page_data import (
     Column,
@@ -31,10 +33,13 @@ from linkwork.viewer.page_data import (
     RowEvidence,
     ThemeData,
 )
-from linkwork.viewer.page_shapes import shapes_of, vectors_of
+from linkwork.viewer.page_shapes import shapes_of
 from linkwork.viewer.play_order import play_order
 
-__all__ = ["FORMAT", "drawn_page", "motion_page"]
+__all__ = ["FORMAT", "Loops", "drawn_page", "motion_page"]
+
+#: Gives the loop equations over a motion.
+Loops = Callable[[Motion], Sequence[MovingLoop]]
 
 #: Of the page data: the front end refuses any other.
 FORMAT = 1
@@ -47,6 +52,7 @@ def motion_page(
     motions: Mapping[str, Motion],
     *,
     equations: Sequence[tuple[str, str]] = (),
+    loops: Loops | None = None,
     like: Sequence[MovingScene] = (),
 ) -> PageData:
     """The data of a page that shows motions of one mechanism.
@@ -58,6 +64,9 @@ def motion_page(
         position was found are left out.
     equations : sequence of (str, str)
         Labels and MathML of the loop equations.
+    loops : callable, optional
+        Gives the loop equations over a motion, to be shown as vectors;
+        ``mechanism.moving_loops``.
     like : sequence of MovingScene
         The same motions drawn with other dimensions, see
         :func:`~linkwork.drawing.moving_scene.moving_scene`.
@@ -76,7 +85,7 @@ def motion_page(
         moving_scene(motion, within=within, like=old)
         for motion, old in zip(shown.values(), before, strict=True)
     ]
-    return drawn_page(shown, scenes, equations)
+    return drawn_page(shown, scenes, equations, loops=loops)
 
 
 def drawn_page(
@@ -84,6 +93,7 @@ def drawn_page(
     scenes: Sequence[MovingScene],
     equations: Sequence[tuple[str, str]] = (),
     *,
+    loops: Loops | None = None,
     pack: Pack = packed,
 ) -> PageData:
     """The data of a page from motions that are drawn already.
@@ -108,7 +118,7 @@ def drawn_page(
         pin=measures.pin,
         text=measures.text,
         motions=tuple(
-            _motion(name, motion, scene, pack)
+            _motion(name, motion, scene, () if loops is None else loops(motion), pack)
             for (name, motion), scene in zip(motions.items(), scenes, strict=True)
         ),
         light=_theme(LIGHT),
@@ -122,7 +132,9 @@ def _version() -> str:
     return version("linkwork")
 
 
-def _motion(name: str, motion: Motion, scene: MovingScene, pack: Pack) -> MotionData:
+def _motion(
+    name: str, motion: Motion, scene: MovingScene, loops: Sequence[MovingLoop], pack: Pack
+) -> MotionData:
     order, closed = play_order(motion)
     everyone = np.ones(len(order), dtype=bool)
     turns, frames, parts = shapes_of(motion, scene, pack)
@@ -137,7 +149,7 @@ def _motion(name: str, motion: Motion, scene: MovingScene, pack: Pack) -> Motion
         turns=turns,
         frames=frames,
         parts=parts,
-        vectors=tuple(vectors_of(motion)),
+        vectors=tuple(loop_arrows(loops, motion, pack)),
         driven=tuple(part.name for part in motion.skeleton.driven),
         evidence=_evidence(motion, pack),
         limits=tuple(_limits(motion)),

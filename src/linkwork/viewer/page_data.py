@@ -109,12 +109,15 @@ class Part:
 
 @dataclass(frozen=True, kw_only=True)
 class VectorData:
-    """A vector from one point to another, by their numbers, with its name."""
+    """A vector of a loop equation with its name, from one point to another by their numbers. Where
+    it does not lie between points these are -1, and ``course`` has x and y of its tail and tip.
+    """
 
     name: str
     start: int
     end: int
     tone: int
+    course: tuple[PackedColumn, ...]
 
 
 @dataclass(frozen=True, kw_only=True)

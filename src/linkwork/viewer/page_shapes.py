@@ -8,16 +8,14 @@ from collections.abc import Iterator
 import numpy as np
 
 from linkwork.drawing.attachment import STILL, Frame
-from linkwork.drawing.captions import printed_name
 from linkwork.drawing.moving_scene import Moving, MovingScene
 from linkwork.drawing.scene import XY, Arc, Disc, Hatch, Polygon, Polyline, Primitive, Text
 from linkwork.foundation.arrays import BoolArray, ComplexArray
-from linkwork.mechanism.linkage import GROUND
 from linkwork.results.motion import Motion
 from linkwork.viewer.packing import Pack
-from linkwork.viewer.page_data import FrameData, PackedColumn, Part, TurnData, VectorData
+from linkwork.viewer.page_data import FrameData, PackedColumn, Part, TurnData
 
-__all__ = ["OWN_COURSE", "shapes_of", "vectors_of"]
+__all__ = ["OWN_COURSE", "shapes_of"]
 
 #: The frame of a shape that changes its form.
 OWN_COURSE = -2
@@ -115,29 +113,3 @@ def _course(course: ComplexArray, found: BoolArray, pack: Pack) -> Iterator[Pack
 def _shown(course: ComplexArray, pack: Pack) -> PackedColumn:
     there = np.isfinite(course[:, 0].real)
     return pack(there.astype(float), np.ones(len(there), dtype=bool), step=1.0)
-
-
-def vectors_of(motion: Motion) -> Iterator[VectorData]:
-    """The vectors that loops are made of: along links, cylinders, and the lines of sliders; named
-    by their two points.
-    """
-    skeleton, points = motion.skeleton, list(motion.points)
-    driven = {part.name for part in skeleton.driven}
-    free = [bar.name for bar in skeleton.bars if bar.name not in driven]
-    tone = dict.fromkeys(driven, 0) | {name: k for k, name in enumerate(free, 1)}
-    pairs: list[tuple[str, str, str]] = []
-    for bar in skeleton.bars:
-        start, *others = dict.fromkeys(bar.points)
-        pairs += [(bar.name, start, other) for other in others]
-    pairs += [(strut.name, *strut.between) for strut in skeleton.struts]
-    pairs += [(guide.name, guide.line[0], guide.point) for guide in skeleton.guides]
-    ground = [name for name in skeleton.fixed if any(name in bar.points for bar in skeleton.bars)]
-    pairs += [(GROUND, ground[0], other) for other in ground[1:]]
-    for name, start, end in pairs:
-        if start in points and end in points:
-            yield VectorData(
-                name=printed_name(start) + printed_name(end),
-                start=points.index(start),
-                end=points.index(end),
-                tone=tone.get(name, 0 if name != GROUND else -1),
-            )

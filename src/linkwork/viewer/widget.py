@@ -16,7 +16,7 @@ import numpy as np
 from linkwork.foundation.errors import MissingPackageError, choices
 from linkwork.results.motion import Motion
 from linkwork.viewer.offline_page import page_json
-from linkwork.viewer.page_building import motion_page
+from linkwork.viewer.page_building import Loops, motion_page
 
 __all__ = ["motion_widget", "motions_widget"]
 
@@ -27,7 +27,10 @@ def motion_widget(motion: Motion) -> Any:
 
 
 def motions_widget(
-    motions: Mapping[str, Motion], *, equations: Sequence[tuple[str, str]] = ()
+    motions: Mapping[str, Motion],
+    *,
+    equations: Sequence[tuple[str, str]] = (),
+    loops: Loops | None = None,
 ) -> Any:
     """Motions of one mechanism, to choose from, to play and to drag.
 
@@ -38,6 +41,8 @@ def motions_widget(
         position was found are left out.
     equations : sequence of (str, str)
         Labels and MathML of the loop equations.
+    loops : callable, optional
+        See :func:`~linkwork.viewer.page_building.motion_page`.
 
     Returns
     -------
@@ -53,7 +58,7 @@ def motions_widget(
         Without anywidget.
     """
     kind = _widget_class()
-    page = json.loads(page_json(motion_page(motions, equations=equations)))
+    page = json.loads(page_json(motion_page(motions, equations=equations, loops=loops)))
     rows = {name: np.flatnonzero(m.found) for name, m in motions.items() if m.found.any()}
     return kind(page, {name: frozenset(found.tolist()) for name, found in rows.items()})
 

@@ -8,7 +8,7 @@ from linkwork.drawing.moving_scene import MovingScene, moving_scene
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
 from linkwork.viewer.packing import shortened, unpressed
-from linkwork.viewer.page_building import drawn_page
+from linkwork.viewer.page_building import Loops, drawn_page
 from linkwork.viewer.page_data import PageData
 
 __all__ = ["MotionPicture"]
@@ -23,11 +23,17 @@ class MotionPicture:
         self._scene: MovingScene | None = None
 
     def page(
-        self, motion: Motion, equations: Sequence[tuple[str, str]] = (), *, brief: bool = False
+        self,
+        motion: Motion,
+        equations: Sequence[tuple[str, str]] = (),
+        loops: Loops | None = None,
+        *,
+        brief: bool = False,
     ) -> PageData | None:
         """The data of a page; ``None`` where no position was found, or nothing has a place.
 
-        ``brief``: numbers to seven digits, for a picture that is renewed in a moment.
+        ``brief``: numbers to seven digits and no vectors, for a picture that is renewed in a moment:
+        vectors between points stay with them.
         """
         if not motion.found.any() or not motion.points:
             return None
@@ -37,5 +43,9 @@ class MotionPicture:
             return None
         name = next((branch for branch in motion.branch if branch), motion.mechanism)
         return drawn_page(
-            {name: motion}, [self._scene], equations, pack=shortened if brief else unpressed
+            {name: motion},
+            [self._scene],
+            equations,
+            loops=None if brief else loops,
+            pack=shortened if brief else unpressed,
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 from linkwork.equations.writing import EquationSheet
@@ -13,6 +13,7 @@ from linkwork.results.iterates import Iterates
 from linkwork.results.motion import Motion
 from linkwork.results.nearest_assembly import NearestAssembly
 from linkwork.results.position import Position
+from linkwork.results.vector_loop import MovingLoop
 
 __all__ = ["Read", "Solvable"]
 
@@ -51,6 +52,9 @@ class Solvable(Protocol):
         options: NewtonOptions | None = None,
     ) -> Iterates:
         """Newton-Raphson from a guess, step by step."""
+
+    def moving_loops(self, cycle: Motion) -> Sequence[MovingLoop]:
+        """The loop equations over a motion."""
 
     def guessed_points(self) -> tuple[str, ...]:
         """The points that a guess places."""

@@ -299,7 +299,7 @@ class Workbench:
             return []
         self._motion, self._owed = motion, False
         equations = () if live else self._mechanism.equations().mathml()
-        page = self._picture.page(motion, equations, brief=live)
+        page = self._picture.page(motion, equations, self._mechanism.moving_loops, brief=live)
         events: Events = [telling.motion_found(motion, live=live, message=message, page=page)]
         if all(status is Status.NO_START for status in motion.status):
             failure = motion.failure
