@@ -384,3 +384,39 @@ def test_without_a_motion_the_picture_holds_the_line_to_roll_on():
     # What goes beyond are symbols, a few radii of a pin wide, and that margin.
     assert scene.box.left > scene.within.left - 5 * scene.measures.pin
     assert scene.box.right < scene.within.right + 5 * scene.measures.pin
+
+
+@pytest.mark.parametrize(("name", "turn"), [("boxer-engine", 180.0), ("sun-and-planet", 0.0)])
+def test_welded_links_have_their_corner_filled(name: str, turn: float) -> None:
+    mechanism = lw.example(name)
+    position = mechanism.solve()
+    scene = mechanism.scene()
+    (joint,) = mechanism.model.skeleton.rigid
+    (corner,) = scene.select(Polygon, Role.WELD)
+    assert corner.of == " ".join(joint.links)
+    place, *arc = (complex(*xy) for xy in corner.points)
+    assert place == pytest.approx(complex(*position.points[joint.point]))
+    spread = math.degrees(abs(cmath.phase((arc[-1] - place) / (arc[0] - place))))
+    assert spread == pytest.approx(turn or 50.0)
+
+
+def test_links_that_are_welded_only_have_no_pin_there() -> None:
+    text = """format = 1
+[points]
+O = [0, 0]
+A = [10, 0]
+B = [10, 8]
+[links]
+ground = ["O"]
+arm = ["O", "A"]
+hook = ["A", "B"]
+[[welds]]
+links = ["arm", "hook"]
+[input]
+link = "arm"
+"""
+    scene = lw.loads(text).scene()
+    assert [disc.of for disc in scene.select(Disc, Role.PIN)] == ["O"]
+    (corner,) = scene.select(Polygon, Role.WELD)
+    start, end = (complex(*corner.points[k]) - 10 for k in (1, -1))
+    assert {round(math.degrees(cmath.phase(z))) for z in (start, end)} == {180, 90}

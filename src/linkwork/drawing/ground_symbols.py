@@ -11,7 +11,10 @@ from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Hatch, Polygon, Polyline, Primitive, Role, xy
 
-__all__ = ["ground_symbols", "hatching"]
+__all__ = ["DEPTH", "ground_symbols", "hatching"]
+
+_FLOOR = 3.1  # below the pivot, in radii of its pin
+DEPTH = _FLOOR + 1.4  #: To the lower end of the hatching.
 
 
 def ground_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
@@ -26,7 +29,7 @@ def ground_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
 
 
 def _pivot(name: str, place: complex, measures: Measures) -> Iterator[Primitive]:
-    half, floor, depth = 1.9 * measures.pin, 2.9 * measures.pin, 3.1 * measures.pin
+    half, floor, depth = 1.9 * measures.pin, 2.9 * measures.pin, _FLOOR * measures.pin
     left, right = place - half - 1j * depth, place + half - 1j * depth
     yield Polygon(role=Role.GROUND, of=name, points=(xy(place), xy(left), xy(right)))
     start, end = place - floor - 1j * depth, place + floor - 1j * depth

@@ -7,7 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from linkwork.drawing.ground_symbols import DEPTH
 from linkwork.drawing.label_placement import Choice, point_names
+from linkwork.drawing.link_symbols import pin_radius
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
@@ -17,6 +19,7 @@ from linkwork.foundation.arrays import Array
 __all__ = ["labels_as_before", "lasting_labels"]
 
 _NAME_ON_NAME = 100.0
+_BELOW = 0.4  # the penalty for standing under the ground symbol
 _CLEAR = 0.12  # left free around every name [em]
 _WORST = 0.5  # share of the worst row in the penalty of a place, beside the mean of all
 
@@ -39,14 +42,16 @@ def lasting_labels(
     :func:`~linkwork.drawing.label_placement.placed`; the penalty of a place is the mean of its
     penalties in all rows, and some of the worst.
     """
-    rows = [point_names(pose, measures) for pose in poses]
+    rows = [
+        [_with_place_below(choice, pose, measures) for choice in point_names(pose, measures)]
+        for pose in poses
+    ]
     boxes = [_boxes([row[k] for row in rows]) for k in range(len(rows[0]))]
-    # (rows, names, places): what every place of every name covers
-    cost = np.array([
-        _covered(Obstacles.of(shapes), [own[row] for own in boxes])
-        for row, shapes in enumerate(drawn)
-    ])  # fmt: skip
-    fixed = [np.array(choice.cost) + _over_rows(cost[:, k]) for k, choice in enumerate(rows[0])]
+    obstacles = [Obstacles.of(shapes) for shapes in drawn]
+    fixed = [
+        np.array(choice.cost) + _over_rows(_covered(obstacles, own))
+        for choice, own in zip(rows[0], boxes, strict=True)
+    ]
     chosen = _settled(fixed, boxes)
     return [choice.places[place] for choice, place in zip(rows[0], chosen, strict=True)]
 
@@ -76,9 +81,19 @@ def _boxes(choices: Sequence[Choice]) -> Array:
     ])  # fmt: skip
 
 
-def _covered(obstacles: Obstacles, boxes: Sequence[Array]) -> Array:
-    """What the places (p, 4) of each of n names cover, (n, p)."""
-    return np.array([obstacles.costs(own[:, None, :]) for own in boxes])
+def _with_place_below(choice: Choice, pose: Pose, measures: Measures) -> Choice:
+    """A pivot's name may stand under its ground symbol too, where a crank seldom comes by."""
+    text = choice.places[0]
+    if text.of not in pose.skeleton.fixed:
+        return choice
+    drop = DEPTH * pin_radius(pose, text.of, measures) + 0.5 * measures.pin + 0.76 * text.height
+    below = replace(text, offset=(0.0, -drop), align=0)
+    return Choice((*choice.places, below), (*choice.cost, _BELOW))
+
+
+def _covered(obstacles: Sequence[Obstacles], boxes: Array) -> Array:
+    """What the places of a name cover in every row: boxes (rows, places, 4), (rows, places)."""
+    return np.array([o.costs(own[:, None, :]) for o, own in zip(obstacles, boxes, strict=True)])
 
 
 def _over_rows(cost: Array) -> Array:

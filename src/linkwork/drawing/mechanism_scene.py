@@ -32,6 +32,7 @@ from linkwork.drawing.scene_options import SceneOptions
 from linkwork.drawing.trace_path import trace_symbols
 from linkwork.drawing.vector_polygon import Edge
 from linkwork.drawing.vector_symbols import vector_edges
+from linkwork.drawing.weld_symbols import weld_symbols
 from linkwork.drawing.wheel_symbols import wheel_symbols
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.results.motion import Motion
@@ -161,6 +162,7 @@ def symbols(
     yield from link_symbols(pose, track_gaps(found, measures))
     yield from cylinder_symbols(pose, measures)
     yield from trace_symbols(pose, names, measures)
+    yield from weld_symbols(pose, measures)
     yield from pin_symbols(pose, measures)
 
 

@@ -58,6 +58,7 @@ class Role(Enum):
     SLIDER = "a sliding block"
     CYLINDER = "the barrel of a cylinder"
     LINK = "a link drawn as a bar"
+    WELD = "a rigid joint of two links"
     PIN = "a pin joint"
     POINT = "a named point that joins nothing"
     TRACED = "a point whose path is shown"

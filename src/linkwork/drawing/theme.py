@@ -131,6 +131,7 @@ def _styles(c: _Inks) -> FrozenDict[Role, Style]:
             Role.SLIDER: Style(line=c.ink, width=1.3, fill=c.block),
             Role.LINK: Style(line="tone", width=2.8),
             Role.CYLINDER: Style(line="tone", width=1.4, fill=c.page),
+            Role.WELD: Style(line=c.ink, width=1.0, fill=c.ink),
             Role.PIN: Style(line=c.ink, width=1.4, fill=c.page),
             Role.POINT: Style(fill=c.ink),
             Role.TRACED: Style(fill=c.ink),

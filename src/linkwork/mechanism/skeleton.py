@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from linkwork.mechanism.contact_shapes import ContactShapes
 from linkwork.mechanism.linkage import GROUND, Linkage
 
-__all__ = ["Bar", "DrivenPart", "Guide", "Skeleton", "Strut"]
+__all__ = ["Bar", "DrivenPart", "Guide", "RigidJoint", "Skeleton", "Strut"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,6 +45,14 @@ class Strut:
 
 
 @dataclass(frozen=True, kw_only=True)
+class RigidJoint:
+    """Two links that are welded together at a point that both carry."""
+
+    links: tuple[str, str]
+    point: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class DrivenPart:
     """What an input drives: ``kind`` is link, slider or cylinder; ``pivot`` a pin of the link.
 
@@ -69,6 +77,7 @@ class Skeleton:
     pins: tuple[str, ...] = ()
     guides: tuple[Guide, ...] = ()
     struts: tuple[Strut, ...] = ()
+    rigid: tuple[RigidJoint, ...] = ()
     driven: tuple[DrivenPart, ...] = ()
     traced: tuple[str, ...] = ()
     contacts: ContactShapes = field(default_factory=ContactShapes)
@@ -85,6 +94,7 @@ class Skeleton:
         guided = {slot.point for slot in linkage.slots} | {curve.point for curve in linkage.curves}
         contacts = ContactShapes.of(linkage, outlines)
         guided |= {disc.center for disc in contacts.discs if disc.kind == "roller"}
+        rigid = tuple(_rigid_joints(linkage))
         return cls(
             fixed=linkage.links[GROUND],
             bars=tuple(
@@ -92,7 +102,7 @@ class Skeleton:
                 for name, points in linkage.links.items()
                 if name != GROUND
             ),
-            pins=tuple(p for p, links in carriers.items() if len(links) > 1 or p in guided),
+            pins=tuple(p for p, n in _bodies(carriers, rigid).items() if n > 1 or p in guided),
             guides=tuple(
                 [Guide(name=s.name, point=s.point, on=s.on, line=s.line) for s in linkage.slots]
                 + [
@@ -110,6 +120,7 @@ class Skeleton:
                 ]
             ),
             struts=tuple(Strut(name=c.name, between=c.between) for c in linkage.cylinders),
+            rigid=rigid,
             driven=tuple(_driven_parts(linkage, carriers)),
             traced=linkage.trace,
             contacts=contacts,
@@ -130,6 +141,18 @@ class Skeleton:
         joined = [p for points in links.values() for p in points]
         pins = tuple(p for p in dict.fromkeys(joined) if joined.count(p) + (p in fixed) > 1)
         return cls(fixed=fixed, bars=bars, pins=pins, driven=driven, traced=traced)
+
+
+def _rigid_joints(linkage: Linkage) -> Iterator[RigidJoint]:
+    for weld in linkage.welds:
+        first, second = (linkage.links[name] for name in weld.links)
+        yield RigidJoint(links=weld.links, point=next(p for p in first if p in second))
+
+
+def _bodies(carriers: Mapping[str, list[str]], rigid: tuple[RigidJoint, ...]) -> Mapping[str, int]:
+    """How many bodies meet at each point: links that are welded there are one."""
+    welded = [joint.point for joint in rigid]
+    return {point: len(links) - welded.count(point) for point, links in carriers.items()}
 
 
 def _driven_parts(linkage: Linkage, carriers: Mapping[str, list[str]]) -> list[DrivenPart]:

@@ -32,7 +32,7 @@ class MotionPicture:
     ) -> PageData | None:
         """The data of a page; ``None`` where no position was found, or nothing has a place.
 
-        ``brief``: numbers to seven digits and no vectors, for a picture that is renewed in a moment:
+        ``brief``: numbers to seven digits and no vectors, for a picture that is soon renewed;
         vectors between points stay with them.
         """
         if not motion.found.any() or not motion.points:
