@@ -75,6 +75,7 @@ export class Chart {
   draw(row: number): void {
     const value = this.series.values[row]!;
     const input = this.view.input.values[row]!;
+    if (!Number.isFinite(value)) return; // a row that was not found before, on the way of a drag
     const x = this.x.at(input);
     put(this.dot, { cx: x, cy: this.y.at(value) });
     put(this.line, { x1: x, x2: x });

@@ -104,6 +104,7 @@ class Page implements Mounted {
   private last = 0;
   private drawn = -1;
   private steady = -Infinity;
+  private updates = 0;
   private spoken = 0;
   private readonly gone = new AbortController();
   private readonly sized = new ResizeObserver(() => this.drawing.fit());
@@ -215,8 +216,11 @@ class Page implements Mounted {
     this.drawing.show(view);
     for (const arrows of this.arrows) arrows.show(view);
     this.transport.show(view);
-    for (const chart of this.charts) chart.show(view, steady);
-    this.table.show(view);
+    // While something is dragged people look at the drawing: numbers follow at half the rate.
+    if (!steady || this.updates++ % 2 === 0) {
+      for (const chart of this.charts) chart.show(view, steady);
+      this.table.show(view);
+    }
     say(this.summary, view.data.summary);
     if (this.choice) this.choice.selectedIndex = motion;
     this.player.restart(view.order.length, view.data.closed, index);
