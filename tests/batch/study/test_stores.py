@@ -11,12 +11,15 @@ import time
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray
 
 import linkwork as lw
+from linkwork.batch import Family
+from linkwork.batch.family_motion import FamilyMotion
 from linkwork.batch.study import crew, ledger, run_study, summary_of
 from linkwork.batch.study.job import Job, computed
 from linkwork.foundation.errors import InputError
@@ -311,6 +314,28 @@ def test_a_worker_of_another_version_refuses(
     monkeypatch.setattr("linkwork.batch.study.plan_file.linkwork_version", lambda: "7.8.9")
     with pytest.raises(InputError, match=r"^the study was started with Linkwork 7\.8\.9, a worker"):
         run_study(study(*FEW), tmp_path / "out.zarr", workers=2)
+
+
+def test_the_device_of_a_plan_computes_its_designs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan = study(("seed = 1", 'seed = 1\ndevice = "gpu"'))
+    with pytest.raises(InputError):  # numba-cuda or a card is missing
+        run_study(plan, tmp_path / "none.zarr")
+    assert not (tmp_path / "none.zarr").exists()
+    asked: list[str] = []
+    sweep = Family.sweep
+
+    def noted(self: Family, *, device: str = "cpu", **options: Any) -> FamilyMotion:
+        asked.append(device)
+        return sweep(self, **options)
+
+    monkeypatch.setattr(Family, "sweep", noted)
+    monkeypatch.setattr("linkwork.batch.study.running.graphics_card", lambda: None)
+    run_study(plan, tmp_path / "out.zarr")  # in this process: a card serves one
+    assert asked == ["gpu"] * plan.chunks
+    with pytest.raises(InputError, match="device"):
+        run_study(study(), tmp_path / "out.zarr")
 
 
 def test_another_study_is_refused_with_what_differs(whole: Path, tmp_path: Path) -> None:

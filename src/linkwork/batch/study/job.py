@@ -52,6 +52,8 @@ class Job:
     filters : Mapping[str, Condition]
         What a design has to pass, by name.
     certify : bool
+    device : str
+        ``"cpu"`` or ``"gpu"``; every worker needs one.
     version : str
         Of Linkwork; a worker with another one refuses.
     """
@@ -61,6 +63,7 @@ class Job:
     reductions: Mapping[str, Reduced]
     filters: Mapping[str, Condition]
     certify: bool
+    device: str
     version: str
 
 
@@ -103,7 +106,7 @@ def computed(job: Job, values: Mapping[str, Array | float]) -> Part:
         )
     family = family_of(_model(job.description), values)
     built = family.designs.problem == 0
-    motion = family.sweep(certify=job.certify, threads=1)
+    motion = family.sweep(certify=job.certify, threads=1, device=job.device)
     measured = Measured(motion)
     passes = {name: built & condition.holds(measured) for name, condition in job.filters.items()}
     passed = np.logical_and.reduce([built, *passes.values()])

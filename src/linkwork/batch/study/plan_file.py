@@ -117,6 +117,7 @@ class _Reader:
             reductions=FrozenDict(reductions),
             filters=FrozenDict(conditions),
             certify=self.content.get("certify", True),
+            device=self.content.get("device", "cpu"),
             version=linkwork_version(),
         )
         columns = len(model.equations.unknowns) + 4 + len(job.keep)
@@ -293,6 +294,7 @@ class _Reader:
             "reductions": {name: str(reduced) for name, reduced in job.reductions.items()},
             "filters": {name: str(condition) for name, condition in job.filters.items()},
             "certify": job.certify,
+            "device": job.device,
             "chunk": chunk,
         }
 

@@ -77,6 +77,11 @@ PLAN = Form(
             Flag(),
             "Whether every position is proved; true if left out, false is faster",
         ),
+        Key(
+            "device",
+            Text(("cpu", "gpu")),
+            "What computes: the processor, or a graphics card, whose results agree to rounding",
+        ),
         Key("chunk", Whole(1), "Designs that are computed and stored together"),
         Key(
             "keep",

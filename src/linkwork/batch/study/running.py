@@ -18,6 +18,7 @@ from linkwork.batch.study.study import Study
 from linkwork.batch.study.summary import Summary, summary_of
 from linkwork.batch.study.zarr_files import check_packages
 from linkwork.foundation.errors import InputError
+from linkwork.kernels.lanes.device_compiling import graphics_card
 
 __all__ = ["Progress", "run_study"]
 
@@ -72,7 +73,8 @@ def run_study(
     store : path
         A folder, by custom ``….zarr``. One that holds a part of the same study is gone on with.
     workers : int, optional
-        Processes on this machine; all of its cores unless given. With one there are no others.
+        Processes on this machine; all of its cores unless given, one for a graphics card. With
+        one there are no others.
     scheduler : str, optional
         Address of a Dask scheduler, ``tcp://host:8786``, whose workers compute instead.
     fresh : bool
@@ -98,6 +100,8 @@ def run_study(
     if workers is not None and workers < 1:
         raise InputError(f"a study needs at least one worker, got {workers}")
     study = plan if isinstance(plan, Study) else read_plan(plan)
+    if study.job.device == "gpu" and scheduler is None:
+        graphics_card()  # or the reason why there is none, before a store is begun
     with opened(study, Path(store), fresh=fresh) as target:
         tell = _teller(study, target.done, progress)
         tell()
@@ -119,7 +123,8 @@ def _crew(
     scheduler: str | None,
 ) -> Generator[tuple[int, Part]]:
     """The parts of all tasks by whoever is to compute them."""
-    count = min(workers or os.cpu_count() or 1, chunks)
+    usual = 1 if study.job.device == "gpu" else os.cpu_count() or 1
+    count = min(workers or usual, chunks)
     if scheduler is not None:
         yield from cluster_crew(study.job, tasks, scheduler)
     elif count == 1:
