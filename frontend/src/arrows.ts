@@ -57,7 +57,7 @@ export class Arrows {
 
   private vectors(view: MotionView): void {
     const vectors = view.data.vectors;
-    for (const vector of vectors) this.add(toneClass(vector.tone, this.data), vector.name);
+    for (const vector of vectors) this.add(toneClass(vector.tone, this.data), short(vector.name));
     const ends = vectors.map(({ start, end, course }) => {
       const [a, b] = [view.points[start], view.points[end]];
       return a && b ? [a.x, a.y, b.x, b.y] : course.map((column) => view.numbers(column));
@@ -118,4 +118,9 @@ export class Arrows {
       arrow.name.setAttribute("y", String(-(y0! + 0.5 * dy + away * ux) + 0.3 * this.data.text));
     }
   }
+}
+
+/** The name of a vector without a direction that is a link's name: OA, not OA∠θ_crank. */
+function short(name: string): string {
+  return name.includes("_") ? name.replace(/∠.*/, "") : name;
 }

@@ -8,6 +8,7 @@ export interface SetNumber {
   id?: number;
   name: string;
   value: number | string;
+  any_formula?: boolean;
   live?: boolean;
 }
 
@@ -86,6 +87,13 @@ export interface RemovePart {
   kind: "remove_part";
   id?: number;
   name: string;
+}
+
+export interface TracePoint {
+  kind: "trace_point";
+  id?: number;
+  point: string;
+  on: boolean;
 }
 
 export interface ChooseConfiguration {
@@ -172,6 +180,7 @@ export interface FileState {
   links: readonly (Link)[];
   parts: readonly (string)[];
   drives: readonly (Drive)[];
+  traceable: readonly (string)[];
   traced: readonly (string)[];
   equations: readonly (string)[];
 }
@@ -340,6 +349,7 @@ export interface NewtonIterate {
   jacobian: readonly (readonly (number | null)[])[];
   step: number | null;
   points: Record<string, readonly [number, number]>;
+  open_ends: readonly (OpenEnd)[];
 }
 
 export interface ProblemShown {
@@ -360,6 +370,7 @@ export type LiveEdit =
   | RemoveJoint
   | AddPart
   | RemovePart
+  | TracePoint
   | ChooseConfiguration;
 
 export type LiveRequest =
@@ -374,6 +385,7 @@ export type LiveRequest =
   | RemoveJoint
   | AddPart
   | RemovePart
+  | TracePoint
   | ChooseConfiguration
   | Together
   | SetText

@@ -2,6 +2,7 @@
 
 import type { DrivenInput, FileState, LiveEdit } from "../messages";
 import { PALETTE } from "../palette";
+import { toggle } from "../controls";
 import { html } from "../svg";
 import type { Desk } from "./asking";
 import { typed } from "./ranges";
@@ -65,6 +66,7 @@ export class Build {
   readonly element = html("div", { class: "lw-build" });
   private readonly input: HTMLElement;
   private readonly palette: HTMLElement;
+  private readonly paths: HTMLElement;
   private readonly parts: HTMLElement;
   private readonly text: HTMLTextAreaElement;
   private readonly collect: HTMLInputElement;
@@ -80,6 +82,7 @@ export class Build {
     this.waiting = html("div", { class: "lw-waiting" });
     this.palette.append(label, this.waiting);
     this.collect.addEventListener("change", () => this.pending());
+    this.paths = this.group("Paths of points", false);
     this.parts = this.group("Remove", false);
     const box = this.group("Text of the file", false);
     this.text = html("textarea", { rows: 18, spellcheck: "false", "aria-label": "Text of the file" }, box);
@@ -91,7 +94,16 @@ export class Build {
     this.text.value = file.text;
     this.inputs(file);
     this.pieces(file);
+    this.traces(file);
     this.removable(file);
+  }
+
+  private traces(file: FileState): void {
+    this.paths.querySelectorAll("div").forEach((old) => old.remove());
+    const box = html("div", { class: "lw-parts" }, this.paths);
+    for (const point of file.traceable) {
+      toggle(box, point, file.traced.includes(point), (on) => this.make({ kind: "trace_point", point, on }));
+    }
   }
 
   private group(title: string, open: boolean): HTMLElement {
@@ -107,6 +119,18 @@ export class Build {
     }
     this.collected.push(edit);
     this.pending();
+    this.pieces(this.desk.file()); // what was collected can be named
+  }
+
+  /** The file with the points and links that are collected. */
+  private withCollected(file: FileState): FileState {
+    const points = { ...file.points };
+    const links = [...file.links];
+    for (const edit of this.collected) {
+      if (edit.kind === "add_point") points[edit.name] = [edit.x, edit.y];
+      if (edit.kind === "add_link") links.push({ name: edit.name, points: edit.points });
+    }
+    return { ...file, points, links };
   }
 
   private pending(): void {
@@ -120,6 +144,7 @@ export class Build {
       this.desk.ask({ kind: "together", edits: this.collected });
       this.collected = [];
       this.pending();
+      this.pieces(this.desk.file());
     });
     const drop = html("button", { type: "button" }, this.waiting, "Forget them");
     drop.addEventListener("click", () => {
@@ -165,7 +190,9 @@ export class Build {
     });
   }
 
-  private pieces(file: FileState): void {
+  private pieces(known: FileState): void {
+    const file = this.withCollected(known);
+    const open = Array.from(this.palette.querySelectorAll(".lw-piece[open] > summary"), (one) => one.textContent);
     this.palette.querySelectorAll("details, p").forEach((old) => old.remove());
     const sketched = file.form === "points-and-links";
     if (!sketched) html("p", { class: "lw-empty" }, this.palette, "Equations are added in the text of the file.");
@@ -173,6 +200,7 @@ export class Build {
       const box = html("details", { class: "lw-piece" });
       this.palette.querySelector("summary")!.after(box);
       html("summary", {}, box, piece.title);
+      box.open = open.includes(piece.title);
       // made when it is opened: most of them never are
       box.addEventListener("toggle", () => box.open && box.childElementCount === 1 && this.form(box, piece, file));
     }

@@ -70,7 +70,14 @@ function labelled(number: ChangeableNumber): { element: HTMLElement; name: strin
 
 function field(parent: Element, name: string, desk: Desk, of: string): HTMLInputElement {
   const input = html("input", { type: "text", class: "lw-field", "aria-label": name, autocomplete: "off", spellcheck: "false" }, parent);
-  input.addEventListener("change", () => desk.ask({ kind: "set_number", name: of, value: typed(input.value) }));
+  input.addEventListener("change", () => {
+    if (input.value.trim()) {
+      desk.ask({ kind: "set_number", name: of, value: typed(input.value), any_formula: true });
+      return;
+    }
+    const now = desk.file().numbers.find((one) => one.name === of); // nothing was typed
+    if (now) input.value = now.formula || trimmed(shortNumber(now.value));
+  });
   return input;
 }
 

@@ -2,6 +2,7 @@
 
 import type { CannotClose, FileState, LiveEvent, LiveRequest, MotionFound } from "../messages";
 import { mount, type Mounted } from "../mount";
+import { unitText } from "../chart";
 import { shortNumber, trimmed } from "../numbers";
 import { html } from "../svg";
 import type { Desk } from "./asking";
@@ -35,6 +36,8 @@ export class LivePage {
   private file: FileState | null = null;
   private page: Mounted | null = null;
   private plain: HTMLElement | null = null;
+  /** No row of the table has a position. */
+  private rowless = false;
 
   constructor(private readonly element: HTMLElement) {
     const desk = this.desk();
@@ -89,7 +92,7 @@ export class LivePage {
         this.open(event);
         break;
       case "position_found":
-        if (this.page === null || !this.file!.inputs.length) this.still(event.points, event.message);
+        if (this.page === null || this.rowless || !this.file!.inputs.length) this.still(event.points, this.rowless ? "" : event.message);
         break;
       case "configurations_found":
         this.ways.show(event);
@@ -102,6 +105,7 @@ export class LivePage {
         break;
       case "problems_found":
         this.notices.problems(event);
+        if (this.file) this.dimensions.show(this.file);
         break;
       case "refused":
         this.refused(event.message);
@@ -141,6 +145,7 @@ export class LivePage {
 
   private motion(found: MotionFound): void {
     const unit = this.file!.inputs[0]?.unit ?? "";
+    this.rowless = found.page === null && found.missing === found.rows;
     if (found.page !== null) {
       this.picture.remove();
       this.element.classList.remove("lw-stays-open");
@@ -156,7 +161,7 @@ export class LivePage {
 
   private begin(found: MotionFound): void {
     this.plain = null;
-    const page = (this.page = mount(this.element, found.page!));
+    const page = (this.page = mount(this.element, found.page!, { row: () => this.newton.moved() }));
     const { head, canvas, side } = page.places;
     head.insertBefore(this.bar.element, head.querySelector(".lw-theme"));
     canvas.after(this.notices.element);
@@ -190,7 +195,8 @@ export class LivePage {
     const drawn = Object.keys(points).length > 0;
     this.picture.replaceChildren(drawn ? pictureOf(this.file!.links, points) : this.equations());
     canvas.append(this.picture);
-    this.notices.open(text, []);
+    if (this.rowless) this.element.classList.add("lw-stays-open");
+    if (text) this.notices.open(text, []);
   }
 
   /** What stands where there is nothing to draw. */
@@ -211,7 +217,9 @@ export class LivePage {
     this.element.classList.add("lw-stays-open");
     const unit = this.file!.length_unit;
     const gap = `${trimmed(shortNumber(event.gap, 4))} ${unit}`.trim();
-    const remedies = Object.entries(event.remedies).map(([name, value]) => {
+    const remedies = Object.entries(event.remedies).map(([name, needed]) => {
+      const now = this.file!.numbers.find((one) => one.name === name)?.value ?? needed;
+      const value = Number((needed + 0.03 * (needed - now)).toPrecision(6)); // a little beyond where it just closes
       const rounded = trimmed(shortNumber(value));
       const set = (): void => {
         this.connection.ask({ kind: "set_number", name, value });
@@ -219,7 +227,9 @@ export class LivePage {
       return [`${name} = ${rounded}`, "This length alone would let it close", set] as const;
     });
     const help = remedies.length ? " Any of these alone would help:" : "";
-    this.notices.open(`It cannot close: a gap of ${gap} remains.${help}`, remedies);
+    const at = Object.entries(event.input).map(([name, value]) => `${name} = ${trimmed(shortNumber(value, 5))}${unitText(this.file!.inputs.find((one) => one.name === name)?.unit ?? "")}`);
+    const where = at.length ? `At ${at.join(", ")} it` : "It";
+    this.notices.open(`${where} cannot close: a gap of ${gap} remains.${help}`, remedies);
     this.element.dataset.updates = String(Number(this.element.dataset.updates ?? 0) + 1);
   }
 

@@ -73,6 +73,13 @@ export class Newton {
     if (this.on) this.begin();
   }
 
+  /** Another row is shown: the same guess at its input. */
+  moved(): void {
+    if (!this.on) return;
+    this.at = this.desk.here();
+    this.find();
+  }
+
   show(found: NewtonShown): void {
     if (!this.on) return;
     this.found = found;
@@ -200,7 +207,7 @@ export class Newton {
     const matrix = this.page?.places.drawing.element.getScreenCTM();
     if (!matrix) return;
     const stroke = 1.2 / matrix.a;
-    drawLinks(this.links, this.desk.file().links, iterate.points, { stroke, names: 11 * stroke });
+    drawLinks(this.links, this.desk.file().links, iterate.points, { stroke, names: 11 * stroke, ends: iterate.open_ends });
     if (!this.held) this.handles.replaceChildren();
     if (this.held || this.chosen !== 0) return;
     for (const name of this.found!.guessed) {

@@ -39,7 +39,7 @@ export function clean(value: number): number {
 
 /** What was typed: a number, or else a formula. */
 export function typed(text: string): number | string {
-  const plain = text.trim().replace("\u2212", "-").replace(/°$/, "");
+  const plain = text.trim().replace("\u2212", "-").replace(/°$/, "").replace(/^([-+]?\d+),(\d+)$/, "$1.$2");
   const number = Number(plain);
   return plain !== "" && Number.isFinite(number) ? number : plain;
 }

@@ -9,8 +9,9 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.motion.model import Model
+from linkwork.motion.nearest_assembling import open_ends
 from linkwork.motion.positions import target_values
-from linkwork.motion.reading import named_series
+from linkwork.motion.reading import Named, named_series
 from linkwork.motion.solving import solve
 from linkwork.numerics.block_solver import Block
 from linkwork.numerics.newton import NewtonOptions
@@ -177,7 +178,8 @@ class _Seen:
         whole = np.repeat(start[None, :], len(x), axis=0)
         whole[:, block.unknowns] = x
         jacobians = block.system.jacobian(whole[:, block.variables])[:, :, :n]
-        points = _points(model, whole)
+        named = _named(model, whole)
+        points = _points_of(named, len(whole))
         weights = block.system.variable_scale[:n]
         return [
             Iterate(
@@ -192,6 +194,7 @@ class _Seen:
                 jacobian=tuple(tuple(map(float, line)) for line in jacobians[row]),
                 step=None if change is None else float(np.abs(change / weights).max()),
                 points=points[row],
+                apart=open_ends(model, named, points[row], row),
             )
             for row, (k, _, residual, change) in enumerate(self.kept)
         ]
@@ -199,10 +202,17 @@ class _Seen:
 
 def _points(model: Model, v: Array) -> list[dict[str, tuple[float, float]]]:
     """The points at every row of v (B, N)."""
+    return _points_of(_named(model, v), len(v))
+
+
+def _named(model: Model, v: Array) -> Named:
     none = np.zeros_like(v)
     inputs = v[:, model.compiled.solver.unknowns :] / model.input_scale
-    named = named_series(model, v, none, none, inputs, np.ones(len(v), dtype=bool))
+    return named_series(model, v, none, none, inputs, np.ones(len(v), dtype=bool))
+
+
+def _points_of(named: Named, count: int) -> list[dict[str, tuple[float, float]]]:
     return [
         {p: (float(x.value[row]), float(y.value[row])) for p, (x, y) in named.points.items()}
-        for row in range(len(v))
+        for row in range(count)
     ]

@@ -14,7 +14,7 @@ from linkwork.motion.reading import Named, named_series
 from linkwork.numerics.least_squares import nearest_miss
 from linkwork.results.nearest_assembly import LinkEnd, NearestAssembly
 
-__all__ = ["nearest_assembly"]
+__all__ = ["nearest_assembly", "open_ends"]
 
 _MEETS = 1e-9  # of the longest link: ends this near to their joint meet it
 
@@ -67,14 +67,14 @@ def nearest_assembly(
             for loop, gap in zip(equations.loops, vectors, strict=True)
         },
         gap=float(np.linalg.norm(vectors)),
-        apart=_apart(model, named, points),
+        apart=open_ends(model, named, points),
     )
 
 
-def _apart(
-    model: Model, named: Named, points: Mapping[str, tuple[float, float]]
+def open_ends(
+    model: Model, named: Named, points: Mapping[str, tuple[float, float]], row: int = 0
 ) -> tuple[LinkEnd, ...]:
-    """The ends of rigid links that lie elsewhere than the joints they belong to."""
+    """The ends of rigid links that lie elsewhere than the joints they belong to, in a row."""
     linkage = model.description
     if not isinstance(linkage, Linkage):
         return ()
@@ -82,7 +82,7 @@ def _apart(
     for link, local in linkage.shapes.local.items():
         if link == GROUND or link not in named.links or len(local) < 2:
             continue
-        angle = float(named.links[link].value[0]) * linkage.angle.radians
+        angle = float(named.links[link].value[row]) * linkage.angle.radians
         first = next(iter(linkage.links[link]))
         for point, place in local.items():
             end = complex(*points[first]) + (place - local[first]) * cmath.exp(1j * angle)

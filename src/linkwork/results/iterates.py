@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from linkwork.results.nearest_assembly import LinkEnd
 from linkwork.results.position import Position
 
 __all__ = ["Iterate", "Iterates"]
@@ -34,6 +35,8 @@ class Iterate:
         ``None`` at the last one.
     points : Mapping[str, (x, y)]
         The picture at this iterate: blocks before are solved, blocks behind stand at their guess.
+    apart : tuple of LinkEnd
+        Ends of links that do not meet their joint in it.
     """
 
     equations: tuple[str, ...]
@@ -44,6 +47,7 @@ class Iterate:
     jacobian: tuple[tuple[float, ...], ...]
     step: float | None
     points: Mapping[str, tuple[float, float]]
+    apart: tuple[LinkEnd, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

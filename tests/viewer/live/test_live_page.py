@@ -262,14 +262,21 @@ def test_a_belt_is_added_and_removed_with_its_wheel(open_live: Open, served: Ser
     page.get_by_label("Collect changes, then make them as one").check()
     link = page.locator(".lw-piece", has=page.get_by_text("Link", exact=True))
     link.locator("summary").first.click()
-    link.get_by_label("name", exact=True).fill("wheel")
-    link.get_by_label("O4", exact=True).check()
-    link.get_by_role("button", name="Add link").click()
+
+    def add() -> None:
+        link.get_by_label("name", exact=True).fill("wheel")
+        link.get_by_label("O4", exact=True).check()
+        link.get_by_role("button", name="Add link").click()
+
+    add()
     page.get_by_text("add link wheel").wait_for()
     assert "wheel" not in served.workbench.text  # only collected
+    joint = page.locator(".lw-piece", has=page.get_by_text("Joint", exact=True))
+    joint.locator("summary").first.click()
+    joint.get_by_label("link").select_option("wheel")  # it can be named already
     page.get_by_role("button", name="Forget them").click()
     page.get_by_label("Collect changes, then make them as one").uncheck()
-    link.get_by_role("button", name="Add link").click()
+    add()
     page.locator(".lw-message li").wait_for()  # a wheel that nothing turns is no mechanism
     served.path.write_text(FOUR_BAR.replace("rocker = [", 'wheel = ["O4"]\nrocker = [') + BELT)
     page.get_by_text("has been read again").wait_for()
@@ -302,6 +309,58 @@ def test_a_part_is_added_from_the_palette(open_live: Open, served: Served) -> No
     page.get_by_role("button", name="Remove mesh").wait_for()
     (gear,) = lw.loads(served.workbench.text).description.gears
     assert (gear.name, gear.wheels, gear.radii) == ("mesh", ("crank", "wheel"), (70, 30))
+
+
+def test_the_path_of_a_point_is_shown_or_not(open_live: Open, served: Served) -> None:
+    page = open_live()
+    page.get_by_role("tab", name="Build").click()
+    page.locator(".lw-group summary", has_text="Paths of points").click()
+    for name, on in (("B", True), ("P", False), ("B", False)):
+        page.locator(".lw-group", has_text="Paths of points").get_by_label(
+            name, exact=True
+        ).set_checked(on)
+        page.locator(f'[data-role=trace][data-of="{name}"]').first.wait_for(
+            state="attached" if on else "detached"
+        )
+    assert "[trace]" not in served.workbench.text
+    assert lw.loads(served.workbench.text).description.trace == ()
+
+
+def test_newton_follows_the_input_that_is_shown(open_live: Open) -> None:
+    page = open_live()
+    page.get_by_role("tab", name="Newton").click()
+    page.locator(".lw-steps tbody tr").first.wait_for()
+    before = page.locator(".lw-steps tbody tr td").first.text_content()
+    page.get_by_label("Position of the motion").fill("200")
+    page.wait_for_function(
+        "old => document.querySelector('.lw-steps tbody tr td').textContent !== old", arg=before
+    )
+    iterates = lw.loads(FOUR_BAR).iterates({}, {"crank": 200.0}).iterates
+    page.wait_for_timeout(300)
+    first = page.locator(".lw-steps tbody tr td").first.text_content()
+    assert float(first) == pytest.approx(iterates[0].norm, rel=1e-3)
+    assert page.locator(".lw-iterate .lw-gap").count() == len(iterates[0].apart) > 0
+
+
+def test_a_formula_is_typed_over(open_live: Open, served: Served) -> None:
+    page = open_live()
+    type_number(page, "O2 A", 45)
+    assert '"O2 A" = 45' in served.workbench.text
+    type_number(page, "A B", "121,5")
+    assert '"A B" = 121.5' in served.workbench.text
+
+
+def test_a_length_that_would_help_does(open_live: Open, served: Served) -> None:
+    page = open_live()
+    page.locator('[data-number="O4 B"] input[type=text]').fill("20")
+    page.locator('[data-number="O4 B"] input[type=text]').press("Enter")
+    told = page.locator(".lw-open")
+    told.wait_for()
+    assert "At crank = " in told.text_content()
+    page.locator(".lw-motion-notice button", has_text="O4 B = ").click()
+    page.wait_for_function("document.querySelector('.lw-stays-open') === null")
+    assert page.locator(".lw-limit-button").count() > 0
+    assert lw.loads(served.workbench.text).sweep().found.any()
 
 
 def test_something_else_is_driven(open_live: Open, served: Served) -> None:

@@ -21,6 +21,7 @@ def test_a_request_has_its_kind_and_may_leave_out_what_has_a_default() -> None:
         "  id?: number;",
         "  name: string;",
         "  value: number | string;",
+        "  any_formula?: boolean;",
         "  live?: boolean;",
     ]
     assert "  edits: readonly (LiveEdit)[];" in interface("Together")

@@ -359,6 +359,24 @@ def test_a_slider_is_added(tmp_path: Path) -> None:
     assert "offset = 7" in changed.text
 
 
+def test_the_path_of_a_point_is_asked_for(bench: Workbench) -> None:
+    on = only(bench.handle(ask.TracePoint(point="B", on=True)), tell.FileState)
+    assert (on.traced, on.traceable) == (("P", "B"), ("O2", "A", "B", "O4", "P"))
+    for point in ("P", "B"):
+        off = only(bench.handle(ask.TracePoint(point=point, on=False)), tell.FileState)
+    assert off.traced == ()
+    assert "[trace]" not in off.text
+    wrong = only(bench.handle(ask.TracePoint(point="Z", on=True)), tell.Refused)
+    assert wrong.message.startswith('there is no point "Z"')
+
+
+def test_a_number_takes_the_place_of_a_formula_if_that_is_meant(bench: Workbench) -> None:
+    refused = only(bench.handle(ask.SetNumber(name="O2 A", value=45)), tell.Refused)
+    assert "is the formula a" in refused.message
+    edit = ask.SetNumber(name="O2 A", value=45, any_formula=True)
+    assert '"O2 A" = 45' in only(bench.handle(edit), tell.FileState).text
+
+
 def test_something_else_is_driven(bench: Workbench) -> None:
     state = only(bench.opened(), tell.FileState)
     drives = [(drive.kind, drive.name) for drive in state.drives]

@@ -69,7 +69,7 @@ def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
         text.put(("lengths", measured), edit.value)
         return Followed()
     written = quantity.written(description)
-    if isinstance(written, str) and not isinstance(edit.value, str):
+    if isinstance(written, str) and not isinstance(edit.value, str) and not edit.any_formula:
         raise InputError(
             f'"{quantity.name}" is the formula {written}: change what stands in it, '
             "or send another formula"
@@ -279,6 +279,23 @@ def _(edit: ask.RemovePart, text: TextEdits, before: Before) -> Followed:
                 return Followed()
             names.append(name)
     raise UnknownNameError(f'there is no "{edit.name}" {choices("parts", names, edit.name)}')
+
+
+@applied.register
+def _(edit: ask.TracePoint, text: TextEdits, before: Before) -> Followed:
+    known = text.keys(("points",))
+    if canonical(edit.point) not in map(canonical, known):
+        listed = choices("points", known, edit.point)
+        raise UnknownNameError(f'there is no point "{edit.point}" {listed}')
+    traced = text.get(("trace", "points")) if text.has(("trace", "points")) else []
+    left = [point for point in traced if canonical(str(point)) != canonical(edit.point)]
+    if edit.on:
+        left.append(edit.point)
+    if left:
+        text.put(("trace", "points"), left)
+    elif text.has(("trace",)):
+        text.remove(("trace",))
+    return Followed()
 
 
 @applied.register

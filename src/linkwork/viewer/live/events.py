@@ -96,7 +96,7 @@ class FileState:
     """The file as it is being edited.
 
     ``parts``: names of sliders, gears, cams, …; of a weld its two links. ``drives``: what could be
-    an input.
+    an input. ``traceable``: points whose path can be shown.
     """
 
     file: str
@@ -116,6 +116,7 @@ class FileState:
     links: tuple[Link, ...]
     parts: tuple[str, ...]
     drives: tuple[Drive, ...]
+    traceable: tuple[str, ...]
     traced: tuple[str, ...]
     equations: tuple[str, ...]
 
@@ -221,6 +222,7 @@ class NewtonIterate:
     jacobian: tuple[tuple[float | None, ...], ...]
     step: float | None
     points: dict[str, Point]
+    open_ends: tuple[OpenEnd, ...]
 
 
 @dataclass(frozen=True, kw_only=True)

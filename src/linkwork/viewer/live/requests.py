@@ -34,6 +34,7 @@ __all__ = [
     "SetText",
     "SolveAt",
     "Together",
+    "TracePoint",
     "Undo",
 ]
 
@@ -43,11 +44,12 @@ class SetNumber:
     """Another value, or formula, for a number of the mechanism.
 
     ``name``: as in a family: ``a2``, ``O2 A``, ``B A P``, ``s16.offset``, ``O4.x``; a measured
-    length becomes a given one.
+    length becomes a given one. A number takes the place of a formula only with ``any_formula``.
     """
 
     name: str
     value: float | str
+    any_formula: bool = False
     live: bool = False
 
 
@@ -153,6 +155,14 @@ class RemovePart:
 
 
 @dataclass(frozen=True, kw_only=True)
+class TracePoint:
+    """The path of a point is shown, or not."""
+
+    point: str
+    on: bool
+
+
+@dataclass(frozen=True, kw_only=True)
 class ChooseConfiguration:
     """The configuration or branch to start from; an empty name: the one at the guess."""
 
@@ -172,6 +182,7 @@ Edit = (
     | RemoveJoint
     | AddPart
     | RemovePart
+    | TracePoint
     | ChooseConfiguration
 )
 

@@ -16,7 +16,7 @@ from linkwork.mechanism.quantities import Quantity, quantities
 from linkwork.results.configurations import Configurations
 from linkwork.results.iterates import Iterate, Iterates
 from linkwork.results.motion import Motion
-from linkwork.results.nearest_assembly import NearestAssembly
+from linkwork.results.nearest_assembly import LinkEnd, NearestAssembly
 from linkwork.results.position import Position
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.page_data import PageData
@@ -96,12 +96,13 @@ def cannot_close(
         gaps=dict(nearest.gaps),
         unknowns=dict(nearest.unknowns),
         points=_points(nearest.points),
-        open_ends=tuple(
-            tell.OpenEnd(link=e.link, point=e.point, joint=e.joint, end=e.end)
-            for e in nearest.apart
-        ),
+        open_ends=_open_ends(nearest.apart),
         remedies=dict(remedies),
     )
+
+
+def _open_ends(ends: Iterable[LinkEnd]) -> tuple[tell.OpenEnd, ...]:
+    return tuple(tell.OpenEnd(link=e.link, point=e.point, joint=e.joint, end=e.end) for e in ends)
 
 
 def configurations_found(found: Configurations) -> tell.ConfigurationsFound:
@@ -150,6 +151,7 @@ def _iterate(each: Iterate) -> tell.NewtonIterate:
         jacobian=tuple(map(_row, each.jacobian)),
         step=None if each.step is None else _number(each.step),
         points=_points(each.points),
+        open_ends=_open_ends(each.apart),
     )
 
 

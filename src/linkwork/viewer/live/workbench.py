@@ -301,7 +301,9 @@ class Workbench:
         equations = () if live else self._mechanism.equations().mathml()
         page = self._picture.page(motion, equations, self._mechanism.moving_loops, brief=live)
         events: Events = [telling.motion_found(motion, live=live, message=message, page=page)]
-        if all(status is Status.NO_START for status in motion.status):
+        if not motion.found.any() and motion.limits:  # beside the rows of the table
+            events += self._handle(ask.SolveAt(at={}))
+        elif all(status is Status.NO_START for status in motion.status):
             failure = motion.failure
             remedies = {} if failure is None else {r.length: r.needed for r in failure.remedies}
             events += self._open(None, motion.message, remedies)
@@ -351,6 +353,7 @@ class Workbench:
             links=telling.links_of(description),
             parts=telling.parts_of(description),
             drives=telling.drives_of(sheet, description),
+            traceable=tuple(getattr(description, "points", ())),
             traced=description.trace,
             equations=telling.loop_texts(sheet),
         )
