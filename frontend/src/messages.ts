@@ -108,6 +108,12 @@ export interface Together {
   edits: readonly (LiveEdit)[];
 }
 
+export interface AssembleAt {
+  kind: "assemble_at";
+  id?: number;
+  at: Record<string, number>;
+}
+
 export interface SetText {
   kind: "set_text";
   id?: number;
@@ -226,6 +232,7 @@ export interface CannotClose {
   points: Record<string, readonly [number, number]>;
   open_ends: readonly (OpenEnd)[];
   remedies: Record<string, number>;
+  elsewhere: Record<string, number>;
 }
 
 export interface ConfigurationsFound {
@@ -388,6 +395,7 @@ export type LiveRequest =
   | TracePoint
   | ChooseConfiguration
   | Together
+  | AssembleAt
   | SetText
   | SolveAt
   | ListConfigurations

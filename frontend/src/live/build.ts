@@ -34,7 +34,7 @@ const one = (name: string, entry: string, required = true): Field => ({ name, en
 export const PIECES: readonly Piece[] = [
   {
     title: "Point",
-    fields: [one("name", "text"), one("x", "number"), one("y", "number"), one("on link", "link", false)],
+    fields: [one("name", "text"), one("x", "plain number"), one("y", "plain number"), one("on link", "link", false)],
     edit: (v) => ({
       kind: "add_point",
       name: String(v.name),
@@ -285,6 +285,10 @@ function entry(form: Element, what: Field, file: FileState): () => Entry {
   const input = field(form, label, "");
   input.required = required;
   input.parentElement!.title = doc;
+  if (kind === "plain number") {
+    input.pattern = "[-+\u2212]?(\\d+([.,]\\d*)?|[.,]\\d+)(e[-+]?\\d+)?";
+    input.title = "a number";
+  }
   if (kind !== "numbers") return () => input.value.trim();
   input.placeholder = "20, 40";
   return () => [input.value].filter((text) => text.trim());

@@ -229,7 +229,15 @@ export class LivePage {
     const help = remedies.length ? " Any of these alone would help:" : "";
     const at = Object.entries(event.input).map(([name, value]) => `${name} = ${trimmed(shortNumber(value, 5))}${unitText(this.file!.inputs.find((one) => one.name === name)?.unit ?? "")}`);
     const where = at.length ? `At ${at.join(", ")} it` : "It";
-    this.notices.open(`${where} cannot close: a gap of ${gap} remains.${help}`, remedies);
+    const elsewhere = Object.entries(event.elsewhere).map(([name, value]) => {
+      const begin = (): void => {
+        this.connection.ask({ kind: "assemble_at", at: event.elsewhere });
+      };
+      const unit = unitText(this.file!.inputs.find((one) => one.name === name)?.unit ?? "");
+      return [`begin at ${name} = ${trimmed(shortNumber(value, 5))}${unit}`, "It closes there: put the points of the sketch where they are then", begin] as const;
+    });
+    const there = elsewhere.length ? (remedies.length ? " Or:" : " It can elsewhere:") : "";
+    this.notices.open(`${where} cannot close: a gap of ${gap} remains.${help}${remedies.length ? "" : there}`, [...remedies, ...elsewhere]);
     this.element.dataset.updates = String(Number(this.element.dataset.updates ?? 0) + 1);
   }
 

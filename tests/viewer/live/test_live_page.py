@@ -358,7 +358,7 @@ def test_a_length_that_would_help_does(open_live: Open, served: Served) -> None:
     told.wait_for()
     assert "At crank = " in told.text_content()
     page.locator(".lw-motion-notice button", has_text="O4 B = ").click()
-    page.wait_for_function("document.querySelector('.lw-stays-open') === null")
+    page.locator(".lw-stays-open").wait_for(state="detached")
     assert page.locator(".lw-limit-button").count() > 0
     assert lw.loads(served.workbench.text).sweep().found.any()
 

@@ -359,6 +359,28 @@ def test_a_slider_is_added(tmp_path: Path) -> None:
     assert "offset = 7" in changed.text
 
 
+def test_a_sketch_begins_where_the_mechanism_closes(bench: Workbench) -> None:
+    shown = only(bench.handle(ask.SetNumber(name="O4 B", value=25)), tell.CannotClose)
+    # rod and rocker bridge 95 to 145 from O4: the crank has to stand so far away
+    assert shown.elsewhere
+    crank = math.radians(shown.elsewhere["crank"])
+    assert 95 <= abs(100 - 40 * complex(math.cos(crank), math.sin(crank))) <= 145
+    events = bench.handle(ask.AssembleAt(at=shown.elsewhere))
+    assert only(events, tell.MotionFound).missing < 361
+    assert [limit.what for limit in only(events, tell.MotionFound).limits] == ["dead point"] * 2
+    assert '"O4 B" = 25' in bench.text
+    assert kinds(bench.handle(ask.Undo()))[0] == "FileState"  # one step of the history
+    assert only(bench.opened(), tell.CannotClose).gap == shown.gap
+
+
+def test_nothing_is_put_elsewhere_where_points_follow_from_equations(tmp_path: Path) -> None:
+    file = tmp_path / "rapier.toml"
+    file.write_text(lw.example_text("rapier-drive"), encoding="utf-8")
+    bench = Workbench(MechanismFile(file), lw.loads)
+    refused = only(bench.handle(ask.AssembleAt(at={"θ12": 90.0})), tell.Refused)
+    assert "only the points of a sketch" in refused.message
+
+
 def test_the_path_of_a_point_is_asked_for(bench: Workbench) -> None:
     on = only(bench.handle(ask.TracePoint(point="B", on=True)), tell.FileState)
     assert (on.traced, on.traceable) == (("P", "B"), ("O2", "A", "B", "O4", "P"))

@@ -180,7 +180,10 @@ class OpenEnd:
 
 @dataclass(frozen=True, kw_only=True)
 class CannotClose:
-    """No position at these input values: as near as it gets, and how much is missing [length]."""
+    """No position at these input values: as near as it gets, and how much is missing [length].
+
+    ``elsewhere``: input values of the table at which it closes, if some were looked for and found.
+    """
 
     message: str
     input: dict[str, float]
@@ -190,6 +193,7 @@ class CannotClose:
     points: dict[str, Point]
     open_ends: tuple[OpenEnd, ...]
     remedies: dict[str, float]
+    elsewhere: dict[str, float]
 
 
 @dataclass(frozen=True, kw_only=True)

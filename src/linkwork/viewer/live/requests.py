@@ -16,6 +16,7 @@ __all__ = [
     "AddLink",
     "AddPart",
     "AddPoint",
+    "AssembleAt",
     "ChooseConfiguration",
     "Edit",
     "ListConfigurations",
@@ -195,6 +196,13 @@ class Together:
 
 
 @dataclass(frozen=True, kw_only=True)
+class AssembleAt:
+    """The points of the sketch go where they are at input values at which the mechanism closes."""
+
+    at: dict[str, float]
+
+
+@dataclass(frozen=True, kw_only=True)
 class SetText:
     """The whole file, typed by hand."""
 
@@ -259,6 +267,7 @@ class Reload:
 Request = (
     Edit
     | Together
+    | AssembleAt
     | SetText
     | SolveAt
     | ListConfigurations

@@ -86,7 +86,10 @@ def position_found(position: Position) -> tell.PositionFound:
 
 
 def cannot_close(
-    nearest: NearestAssembly, message: str, remedies: Mapping[str, float]
+    nearest: NearestAssembly,
+    message: str,
+    remedies: Mapping[str, float],
+    elsewhere: Mapping[str, float],
 ) -> tell.CannotClose:
     """The least-squares picture of a mechanism that stays open."""
     return tell.CannotClose(
@@ -98,6 +101,7 @@ def cannot_close(
         points=_points(nearest.points),
         open_ends=_open_ends(nearest.apart),
         remedies=dict(remedies),
+        elsewhere=dict(elsewhere),
     )
 
 
