@@ -286,7 +286,7 @@ function entry(form: Element, what: Field, file: FileState): () => Entry {
   input.required = required;
   input.parentElement!.title = doc;
   if (kind === "plain number") {
-    input.pattern = "[-+\u2212]?(\\d+([.,]\\d*)?|[.,]\\d+)(e[-+]?\\d+)?";
+    input.pattern = "[\\-+\u2212]?(\\d+([.,]\\d*)?|[.,]\\d+)(e[\\-+]?\\d+)?";
     input.title = "a number";
   }
   if (kind !== "numbers") return () => input.value.trim();
