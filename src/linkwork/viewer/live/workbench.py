@@ -11,13 +11,13 @@ from types import MappingProxyType
 
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.foundation.status import Status
-from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Motion
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live import telling
+from linkwork.viewer.live.beginnings import closing_input, sketch_at
 from linkwork.viewer.live.edits import Before, Followed, applied
 from linkwork.viewer.live.history import History
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
@@ -30,8 +30,6 @@ __all__ = ["GivenUpError", "Workbench"]
 _MOST_ROWS = 3601  # of a cycle that is solved while somebody waits
 _FEWER_ROWS = 721
 _MOST_ITERATIONS = 200
-_LOOKED_AT = 24  # rows at which it is tried whether a mechanism closes
-_CLOSED = 1e-9  # of the gap at the start: no gap
 
 Events = list[tell.Event]
 
@@ -186,19 +184,7 @@ class Workbench:
 
     @_handle.register
     def _(self, request: ask.AssembleAt) -> Events:
-        description, points = self._mechanism.description, {}
-        if isinstance(description, Linkage):
-            points = dict(self._mechanism.nearest_assembly(request.at).points)
-        moved = tuple(
-            ask.MovePoint(point=name, x=x, y=y)
-            for name, (x, y) in points.items()
-            if isinstance(description, Linkage)
-            and name in description.points
-            and name not in description.links[GROUND]
-        )
-        if not moved:
-            raise InputError("only the points of a sketch can be put elsewhere")
-        return self._handle(ask.Together(edits=moved))
+        return self._handle(ask.Together(edits=sketch_at(self._mechanism, request.at)))
 
     @_handle.register
     def _(self, request: ask.SetText) -> Events:
@@ -326,7 +312,7 @@ class Workbench:
         elif all(status is Status.NO_START for status in motion.status):
             failure = motion.failure
             remedies = {} if failure is None else {r.length: r.needed for r in failure.remedies}
-            elsewhere = {} if live else self._closing_input()
+            elsewhere = {} if live else closing_input(self._mechanism)
             events += self._open(None, motion.message, remedies, elsewhere)
         self._solution = [] if live else events
         return events
@@ -357,23 +343,6 @@ class Workbench:
     ) -> Events:
         nearest = self._mechanism.nearest_assembly(at)
         return [telling.cannot_close(nearest, message, remedies, elsewhere)]
-
-    def _closing_input(self) -> Mapping[str, float]:
-        """Values of a single input at which the mechanism closes, as near to its start as some
-        rows of the table are; none if there is none, or the start cannot be moved.
-        """
-        description = self._mechanism.description
-        if not isinstance(description, Linkage) or len(description.inputs) != 1:
-            return {}
-        start = self._mechanism.nearest_assembly()
-        ((name, here),) = start.input.items()
-        rows = description.rows(description.inputs[0])
-        some = rows[:: max(1, len(rows) // _LOOKED_AT)]
-        for value in sorted(some.tolist(), key=lambda value: abs(value - here)):
-            nearest = self._mechanism.nearest_assembly({name: value})
-            if nearest.gap <= _CLOSED * start.gap:
-                return {name: value}
-        return {}
 
     def _state(self) -> tell.FileState:
         description, sheet = self._mechanism.description, self._mechanism.equations()

@@ -1,0 +1,53 @@
+"""Where else a sketch can begin: an input at which the mechanism closes, and the points there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from linkwork.foundation.errors import InputError
+from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.viewer.live.requests import MovePoint
+from linkwork.viewer.live.solvable import Solvable
+
+__all__ = ["closing_input", "sketch_at"]
+
+_LOOKED_AT = 24  # rows at which it is tried whether a mechanism closes
+_CLOSED = 1e-9  # of the gap at the start: no gap
+
+
+def closing_input(mechanism: Solvable) -> Mapping[str, float]:
+    """The value of a single input at which a mechanism closes that stays open at its start.
+
+    Some rows of the table are tried, those next to the start first. Nothing is returned where none
+    of them closes, or where the start is not that of a sketch.
+    """
+    description = mechanism.description
+    if not isinstance(description, Linkage) or len(description.inputs) != 1:
+        return {}
+    start = mechanism.nearest_assembly()
+    ((name, here),) = start.input.items()
+    rows = description.rows(description.inputs[0])
+    some = rows[:: max(1, len(rows) // _LOOKED_AT)].tolist()
+    for value in sorted(some, key=lambda value: abs(value - here)):
+        if mechanism.nearest_assembly({name: value}).gap <= _CLOSED * start.gap:
+            return {name: value}
+    return {}
+
+
+def sketch_at(mechanism: Solvable, at: Mapping[str, float]) -> tuple[MovePoint, ...]:
+    """What moves the points of a sketch to where they are at input values.
+
+    Raises
+    ------
+    InputError
+        If the points follow from equations; for values that fit no input.
+    """
+    description = mechanism.description
+    if not isinstance(description, Linkage):
+        raise InputError("only the points of a sketch can be put elsewhere")
+    still = description.links[GROUND]
+    return tuple(
+        MovePoint(point=name, x=x, y=y)
+        for name, (x, y) in mechanism.nearest_assembly(at).points.items()
+        if name in description.points and name not in still
+    )
