@@ -179,7 +179,7 @@ def test_paths_names_vectors_and_velocities_can_be_shown_and_hidden(
     drawn = complex(x1 - x0, y0 - y1)
     assert drawn / abs(drawn) == pytest.approx(velocity / abs(velocity), abs=1e-4)
     page.get_by_label("Vectors").check()
-    arrow = page.locator(".lw-vectors g", has_text="AB∠").first
+    arrow = page.locator(".lw-vectors g", has=page.get_by_text("AB", exact=True)).first
     ends = arrow.locator(".shaft").get_attribute("d")
     x0, y0, x1, y1 = map(float, re.findall(r"-?[\d.]+(?:e-?\d+)?", ends))
     way = jansen.trace("B")[40] - jansen.trace("A")[40]
