@@ -28,8 +28,8 @@ class LinkworkKernel(Peer):
 
     def __init__(self, *, certify: bool, compiled: bool) -> None:
         self.certify, self.compiled = certify, compiled
-        kind = "kernel, compiled" if compiled else "kernel"
-        self.name = f"{kind}, proved" if certify else kind
+        kind = "compiled kernel" if compiled else "kernel"
+        self.name = f"{kind}, proof" if certify else kind
 
     def cannot(self, work: Work) -> str:
         return "" if len(work.members) == 1 else "one mechanism only"
