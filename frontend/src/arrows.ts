@@ -1,12 +1,14 @@
-// Vectors of the loops, and velocities of points, over the drawing.
+// Arrows over the drawing: vectors of the loops, velocities and accelerations of points, forces.
 
-import type { MotionView } from "./motion";
+import type { MotionView, Point } from "./motion";
+import { roundUp, shortNumber, trimmed } from "./numbers";
 import type { PageData } from "./page_data";
 import { pathOf, svg } from "./svg";
 import { toneClass } from "./theme";
 
 const HEAD = 2.4; // length of an arrow head, in pins
-const LONGEST = 0.16; // of the largest velocity, of the drawing's longer side
+const LONGEST = 0.16; // of the usual largest, of the drawing's longer side
+const USUAL = 0.98; // of the rows are not faster: rates grow without bound beside dead points
 
 interface Arrow {
   readonly group: SVGGElement;
@@ -15,21 +17,34 @@ interface Arrow {
   readonly name: SVGTextElement | null;
 }
 
+/** Where arrows begin and end in a row: x, y, x, y each. */
+type Ends = (row: number) => number[][];
+
+export type ArrowKind = "vectors" | "velocities" | "accelerations" | "forces";
+
 /** A set of arrows that can be switched on and off. */
 export class Arrows {
   private readonly group: SVGGElement;
   private arrows: Arrow[] = [];
   /** A motion that is made arrows for when they are to be seen. */
   private waiting: MotionView | null = null;
-  private ends: (row: number) => number[][] = () => [];
+  private ends: Ends = () => [];
+  /** How long an arrow is for what it shows; "" where that need not be said. */
+  legend = "";
   shown = false;
 
   constructor(
     private data: PageData,
     overlay: SVGGElement,
-    private readonly kind: "vectors" | "velocities",
+    readonly kind: ArrowKind,
   ) {
     this.group = svg("g", { class: `lw-${kind}` }, overlay);
+  }
+
+  /** Whether there is anything to switch on. */
+  get any(): boolean {
+    if (this.kind === "vectors") return this.data.motions.some((motion) => motion.vectors.length > 0);
+    return this.kind !== "forces" || this.data.forces.length > 0;
   }
 
   renew(data: PageData): void {
@@ -51,38 +66,66 @@ export class Arrows {
     this.waiting = null;
     this.group.replaceChildren();
     this.arrows = [];
-    if (this.kind === "vectors") this.vectors(view);
-    else this.velocities(view);
+    const made = {
+      vectors: () => this.vectors(view),
+      velocities: () => this.rates(view, 1),
+      accelerations: () => this.rates(view, 2),
+      forces: () => this.forces(view),
+    };
+    this.ends = made[this.kind]();
   }
 
-  private vectors(view: MotionView): void {
+  private vectors(view: MotionView): Ends {
     const vectors = view.data.vectors;
     for (const vector of vectors) this.add(toneClass(vector.tone, this.data), short(vector.name));
     const ends = vectors.map(({ start, end, course }) => {
       const [a, b] = [view.points[start], view.points[end]];
       return a && b ? [a.x, a.y, b.x, b.y] : course.map((column) => view.numbers(column));
     });
-    this.ends = (row) => ends.map((columns) => columns.map((values) => values[row]!));
+    return (row) => ends.map((columns) => columns.map((values) => values[row]!));
   }
 
-  private velocities(view: MotionView): void {
+  private rates(view: MotionView, order: 1 | 2): Ends {
+    const rate = ({ dx, dy, ddx, ddy }: Point): readonly [Float64Array, Float64Array] => (order === 1 ? [dx, dy] : [ddx, ddy]);
     const points = view.points.filter((point) => point.moving);
+    const rates = points.map(rate);
     let largest = 0;
-    for (const { dx, dy } of points) {
-      const speeds = view.order.map((row) => Math.hypot(dx[row]!, dy[row]!)).sort((a, b) => a - b);
-      largest = Math.max(largest, speeds[Math.floor(0.98 * (speeds.length - 1))] ?? 0);
+    for (const [dx, dy] of rates) {
+      const sizes = view.order.map((row) => Math.hypot(dx[row]!, dy[row]!)).sort((a, b) => a - b);
+      largest = Math.max(largest, sizes[Math.floor(USUAL * (sizes.length - 1))] ?? 0);
     }
+    const by = `${this.data.derivative_unit}${order === 2 ? "²" : ""}`;
+    const scale = this.scaled(largest, order === 1 ? "Velocity" : "Acceleration", `${this.data.length_unit || "1"}/${by}`);
+    for (const point of points) this.add(order === 1 ? "lw-velocity" : "lw-acceleration", `${order === 1 ? "v" : "a"}(${point.shown})`);
+    return (row) =>
+      points.map(({ x, y }, k) => {
+        const [dx, dy] = rates[k]!;
+        return [x[row]!, y[row]!, x[row]! + scale * dx[row]!, y[row]! + scale * dy[row]!];
+      });
+  }
+
+  private forces(view: MotionView): Ends {
+    const { forces, force_unit: unit } = this.data;
+    const scale = this.scaled(Math.max(0, ...forces.map(({ x, y }) => Math.hypot(x, y))), "Force", unit);
+    for (const { point } of forces) this.add("lw-force", `F(${view.points[point]!.shown})`);
+    return (row) =>
+      forces.map(({ point, x, y }) => {
+        const [px, py] = [view.points[point]!.x[row]!, view.points[point]!.y[row]!];
+        return [px, py, px + scale * x, py + scale * y];
+      });
+  }
+
+  /** Drawn length over what it shows, a short number; tells the legend. */
+  private scaled(largest: number, what: string, unit: string): number {
+    this.legend = "";
+    if (!(largest > 0)) return 0;
     const [left, bottom, right, top] = this.data.view as [number, number, number, number];
     const size = Math.max(right - left, top - bottom);
-    const scale = largest > 0 ? (LONGEST * size) / largest : 0;
-    for (let k = 0; k < points.length; k++) this.add("lw-velocity", "");
-    this.ends = (row) =>
-      points.map(({ x, y, dx, dy }) => [
-        x[row]!,
-        y[row]!,
-        x[row]! + scale * dx[row]!,
-        y[row]! + scale * dy[row]!,
-      ]);
+    const each = roundUp(largest / (LONGEST * size)); // what a unit of length shows
+    const length = 10 ** Math.floor(Math.log10(LONGEST * size));
+    const [shown, means] = [trimmed(shortNumber(length)), trimmed(shortNumber(each * length))];
+    this.legend = `${what}: ${`${shown} ${this.data.length_unit}`.trim()} shows ${`${means} ${unit}`.trim()}`;
+    return 1 / each;
   }
 
   private add(look: string, name: string): void {
@@ -112,11 +155,18 @@ export class Arrows {
       "d",
       pathOf([x1!, y1!, bx - half * uy, by + half * ux, bx + half * uy, by - half * ux], true),
     );
-    if (arrow.name) {
-      const away = 0.85 * this.data.text;
-      arrow.name.setAttribute("x", String(x0! + 0.5 * dx - away * uy));
-      arrow.name.setAttribute("y", String(-(y0! + 0.5 * dy + away * ux) + 0.3 * this.data.text));
-    }
+    if (arrow.name) this.write(arrow.name, [x0!, y0!], [x1!, y1!], [ux, uy]);
+  }
+
+  /** A name: beside the middle of a vector of a loop, beyond the tip of what is at a point. */
+  private write(name: SVGTextElement, tail: readonly [number, number], tip: readonly [number, number], along: readonly [number, number]): void {
+    const [ux, uy] = along;
+    const beside = this.kind === "vectors";
+    const away = (beside ? 0.85 : 1.1) * this.data.text;
+    const x = beside ? 0.5 * (tail[0] + tip[0]) - away * uy : tip[0] + away * ux;
+    const y = beside ? 0.5 * (tail[1] + tip[1]) + away * ux : tip[1] + away * uy;
+    name.setAttribute("x", String(x));
+    name.setAttribute("y", String(-y + 0.3 * this.data.text));
   }
 }
 

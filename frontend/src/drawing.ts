@@ -27,6 +27,9 @@ export class Drawing {
   private moved: Moved[] = [];
   private renewed: Renewed[] = [];
   private made = "";
+  /** Arrows of what is driven, turned round while it runs backwards. */
+  private turned: Moved[] = [];
+  private backwards = false;
   private view!: MotionView;
 
   constructor(
@@ -75,6 +78,7 @@ export class Drawing {
     this.handles.replaceChildren();
     this.moved = [];
     this.renewed = [];
+    this.turned = [];
     let group: SVGGElement | null = null;
     let carried = Number.NaN;
     for (const part of view.data.parts) {
@@ -96,8 +100,11 @@ export class Drawing {
   }
 
   /** Move everything to a row that was found. */
-  draw(row: number): void {
+  draw(row: number, backwards = false): void {
     for (const move of this.moved) move(row);
+    if (backwards === this.backwards) return;
+    this.backwards = backwards;
+    for (const turn of this.turned) turn(row);
   }
 
   /** Show or hide paths or names. */
@@ -137,12 +144,20 @@ export class Drawing {
       this.measured(part, ({ points: [x, y], radius }) => put(circle, { cx: x!, cy: -y!, r: radius }));
       return;
     }
-    const path = svg("path", look, group);
-    const head = part.head.length ? svg("path", { ...look, class: `${look.class} filled lw-head` }, group) : null;
+    const driving = part.role === "input" && part.head.length > 0;
+    const within = driving ? svg("g", {}, group) : group;
+    const path = svg("path", look, within);
+    const head = part.head.length ? svg("path", { ...look, class: `${look.class} filled lw-head` }, within) : null;
+    let round = "";
+    const turn = (): void => put(within, { transform: this.backwards ? round : "" });
     this.measured(part, ({ kind, points, head: corners }) => {
       put(path, { d: kind === "strokes" ? strokesOf(points) : pathOf(points, kind === "area") });
       if (head) put(head, { d: pathOf(corners, true) });
+      if (!driving) return;
+      round = turnedRound([points[0]!, points[1]!], [corners[0]!, corners[1]!]);
+      turn();
     });
+    if (driving) this.turned.push(turn);
   }
 
   /** What gives a part its measures, now and whenever they change. */
@@ -208,6 +223,14 @@ export class Drawing {
       });
     });
   }
+}
+
+/** The transform that lets an arrow, straight or round, point the other way at the same place. */
+function turnedRound([x0, y0]: readonly [number, number], [x1, y1]: readonly [number, number]): string {
+  const length = Math.hypot(x1 - x0, y1 - y0) || 1;
+  const [u, v] = [(x1 - x0) / length, -(y1 - y0) / length];
+  const far = u * (x0 + x1) - v * (y0 + y1);
+  return `matrix(${1 - 2 * u * u} ${-2 * u * v} ${-2 * u * v} ${1 - 2 * v * v} ${far * u} ${far * v})`;
 }
 
 /** What elements a motion needs: two motions of which it is the same can use the same ones. */

@@ -28,6 +28,8 @@ export interface Point {
   readonly y: Float64Array;
   readonly dx: Float64Array;
   readonly dy: Float64Array;
+  readonly ddx: Float64Array;
+  readonly ddy: Float64Array;
 }
 
 export interface Course {
@@ -70,6 +72,16 @@ export class MotionView {
   /** The leading input. */
   get input(): Series {
     return this.series[0]!;
+  }
+
+  /** Whether the input falls where the motion passes a row of its order. */
+  falls(index: number): boolean {
+    const value = (k: number): number => this.input.values[this.order[k]!]!;
+    const last = this.order.length - 1;
+    const after = index < last ? value(index + 1) - value(index) : NaN;
+    const before = index > 0 ? value(index) - value(index - 1) : NaN;
+    // At a dead point the way on counts; where a turn is complete, the way that led there.
+    return Number.isFinite(after) ? after < 0 : before < 0;
   }
 
   /** Where a frame is in a row; -1 is the ground. */
@@ -135,6 +147,7 @@ function seriesOf(column: Column, own: Own): Series {
 
 function pointOf(point: PointData, own: Own): Point {
   const rates = lazily(() => ({ dx: own(point.dx), dy: own(point.dy) }));
+  const second = lazily(() => ({ ddx: own(point.ddx), ddy: own(point.ddy) }));
   return {
     name: point.name,
     shown: point.shown,
@@ -146,6 +159,12 @@ function pointOf(point: PointData, own: Own): Point {
     },
     get dy() {
       return rates().dy;
+    },
+    get ddx() {
+      return second().ddx;
+    },
+    get ddy() {
+      return second().ddy;
     },
   };
 }

@@ -1,6 +1,6 @@
 // The front end: what a page, a live page and a notebook widget mount.
 
-import { Arrows } from "./arrows";
+import { ArrowSets } from "./arrow_sets";
 import { Chart } from "./chart";
 import { toggle, Transport } from "./controls";
 import { stepTowards, type Step } from "./drag";
@@ -11,6 +11,7 @@ import type { MotionData, PageData } from "./page_data";
 import { Player } from "./player";
 import { html, say } from "./svg";
 import { RowTable } from "./table";
+import { themeButton } from "./theme_button";
 import { themeRules } from "./theme";
 
 export type { PageData } from "./page_data";
@@ -88,7 +89,7 @@ class Page implements Mounted {
   private rules = "";
   readonly places: Places;
   private readonly drawing: Drawing;
-  private readonly arrows: readonly Arrows[];
+  private readonly arrows: ArrowSets;
   private readonly transport: Transport;
   private readonly charts: Chart[] = [];
   private readonly table: RowTable;
@@ -121,10 +122,7 @@ class Page implements Mounted {
     const stage = html("section", { class: "lw-stage", "aria-label": "Drawing" }, this.root);
     const canvas = html("div", { class: "lw-canvas" }, stage);
     this.drawing = new Drawing(data, canvas);
-    this.arrows = [
-      new Arrows(data, this.drawing.overlay, "vectors"),
-      new Arrows(data, this.drawing.overlay, "velocities"),
-    ];
+    this.arrows = new ArrowSets(data, this.drawing, canvas);
     this.player = new Player(1, true);
     this.transport = new Transport(stage, {
       play: (on) => this.player.play(on),
@@ -165,7 +163,7 @@ class Page implements Mounted {
     this.dress();
     say(this.title, data.title);
     this.drawing.renew(this.data);
-    for (const arrows of this.arrows) arrows.renew(this.data);
+    this.arrows.renew(this.data);
     if (data.equations.length) this.equations();
     this.motion = Math.min(this.motion, data.motions.length - 1);
     this.show(this.motion, this.nearest(here, index), steady);
@@ -214,7 +212,7 @@ class Page implements Mounted {
     const view = this.view;
     this.drawn = -1;
     this.drawing.show(view);
-    for (const arrows of this.arrows) arrows.show(view);
+    this.arrows.show(view);
     this.transport.show(view);
     // While something is dragged people look at the drawing: numbers follow at half the rate.
     if (!steady || this.updates++ % 2 === 0) {
@@ -271,8 +269,8 @@ class Page implements Mounted {
     const row = this.view.order[this.player.at]!;
     if (row !== this.drawn) {
       this.drawn = row;
-      this.drawing.draw(row);
-      for (const arrows of this.arrows) arrows.draw(row);
+      this.drawing.draw(row, this.view.falls(this.player.at) !== this.player.back);
+      this.arrows.draw(row);
       for (const chart of this.charts) chart.draw(row);
       this.transport.draw(this.view, this.player.at, row);
       this.table.draw(row);
@@ -305,30 +303,15 @@ class Page implements Mounted {
       this.choice.addEventListener("change", () => this.choose(this.choice!.selectedIndex));
     }
     this.summary = html("p", { class: "lw-summary" }, head);
-    const theme = html("button", { type: "button", class: "lw-theme", "aria-label": "Light or dark" }, head, "◐");
-    theme.title = "Light or dark";
-    theme.addEventListener("click", () => this.otherTheme());
+    themeButton(head, this.root);
     return head;
-  }
-
-  private otherTheme(): void {
-    const dark = matchMedia("(prefers-color-scheme: dark)").matches;
-    const now = this.root.dataset.theme ?? (dark ? "dark" : "light");
-    this.root.dataset.theme = now === "dark" ? "light" : "dark";
   }
 
   private toggles(parent: Element): HTMLElement {
     const box = html("div", { class: "lw-toggles", role: "group", "aria-label": "What is shown" }, parent);
     toggle(box, "Paths", true, (on) => this.drawing.toggle("paths", on));
     toggle(box, "Names", true, (on) => this.drawing.toggle("names", on));
-    this.arrows.forEach((arrows, k) => {
-      if (k === 0 && !this.data.motions.some((motion) => motion.vectors.length)) return;
-      toggle(box, ["Vectors", "Velocities"][k]!, false, (on) => {
-        arrows.shown = on;
-        if (k === 0) this.drawing.dim(on);
-        arrows.draw(this.drawn);
-      });
-    });
+    this.arrows.switches(box);
     html("p", { class: "lw-hint" }, box, "Drag a pin or a link. Space plays, arrow keys step.");
     return box;
   }

@@ -23,9 +23,12 @@ export function powerOfTen(value: number, digits = 2): string {
   return withMinus(`${mantissa}·10${raised}`);
 }
 
+/** Of an angle: what is not above it is 0. */
+export const LEAST_ANGLE = 1e-9;
+
 /** A value with its unit: 60°, 12.5 mm. */
 export function measured(value: number, unit: string): string {
-  const text = shortNumber(value);
+  const text = shortNumber(value, 6, unit === "deg" || unit === "rad" ? LEAST_ANGLE : 0);
   if (unit === "deg") return `${trimmed(text)}°`;
   return unit ? `${text} ${unit}` : text;
 }
@@ -58,4 +61,11 @@ export function degreeTicks(low: number, high: number, about: number): number[] 
   const found: number[] = [];
   for (let k = Math.ceil(low / step - 1e-9) + 0; k * step <= high + 1e-9; k++) found.push(k * step + 0);
   return found;
+}
+
+/** The smallest short number that is not below a positive one: 1, 1.5, 2, … times a power of ten. */
+export function roundUp(wanted: number): number {
+  const power = 10 ** Math.floor(Math.log10(wanted));
+  const steps = [1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10];
+  return steps.find((step) => step * power >= wanted * (1 - 1e-12))! * power;
 }

@@ -17,6 +17,13 @@ export interface Equation {
   readonly mathml: string;
 }
 
+/** A force on a point, by its number. */
+export interface ForceData {
+  readonly point: number;
+  readonly x: number;
+  readonly y: number;
+}
+
 /** What carries a shape: numbers of a point and of a turn; -1 for none. */
 export interface FrameData {
   readonly origin: number;
@@ -70,6 +77,8 @@ export interface PageData {
   readonly motions: readonly MotionData[];
   readonly light: ThemeData;
   readonly dark: ThemeData;
+  readonly forces: readonly ForceData[];
+  readonly force_unit: string;
   readonly equations: readonly Equation[];
 }
 
@@ -91,7 +100,7 @@ export interface Part {
   readonly shown: PackedColumn | null;
 }
 
-/** A point: its coordinates and their derivatives by the leading input. */
+/** A point: its coordinates, their first and second derivatives by the leading input. */
 export interface PointData {
   readonly name: string;
   readonly shown: string;
@@ -100,6 +109,8 @@ export interface PointData {
   readonly y: PackedColumn;
   readonly dx: PackedColumn;
   readonly dy: PackedColumn;
+  readonly ddx: PackedColumn;
+  readonly ddy: PackedColumn;
 }
 
 /** How a role is drawn: colours (`tone`: that of the link; "" for none), widths in strokes. */

@@ -20,6 +20,11 @@ export class Player {
     private closed: boolean,
   ) {}
 
+  /** Whether it plays an open way back. */
+  get back(): boolean {
+    return this.playing && this.sense < 0;
+  }
+
   /** Index of the row in the order of the motion. */
   get at(): number {
     return Math.min(this.count - 1, Math.floor(this.place));

@@ -1,7 +1,7 @@
 // The numbers of the row that is shown: quantities, points, and what is known of the position.
 
 import type { MotionView } from "./motion";
-import { powerOfTen, shortNumber } from "./numbers";
+import { LEAST_ANGLE, powerOfTen, shortNumber } from "./numbers";
 import { html, say } from "./svg";
 import { unitText } from "./chart";
 
@@ -48,7 +48,7 @@ export class RowTable {
 
   private quantities(view: MotionView): void {
     const input = view.input;
-    const least = (unit: string): number => (unit === "deg" || unit === "rad" ? 1e-9 : this.rounding);
+    const least = (unit: string): number => (unit === "deg" || unit === "rad" ? LEAST_ANGLE : this.rounding);
     const body = this.table(["", "value", `by ${input.shown}`]);
     view.series.forEach(({ shown, unit, firstUnit }, k) => {
       const line = html("tr", {}, body);

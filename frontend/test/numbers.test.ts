@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { degreeTicks, measured, powerOfTen, shortNumber, ticks } from "../src/numbers";
+import { degreeTicks, measured, powerOfTen, roundUp, shortNumber, ticks } from "../src/numbers";
 
 describe("numbers", () => {
   it("has six digits, and a true minus sign", () => {
@@ -21,6 +21,11 @@ describe("numbers", () => {
   it("measures with the unit", () => {
     expect(measured(60, "deg")).toBe("60°");
     expect(measured(-12.5, "mm")).toBe("−12.5000 mm");
+    expect(measured(-1.4e-14, "deg")).toBe("0°");
+  });
+
+  it("rounds up to short numbers", () => {
+    expect([3.1, 0.0021, 70, 1, 8.5].map(roundUp).map((one) => Number(one.toPrecision(6)))).toEqual([4, 0.0025, 80, 1, 10]);
   });
 
   it("ticks at round numbers", () => {

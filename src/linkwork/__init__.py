@@ -62,6 +62,7 @@ if TYPE_CHECKING:
     from linkwork.results.classification import AssurGroup, Classification, Inversion, LoopType
     from linkwork.results.configurations import Configurations, PathCount
     from linkwork.results.failure import Failure, Remedy
+    from linkwork.results.force import Force
     from linkwork.results.motion import Limit, LimitKind, Motion, OutputLimit, Series
     from linkwork.results.position import Certificate, Position
     from linkwork.results.table import Table
@@ -119,6 +120,7 @@ else:
             ),
             "results.configurations": ("Configurations", "PathCount"),
             "results.failure": ("Failure", "Remedy"),
+            "results.force": ("Force",),
             "results.motion": ("Limit", "LimitKind", "Motion", "OutputLimit", "Series"),
             "results.position": ("Certificate", "Position"),
             "results.table": ("Table",),
@@ -144,6 +146,7 @@ __all__ = [
     "Cylinder",
     "ExpressionError",
     "Failure",
+    "Force",
     "Gear",
     "Input",
     "InputError",

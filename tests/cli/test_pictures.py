@@ -47,6 +47,7 @@ def test_draw_shows_the_position_that_was_asked(run: Run, folder: Path) -> None:
         ("--vectors", "vector:O2A∠θ_crank"),
         ("--velocities", "velocity:A"),
         ("--accelerations", "acceleration:B"),
+        ("--force=B=0,-9.81", "force:B"),
         ("--centres", "centre:I₁₂"),
         ("--centrodes=coupler", "moving_centrode:coupler"),
         ("--dimensions", "dimension:rocker"),

@@ -22,8 +22,10 @@ from linkwork.drawing import (
     scene_of,
 )
 from linkwork.drawing.annotation import round_up
-from linkwork.drawing.rate_arrows import LONGEST, usual_most
+from linkwork.drawing.point_arrows import LONGEST
+from linkwork.drawing.rate_arrows import usual_most
 from linkwork.foundation.errors import InputError
+from linkwork.results.force import Force
 
 NAMES = ["four-bar", "jansen-leg", "slider-crank", "crank-shaper", "planetary-gear"]
 _CACHE = {}
@@ -84,6 +86,41 @@ def test_the_longest_arrow_of_a_motion_is_at_most_the_stated_share_of_the_pictur
     free = [p for p in position.points if p not in position.skeleton.fixed]
     most = max(np.nanmax(np.abs(motion.trace(f"{p}.{rate}"))) for p in free)
     assert LONGEST / 1.51 <= scale * most / scene.measures.size <= LONGEST * (1 + 1e-9)
+
+
+def test_forces_are_arrows_at_their_points_at_the_scale_of_the_caption():
+    forces = (Force(at="B", x=-40.0, y=0.0, unit="N"), Force(at="A", x=3.0, y=-15.0, unit="N"))
+    position, _ = moved("slider-crank")
+    scene = drawn("slider-crank", forces=forces)
+    assert scene.caption.endswith(" N")
+    found, scale = vectors(scene, Role.FORCE), scale_of(scene.caption, "force")
+    assert found == pytest.approx({f.at: scale * complex(f.x, f.y) for f in forces})
+    for arrow in scene.select(Polyline, Role.FORCE):
+        assert arrow.points[0] == pytest.approx(position.points[arrow.of])
+    assert LONGEST / 1.51 <= scale * 40.0 / scene.measures.size <= LONGEST * (1 + 1e-9)
+    assert {text.text for text in scene.select(Text, Role.FORCE_NAME)} == {"F(A)", "F(B)"}
+
+
+def test_forces_at_one_point_are_drawn_one_by_one_and_small_ones_are_told():
+    forces = [Force(at="B", x=10.0, y=0.0), Force(at="B", x=0.0, y=10.0)]
+    scene = drawn("slider-crank", forces=(*forces, Force(at="A", x=0.01, y=0.0)))
+    assert len(scene.select(Polyline, Role.FORCE)) == 2
+    assert scene.caption.endswith("(too short to draw: A)")
+    zero = drawn("slider-crank", forces=(Force(at="B", x=0.0, y=0.0),))
+    assert zero.caption.endswith("force: all are zero")
+
+
+@pytest.mark.parametrize(
+    ("forces", "said"),
+    [
+        ([("Q", 1.0, "N")], 'there is no point "Q" for a force'),
+        ([("A", 1.0, "N"), ("B", 1.0, "kN")], "need one unit, these have several: N, kN"),
+        ([("A", np.inf, "N")], "the force at A is not finite: inf, 0"),
+    ],
+)
+def test_forces_that_cannot_be_drawn_are_refused(forces, said):
+    with pytest.raises(InputError, match=said):
+        drawn("slider-crank", forces=tuple(Force(at=p, x=x, y=0.0, unit=u) for p, x, u in forces))
 
 
 def test_points_that_stand_still_or_say_where_a_line_runs_have_no_arrow():

@@ -43,7 +43,8 @@ def open_page(browser: object, tmp_path: Path) -> Iterator[Callable[..., object]
 
     def opened(motions: dict[str, lw.Motion], **options: object) -> object:
         target = tmp_path / "page.html"
-        shown = {key: options.pop(key) for key in ("equations", "loops") if key in options}
+        own = ("equations", "loops", "forces")
+        shown = {key: options.pop(key) for key in own if key in options}
         target.write_text(offline_page(motion_page(motions, **shown)), "utf-8")  # type: ignore[arg-type]
         settings = {"reduced_motion": "reduce", "viewport": {"width": 1280, "height": 800}}
         context = browser.new_context(offline=True, **(settings | options))  # type: ignore[attr-defined]

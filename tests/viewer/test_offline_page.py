@@ -15,6 +15,7 @@ import linkwork as lw
 from linkwork.drawing import render
 from linkwork.drawing.moving_scene import moving_scene
 from linkwork.drawing.scene import Disc, Role
+from linkwork.results.force import Force
 from linkwork.viewer import drawn_page, motion_page, offline_page
 from linkwork.viewer.offline_page import page_json
 from linkwork.viewer.packing import unpressed
@@ -185,6 +186,85 @@ def test_paths_names_vectors_and_velocities_can_be_shown_and_hidden(
     way = jansen.trace("B")[40] - jansen.trace("A")[40]
     assert complex(x0, -y0) == pytest.approx(jansen.trace("A")[40], rel=1e-4)
     assert (x1 - x0) / (y0 - y1) == pytest.approx(way.real / way.imag, rel=1e-3)
+
+
+def _arrow(page: Any, kind: str, number: int) -> complex:
+    """An arrow from its tail to its tip, as it is drawn."""
+    group = page.locator(f".lw-{kind} > g").nth(number)
+    shaft, head = (group.locator(f".{part}").get_attribute("d") for part in ("shaft", "head"))
+    x0, y0 = map(float, re.findall(_NUMBER, shaft)[:2])
+    x1, y1 = map(float, re.findall(_NUMBER, head)[:2])
+    return complex(x1 - x0, y0 - y1)
+
+
+_NUMBER = r"-?[\d.]+(?:e-?\d+)?"
+
+
+@pytest.mark.parametrize(
+    ("label", "order", "by"), [("Velocity", 1, "d1"), ("Acceleration", 2, "d2")]
+)
+def test_arrows_have_the_length_that_the_legend_tells(
+    open_page: Open, jansen: lw.Motion, label: str, order: int, by: str
+) -> None:
+    page, row = open_page({"motion": jansen}), 205
+    page.evaluate(f"linkwork.goToRow({row})")
+    assert page.locator(".lw-legend").is_hidden()
+    page.get_by_label({1: "Velocities", 2: "Accelerations"}[order]).check()
+    told = page.locator(".lw-legend").inner_text()
+    found = re.fullmatch(rf"{label}: ([\d.]+) mm shows ([\d.]+) mm/rad(²?)", told)
+    assert found is not None, told
+    assert (found[3] == "²") == (order == 2)
+    rate = complex(jansen[f"F.x.{by}"][row], jansen[f"F.y.{by}"][row])
+    kind = {1: "velocities", 2: "accelerations"}[order]
+    arrow = _arrow(page, kind, _moving(jansen).index("F"))
+    assert arrow == pytest.approx(float(found[1]) / float(found[2]) * rate, rel=2e-3)
+
+
+def test_forces_are_shown_at_once(open_page: Open, jansen: lw.Motion) -> None:
+    page = open_page({"motion": jansen}, forces=[Force(at="F", x=30.0, y=60.0, unit="N")])
+    found = re.fullmatch(
+        r"Force: ([\d.]+) mm shows ([\d.]+) N", page.locator(".lw-legend").inner_text()
+    )
+    assert found is not None
+    arrow = _arrow(page, "forces", 0)
+    assert arrow == pytest.approx(float(found[1]) / float(found[2]) * (30 + 60j), rel=1e-4)
+    page.get_by_label("Forces").uncheck()
+    assert page.locator(".lw-legend").is_hidden()
+    assert page.locator(".lw-forces").is_hidden()
+    assert open_page({"motion": jansen}).get_by_label("Forces").count() == 0
+
+
+def test_the_arrow_of_what_is_driven_turns_round_with_it(
+    open_page: Open, limited: lw.Motion
+) -> None:
+    page = open_page({"motion": limited})
+    rises = np.diff(limited["θ12"]) > 0
+    head = page.locator("path.r-input.lw-head")
+    away = []
+    for row in (10, int(np.flatnonzero(~rises)[10])):
+        page.evaluate(f"linkwork.goToRow({row})")
+        tip, tail = page.evaluate(_INPUT_ENDS)
+        away.append(tail[0] * tip[1] - tail[1] * tip[0] > 0)
+        assert away[-1] == rises[row]
+    assert away == [True, False]
+    assert head.count() == 1
+
+
+#: Tip and tail of the arrow of the input, from the driven pivot, in the plane.
+_INPUT_ENDS = """() => {
+  const svg = document.querySelector('.lw-drawing');
+  const back = svg.getScreenCTM().inverse();
+  const place = (element, k) => {
+    const numbers = element.getAttribute('d').match(/-?[\\d.]+(?:e-?\\d+)?/g).map(Number);
+    const [x, y] = numbers.slice(k, k + 2);
+    return new DOMPoint(x, y).matrixTransform(back.multiply(element.getScreenCTM()));
+  };
+  const [shaft, head] = document.querySelectorAll('path.r-input');
+  const pin = document.querySelector('circle[data-of="A0"][data-role="pin"]');
+  const o = new DOMPoint(pin.cx.baseVal.value, pin.cy.baseVal.value)
+    .matrixTransform(back.multiply(pin.getScreenCTM()));
+  return [place(head, 0), place(shaft, 0)].map(({ x, y }) => [x - o.x, o.y - y]);
+}"""
 
 
 def _moving(motion: lw.Motion) -> list[str]:

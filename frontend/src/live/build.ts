@@ -34,6 +34,7 @@ const one = (name: string, entry: string, required = true): Field => ({ name, en
 export const PIECES: readonly Piece[] = [
   {
     title: "Point",
+    doc: "x and y are its place in the sketch of the file, where the mechanism is first put together.",
     fields: [one("name", "text"), one("x", "plain number"), one("y", "plain number"), one("on link", "link", false)],
     edit: (v) => ({
       kind: "add_point",

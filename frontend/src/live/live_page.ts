@@ -2,6 +2,7 @@
 
 import type { CannotClose, FileState, LiveEvent, LiveRequest, MotionFound } from "../messages";
 import { mount, type Mounted } from "../mount";
+import { themeButton } from "../theme_button";
 import { unitText } from "../chart";
 import { shortNumber, trimmed } from "../numbers";
 import { html } from "../svg";
@@ -101,7 +102,7 @@ export class LivePage {
         this.newton.show(event);
         break;
       case "point_moved":
-        if (event.answers !== null && this.element.dataset.live !== "true") this.notices.say(this.sketch.told(event));
+        if (event.answers !== null && this.element.dataset.live !== "true") this.notices.done(this.sketch.told(event));
         break;
       case "problems_found":
         this.notices.problems(event);
@@ -114,7 +115,7 @@ export class LivePage {
         this.notices.changed(event, this.decisions());
         break;
       case "saved":
-        this.notices.say(`Saved in ${event.file}.`);
+        this.notices.done(`Saved in ${event.file}.`);
         break;
     }
     if (ANSWERS.has(event.kind)) this.latest.answered(event.answers);
@@ -180,6 +181,7 @@ export class LivePage {
       const head = html("header", { class: "lw-head" }, this.plain);
       html("h1", {}, head, this.file!.title);
       head.append(this.bar.element);
+      themeButton(head, this.plain);
       const stage = html("section", { class: "lw-stage", "aria-label": "Drawing" }, this.plain);
       html("div", { class: "lw-canvas" }, stage);
       stage.append(this.notices.element);

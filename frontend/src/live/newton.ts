@@ -212,8 +212,15 @@ export class Newton {
     if (this.held || this.chosen !== 0) return;
     for (const name of this.found!.guessed) {
       const place = iterate.points[name];
-      if (place) this.handle(name, place, 11 * stroke);
+      if (place) this.handle(name, this.inSight(place, 14 * stroke), 11 * stroke);
     }
+  }
+
+  /** A place itself, or the nearest that can be seen: a guess far away can be dragged back. */
+  private inSight([x, y]: readonly [number, number], margin: number): [number, number] {
+    const { x: left, y: top, width, height } = this.page!.places.drawing.element.viewBox.baseVal;
+    const within = (value: number, low: number, high: number): number => Math.min(Math.max(value, low + margin), high - margin);
+    return [within(x, left, left + width), -within(-y, top, top + height)];
   }
 
   /** Where the guess can be taken hold of: one unknown follows the point. */

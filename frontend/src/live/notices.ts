@@ -62,6 +62,12 @@ export class Notices {
     this.say(event.message, event.reloaded || !event.unsaved ? {} : choices);
   }
 
+  /** Something was done as wished. */
+  done(text: string): void {
+    this.say(text);
+    this.message.dataset.done = "";
+  }
+
   say(text: string, choices: Choices = {}, lasting = true): void {
     this.clear();
     html("span", {}, this.message, text);
@@ -76,6 +82,7 @@ export class Notices {
   }
 
   clear(): void {
+    delete this.message.dataset.done;
     this.message.replaceChildren();
   }
 

@@ -10,6 +10,8 @@ from linkwork.cli.options import (
     configuration_option,
     debug_option,
     file_argument,
+    force_option,
+    forces_of,
     set_option,
 )
 from linkwork.cli.output_file import check_outputs, write_bytes
@@ -37,6 +39,7 @@ __all__ = ["animate"]
 )
 @click.option("--rows", type=int, help="Positions of the cycle that a film shows.")
 @click.option("--no-certificates", is_flag=True, help="Prove nothing: faster.")
+@force_option
 @configuration_option
 @set_option
 @debug_option
@@ -49,6 +52,7 @@ def animate(
     fps: float,
     rows: int | None,
     no_certificates: bool,
+    forces: tuple[str, ...],
     configuration: str | None,
     changes: tuple[str, ...],
 ) -> None:
@@ -70,9 +74,12 @@ def animate(
         raise InputError("--all shows every circuit: leave out --configuration")
     if rows is not None and kind == "html":
         raise InputError("--rows is for films: a page shows all rows")
+    if forces and kind != "html":
+        raise InputError("--force is for a page: name it .html")
     check_outputs(file, output)
     mechanism = read_mechanism(file, changes)
     picture.check_points(mechanism)
+    shown = forces_of(mechanism, forces)
     motions = _motions(mechanism, every, configuration, certify=not no_certificates)
     if not any(motion.found.any() for motion in motions.values()):
         print_lines([f"Did not write {output}: there is no position to draw."], err=True)
@@ -84,6 +91,7 @@ def animate(
             options=options,
             equations=mechanism.equations().mathml(),
             loops=mechanism.moving_loops,
+            forces=shown,
             progress=tell,
         )
     write_bytes(output, [content])

@@ -13,6 +13,8 @@ from linkwork.cli.options import (
     configuration_option,
     debug_option,
     file_argument,
+    force_option,
+    forces_of,
     input_values,
     set_option,
 )
@@ -33,6 +35,7 @@ __all__ = ["draw"]
 @click.option("--vectors", is_flag=True, help="The loop equations as vectors, head to tail.")
 @click.option("--velocities", is_flag=True, help="Arrows of the points' velocities.")
 @click.option("--accelerations", is_flag=True, help="Arrows of the points' accelerations.")
+@force_option
 @click.option("--centres", is_flag=True, help="The instant centres of all pairs of links.")
 @click.option(
     "--centrodes",
@@ -68,6 +71,7 @@ def draw(
     changes: tuple[str, ...],
     vectors: bool,
     traces: tuple[str, ...],
+    forces: tuple[str, ...],
     theme: str,
     **shown: Any,
 ) -> None:
@@ -77,6 +81,7 @@ def draw(
       linkwork draw rapier.toml -o rapier.png
       linkwork draw rapier.toml -o rapier.svg --at 120 --vectors
       linkwork draw fourbar.toml -o crossed.png --configuration crossed
+      linkwork draw fourbar.toml -o load.svg --force "B=0,-981 N"
       linkwork draw fourbar.toml -o poles.pdf --centres --centrodes coupler
     """
     picture.check_picture(output)
@@ -85,13 +90,14 @@ def draw(
     if not vectors:
         picture.check_points(mechanism)
     values = input_values(mechanism, at)
+    options = SceneOptions(forces=forces_of(mechanism, forces), **shown)
     with progress("sweeping") as tell:
         scene = mechanism.scene(
             values,
             configuration=configuration,
             vectors=vectors,
             traces=traces or None,
-            options=SceneOptions(**shown),
+            options=options,
             progress=tell,
         )
     picture.write(scene, output, theme=THEMES[theme])

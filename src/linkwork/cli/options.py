@@ -10,6 +10,7 @@ import click
 from linkwork.everyday import Mechanism
 from linkwork.foundation.errors import ExpressionError, InputError
 from linkwork.foundation.policy import ChangePointPolicy
+from linkwork.results.force import Force, check_forces
 
 __all__ = [
     "DEBUG",
@@ -19,6 +20,8 @@ __all__ = [
     "configuration_option",
     "debug_option",
     "file_argument",
+    "force_option",
+    "forces_of",
     "input_values",
     "json_option",
     "number_or_formula",
@@ -111,6 +114,15 @@ change_points_option: Decorator = click.option(
 )
 
 
+force_option: Decorator = click.option(
+    "--force",
+    "forces",
+    metavar='POINT="X,Y N"',
+    multiple=True,
+    help="Show a force on a point: its components and their unit; may be repeated.",
+)
+
+
 def range_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """``--from``, ``--to`` and ``--step`` of a sweep."""
     command = click.option("--step", type=NUMBER, help="Distance between input values.")(command)
@@ -148,3 +160,31 @@ def input_values(mechanism: Mechanism, asked: tuple[str, ...]) -> dict[str, floa
         except ExpressionError as error:
             raise InputError(f"--at {text}: {error}") from None
     return found
+
+
+def forces_of(mechanism: Mechanism, asked: tuple[str, ...]) -> tuple[Force, ...]:
+    """The forces of ``--force``.
+
+    Raises
+    ------
+    InputError
+        If one is not a point with two components, or units differ.
+    UnknownNameError
+        If there is no such point.
+    """
+    forces = tuple(map(_force, asked))
+    check_forces(forces, mechanism.model.compiled.points.names)
+    return forces
+
+
+def _force(text: str) -> Force:
+    name, _, value = text.partition("=")
+    first, _, rest = value.partition(",")
+    second, _, unit = rest.strip().partition(" ")
+    try:
+        x, y = float(first), float(second)
+    except ValueError:
+        raise InputError(
+            f'--force {text}: a force is a point and two components, --force "C=0,-981 N"'
+        ) from None
+    return Force(at=name.strip(), x=x, y=y, unit=unit.strip())

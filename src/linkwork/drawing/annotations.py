@@ -9,6 +9,7 @@ from linkwork.drawing.annotation import Annotation
 from linkwork.drawing.box import Box
 from linkwork.drawing.centre_symbols import centre_symbols, centrode_symbols
 from linkwork.drawing.dimension_symbols import dimension_symbols
+from linkwork.drawing.force_arrows import force_arrows
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.rate_arrows import rate_arrows
@@ -60,7 +61,7 @@ def annotation_of(subject: Subject, chosen: SceneOptions, drawn: Sequence[Primit
 
 
 def _of_motion(subject: Subject, chosen: SceneOptions) -> Iterator[Annotation]:
-    """Vectors, rates, centres and centrodes."""
+    """Vectors, rates, forces, centres and centrodes."""
     position, motion, pose, measures = (
         subject.position, subject.motion, subject.pose, subject.measures
     )  # fmt: skip
@@ -70,6 +71,8 @@ def _of_motion(subject: Subject, chosen: SceneOptions) -> Iterator[Annotation]:
     for order, wanted in ((1, chosen.velocities), (2, chosen.accelerations)):
         if wanted:
             yield rate_arrows(position, motion, pose, measures, order)
+    if chosen.forces:
+        yield force_arrows(chosen.forces, pose, position.units.length, measures)
     if chosen.centres:
         yield centre_symbols(instant_centres(position), subject.within, measures)
     if chosen.centrodes and motion is not None:

@@ -2,36 +2,34 @@
 
 All arrows of a picture have one scale, and so have all pictures of a motion: a round number of
 length units per unit of the rate, such that the longest arrow of the motion is at most
-:data:`LONGEST` of the drawn size. Where rates grow without bound, as beside a dead point, the scale
-is that of all but the fastest rows, unless the position itself is one of these.
+:data:`~linkwork.drawing.point_arrows.LONGEST` of the drawn size. Where rates grow without bound, as
+beside a dead point, the scale is that of all but the fastest rows, unless the position itself is
+one of these.
 """
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 
 import numpy as np
 
 from linkwork.drawing.annotation import Annotation, round_up
-from linkwork.drawing.captions import printed_name
-from linkwork.drawing.label_placement import Choice, places_beside
 from linkwork.drawing.measures import Measures
+from linkwork.drawing.point_arrows import LONGEST, ArrowLook, point_arrows, scale_caption
 from linkwork.drawing.pose import Pose
-from linkwork.drawing.scene import Polyline, Primitive, Role, xy
+from linkwork.drawing.scene import Role
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 from linkwork.results.quantity import Kind, Rate
 
-__all__ = ["LONGEST", "rate_arrows", "rate_of", "usual_most"]
+__all__ = ["rate_arrows", "rate_of", "usual_most"]
 
-#: The longest arrow of a motion over the drawn size.
-LONGEST = 0.3
-
-_LETTER = {1: "v", 2: "a"}
 _WORD = {1: "velocity", 2: "acceleration"}
-_ROLE = {1: Role.VELOCITY, 2: Role.ACCELERATION}
-_SHORTEST = 1.5  # radii of a pin: shorter arrows would be hidden by it
+_LOOK = {
+    1: ArrowLook(role=Role.VELOCITY, name_role=Role.VELOCITY_NAME, letter="v"),
+    2: ArrowLook(role=Role.ACCELERATION, name_role=Role.ACCELERATION_NAME, letter="a"),
+}
 _FAST = 0.95  # of the rows are slower than the fastest ones
 _BEYOND = 3.0  # times as fast as the others are rows beside a dead point
 
@@ -60,31 +58,13 @@ def rate_arrows(
     if not most:
         return Annotation(caption=f"{_WORD[order]}: none, nothing moves")
     scale = 1.0 / round_up(most / (LONGEST * measures.size))
-    drawn: list[Primitive] = []
-    names: list[Choice] = []
-    short: list[str] = []
-    for name, rate in rates.items():
-        tail = pose.points[name]
-        tip = tail + scale * rate
-        if abs(tip - tail) < _SHORTEST * measures.pin:
-            short.append(printed_name(name))
-            continue
-        drawn.append(
-            Polyline(
-                role=_ROLE[order],
-                of=name,
-                points=(xy(tail), xy(tip)),
-                head=min(measures.head, 0.5 * abs(tip - tail)),
-            )
-        )
-        text = f"{_LETTER[order]}({printed_name(name)})"
-        height = 0.8 * measures.text
-        role = Role.VELOCITY_NAME if order == 1 else Role.ACCELERATION_NAME
-        names.append(places_beside(role, name, text, tip, height, measures))
-    caption = _caption(position, order, scale, measures)
+    arrows, short = point_arrows(rates, pose.points, scale, _LOOK[order], measures)
+    rate = rate_of(order, by_time)
+    unit = rate.unit(Kind.LENGTH, position.units, position.derivative_unit).replace("^2", "²")
+    caption = scale_caption(_WORD[order], scale, position.units.length, unit, measures.size)
     if short:
         caption += f" (too short to draw: {', '.join(short)})"
-    return Annotation(drawn=drawn, names=names, caption=caption)
+    return replace(arrows, caption=caption)
 
 
 def rate_of(order: int, by_time: bool) -> Rate:
@@ -126,14 +106,3 @@ def _rates(position: Position, pose: Pose, order: int) -> dict[str, complex]:
             f'"{position.mechanism}" has no {_WORD[order]} to draw at this input value ({why})'
         )
     return found
-
-
-def _caption(position: Position, order: int, scale: float, measures: Measures) -> str:
-    """What an arrow's length means: ``velocity: 20 mm shows 500 mm/s``."""
-    units = position.units
-    rate = rate_of(order, bool(position.velocity))
-    unit = rate.unit(Kind.LENGTH, units, position.derivative_unit).replace("^2", "²")
-    # Both numbers are short: the scale is a short number, the length a power of ten.
-    length = 10.0 ** math.floor(math.log10(0.3 * measures.size))
-    shown = f"{length:g} {units.length}".rstrip()
-    return f"{_WORD[order]}: {shown} shows {length / scale:.4g} {unit}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from linkwork.drawing.box import Box
+from linkwork.results.force import Force
 from linkwork.results.vector_loop import VectorLoop
 
 __all__ = ["SceneOptions"]
@@ -33,6 +34,8 @@ class SceneOptions:
         too.
     velocities, accelerations : bool
         Arrows at the points that move.
+    forces : tuple of Force
+        Arrows of these forces at their points.
     speed : bool
         Colour the paths of points by their speed, with a scale.
     centres : bool
@@ -55,6 +58,7 @@ class SceneOptions:
     vectors: tuple[VectorLoop, ...] = ()
     velocities: bool = False
     accelerations: bool = False
+    forces: tuple[Force, ...] = ()
     speed: bool = False
     centres: bool = False
     centrodes: tuple[str, ...] = ()

@@ -103,6 +103,7 @@ class _Inks:
     driven: str
     velocity: str
     acceleration: str
+    force: str
 
 
 def _styles(c: _Inks) -> FrozenDict[Role, Style]:
@@ -140,6 +141,7 @@ def _styles(c: _Inks) -> FrozenDict[Role, Style]:
             Role.VECTOR: Style(line="tone", width=2.0, fill="tone"),
             Role.VELOCITY: Style(line=c.velocity, width=2.0, fill=c.velocity),
             Role.ACCELERATION: Style(line=c.acceleration, width=2.0, fill=c.acceleration),
+            Role.FORCE: Style(line=c.force, width=2.4, fill=c.force),
             Role.CENTRE: Style(line=c.acceleration, width=1.8),
             Role.LINK_NAME: Style(fill="tone"),
             Role.LABEL: Style(fill=c.ink),
@@ -148,6 +150,7 @@ def _styles(c: _Inks) -> FrozenDict[Role, Style]:
             Role.LOOP_NAME: Style(fill="tone"),
             Role.VELOCITY_NAME: Style(fill=c.velocity),
             Role.ACCELERATION_NAME: Style(fill=c.acceleration),
+            Role.FORCE_NAME: Style(fill=c.force),
             Role.CENTRE_NAME: Style(fill=c.acceleration),
             Role.DIMENSION_NAME: Style(fill=c.ink),
             Role.SCALE_NAME: Style(fill=c.grey),
@@ -172,6 +175,7 @@ LIGHT = Theme(
             driven=_VERMILLION,
             velocity="#1F3A93",
             acceleration="#8E1B5B",
+            force="#6B4E00",
         )
     ),
 )
@@ -194,6 +198,7 @@ DARK = Theme(
             driven="#FF803D",
             velocity="#A9C4FF",
             acceleration="#FFA9D2",
+            force="#FFD27F",
         )
     ),
 )

@@ -10,6 +10,7 @@ from typing import Any
 from linkwork import drawing, export, motion, textfile, viewer
 from linkwork.everyday.solvable import SolvableMechanism
 from linkwork.foundation.errors import InputError
+from linkwork.results.force import Force
 from linkwork.results.motion import Motion
 
 __all__ = ["Mechanism"]
@@ -96,6 +97,7 @@ class Mechanism(SolvableMechanism):
         motion: Motion | None = None,
         *,
         all_circuits: bool = False,
+        forces: Sequence[Force] = (),
         options: viewer.FilmOptions | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> None:
@@ -113,19 +115,25 @@ class Mechanism(SolvableMechanism):
             A sweep of this mechanism; that of the guess around its circuit unless given.
         all_circuits : bool
             Let a page show all circuits, to choose from.
+        forces : sequence of Force
+            Let a page show them as arrows at their points.
         options : FilmOptions, optional
             Pictures a second, rows, size of a film.
 
         Raises
         ------
         InputError
-            If the suffix names no known format, or there is nothing to draw.
+            If the suffix names no known format, there is nothing to draw, or forces are not for it.
+        UnknownNameError
+            If there is no point that a force is at.
         MissingPackageError
             Without what writes the format.
         """
         kind = viewer.check_animation(path, options)
         if all_circuits and (motion is not None or kind != "html"):
             raise InputError("all circuits are shown by a page of the mechanism's own: a .html")
+        if forces and kind != "html":
+            raise InputError("forces are shown by a page: a .html")
         motions = self._shown(motion, all_circuits, progress)
         content = viewer.animation(
             motions,
@@ -133,11 +141,18 @@ class Mechanism(SolvableMechanism):
             options=options,
             equations=self.equations().mathml(),
             loops=self.moving_loops,
+            forces=forces,
             progress=progress,
         )
         Path(path).write_bytes(content)
 
-    def widget(self, motion: Motion | None = None, *, all_circuits: bool = False) -> Any:
+    def widget(
+        self,
+        motion: Motion | None = None,
+        *,
+        all_circuits: bool = False,
+        forces: Sequence[Force] = (),
+    ) -> Any:
         """The motion in a notebook, to play and to drag; needs the extra ``notebook``.
 
         Parameters
@@ -146,6 +161,8 @@ class Mechanism(SolvableMechanism):
             A sweep of this mechanism; that of the guess around its circuit unless given.
         all_circuits : bool
             Show all circuits, to choose from.
+        forces : sequence of Force
+            Show them as arrows at their points.
 
         Returns
         -------
@@ -164,7 +181,9 @@ class Mechanism(SolvableMechanism):
             raise InputError("a widget shows the motion that is given, or all circuits: not both")
         motions = self._shown(motion, all_circuits)
         equations = self.equations().mathml()
-        return viewer.motions_widget(motions, equations=equations, loops=self.moving_loops)
+        return viewer.motions_widget(
+            motions, equations=equations, loops=self.moving_loops, forces=forces
+        )
 
     def _shown(
         self,

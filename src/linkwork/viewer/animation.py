@@ -14,6 +14,7 @@ from linkwork.drawing.moving_scene import moving_scene
 from linkwork.drawing.theme import LIGHT, Theme
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.errors import InputError
+from linkwork.results.force import Force
 from linkwork.results.motion import Motion
 from linkwork.viewer.film_file import FILM_FORMATS, check_film, film_bytes
 from linkwork.viewer.offline_page import offline_page
@@ -89,6 +90,7 @@ def animation(
     options: FilmOptions | None = None,
     equations: Sequence[tuple[str, str]] = (),
     loops: Loops | None = None,
+    forces: Sequence[Force] = (),
     progress: Callable[[float], None] | None = None,
 ) -> bytes:
     """The content of a file that shows motions of one mechanism.
@@ -105,6 +107,8 @@ def animation(
         Labels and MathML of the loop equations, for a page.
     loops : callable, optional
         See :func:`~linkwork.viewer.page_building.motion_page`.
+    forces : sequence of Force
+        Shown as arrows, for a page.
     progress : callable, optional
         Told the share of a film that is done, 0 to 1.
 
@@ -114,7 +118,8 @@ def animation(
         If there is nothing to draw, or the format cannot be written here.
     """
     if kind == "html":
-        return offline_page(motion_page(motions, equations=equations, loops=loops)).encode()
+        page = motion_page(motions, equations=equations, loops=loops, forces=forces)
+        return offline_page(page).encode()
     motion = next((motion for motion in motions.values() if motion.found.any()), None)
     if motion is None:
         raise InputError("there is no motion to show: no position was found")

@@ -16,6 +16,7 @@ from linkwork.drawing.scene import Role
 from linkwork.drawing.theme import DARK, LIGHT, Theme
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
+from linkwork.results.force import Force, check_forces, force_unit
 from linkwork.results.motion import Motion, Series
 from linkwork.results.quantity import Rate
 from linkwork.results.vector_loop import MovingLoop
@@ -24,6 +25,7 @@ from linkwork.viewer.packing import Pack, packed
 from linkwork.viewer.page_data import (
     Column,
     Equation,
+    ForceData,
     LimitMark,
     MotionData,
     PackedColumn,
@@ -53,6 +55,7 @@ def motion_page(
     *,
     equations: Sequence[tuple[str, str]] = (),
     loops: Loops | None = None,
+    forces: Sequence[Force] = (),
     like: Sequence[MovingScene] = (),
 ) -> PageData:
     """The data of a page that shows motions of one mechanism.
@@ -67,6 +70,8 @@ def motion_page(
     loops : callable, optional
         Gives the loop equations over a motion, to be shown as vectors;
         ``mechanism.moving_loops``.
+    forces : sequence of Force
+        Shown as arrows at their points, the same over the whole motion.
     like : sequence of MovingScene
         The same motions drawn with other dimensions, see
         :func:`~linkwork.drawing.moving_scene.moving_scene`.
@@ -74,7 +79,9 @@ def motion_page(
     Raises
     ------
     InputError
-        If there is nothing to draw.
+        If there is nothing to draw, or forces have different units.
+    UnknownNameError
+        If there is no point that a force is at.
     """
     shown = {name: motion for name, motion in motions.items() if motion.found.any()}
     if not shown:
@@ -85,7 +92,7 @@ def motion_page(
         moving_scene(motion, within=within, like=old)
         for motion, old in zip(shown.values(), before, strict=True)
     ]
-    return drawn_page(shown, scenes, equations, loops=loops)
+    return drawn_page(shown, scenes, equations, loops=loops, forces=forces)
 
 
 def drawn_page(
@@ -94,6 +101,7 @@ def drawn_page(
     equations: Sequence[tuple[str, str]] = (),
     *,
     loops: Loops | None = None,
+    forces: Sequence[Force] = (),
     pack: Pack = packed,
 ) -> PageData:
     """The data of a page from motions that are drawn already.
@@ -101,6 +109,7 @@ def drawn_page(
     ``pack`` writes the columns: :func:`~linkwork.viewer.packing.unpressed` is quick, for a page
     that is soon renewed, and needs eight times the room.
     """
+    check_forces(forces, next(iter(motions.values())).points)
     first, measures = next(iter(motions.values())), scenes[0].scene.measures
     view = Box.around(corner for scene in scenes for corner in scene.view.corners)
     view = view.grown(_MARGIN * measures.size)
@@ -123,6 +132,8 @@ def drawn_page(
         ),
         light=_theme(LIGHT),
         dark=_theme(DARK),
+        forces=tuple(_forces(first, forces)),
+        force_unit=force_unit(forces),
         equations=tuple(Equation(label=label, mathml=mathml) for label, mathml in equations),
     )
 
@@ -159,9 +170,9 @@ def _motion(
 def _summary(motion: Motion) -> str:
     """How much of it was found and proved, in a line."""
     found, proved = int(motion.found.sum()), int(motion.certified.sum())
-    text = f"{found} of {len(motion)} rows found"
+    text = f"{found} of {len(motion)} positions found"
     if proved == found:
-        return f"{text}, all proved"
+        return f"{text}, each proved"
     return f"{text}, {proved} proved" if proved else text
 
 
@@ -205,7 +216,15 @@ def _points(motion: Motion, pack: Pack) -> Iterator[PointData]:
             y=pack(y.value, found),
             dx=pack(x.first, found, rate=True),
             dy=pack(y.first, found, rate=True),
+            ddx=pack(x.second, found, rate=True),
+            ddy=pack(y.second, found, rate=True),
         )
+
+
+def _forces(motion: Motion, forces: Sequence[Force]) -> Iterator[ForceData]:
+    numbers = {name: k for k, name in enumerate(motion.points)}
+    for force in forces:
+        yield ForceData(point=numbers[force.at], x=force.x, y=force.y)
 
 
 def _evidence(motion: Motion, pack: Pack) -> RowEvidence:

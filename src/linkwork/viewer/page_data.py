@@ -11,6 +11,7 @@ from dataclasses import dataclass
 __all__ = [
     "Column",
     "Equation",
+    "ForceData",
     "FrameData",
     "LimitMark",
     "MotionData",
@@ -55,7 +56,7 @@ class Column:
 
 @dataclass(frozen=True, kw_only=True)
 class PointData:
-    """A point: its coordinates and their derivatives by the leading input."""
+    """A point: its coordinates, their first and second derivatives by the leading input."""
 
     name: str
     shown: str
@@ -64,6 +65,8 @@ class PointData:
     y: PackedColumn
     dx: PackedColumn
     dy: PackedColumn
+    ddx: PackedColumn
+    ddy: PackedColumn
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,6 +121,15 @@ class VectorData:
     end: int
     tone: int
     course: tuple[PackedColumn, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForceData:
+    """A force on a point, by its number."""
+
+    point: int
+    x: float
+    y: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -220,4 +232,6 @@ class PageData:
     motions: tuple[MotionData, ...]
     light: ThemeData
     dark: ThemeData
+    forces: tuple[ForceData, ...]
+    force_unit: str
     equations: tuple[Equation, ...]

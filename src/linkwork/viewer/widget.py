@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from linkwork.foundation.errors import MissingPackageError, choices
+from linkwork.results.force import Force
 from linkwork.results.motion import Motion
 from linkwork.viewer.offline_page import page_json
 from linkwork.viewer.page_building import Loops, motion_page
@@ -31,6 +32,7 @@ def motions_widget(
     *,
     equations: Sequence[tuple[str, str]] = (),
     loops: Loops | None = None,
+    forces: Sequence[Force] = (),
 ) -> Any:
     """Motions of one mechanism, to choose from, to play and to drag.
 
@@ -43,6 +45,8 @@ def motions_widget(
         Labels and MathML of the loop equations.
     loops : callable, optional
         See :func:`~linkwork.viewer.page_building.motion_page`.
+    forces : sequence of Force
+        Shown as arrows.
 
     Returns
     -------
@@ -58,7 +62,8 @@ def motions_widget(
         Without anywidget.
     """
     kind = _widget_class()
-    page = json.loads(page_json(motion_page(motions, equations=equations, loops=loops)))
+    data = motion_page(motions, equations=equations, loops=loops, forces=forces)
+    page = json.loads(page_json(data))
     rows = {name: np.flatnonzero(m.found) for name, m in motions.items() if m.found.any()}
     return kind(page, {name: frozenset(found.tolist()) for name, found in rows.items()})
 

@@ -405,7 +405,7 @@ def test_the_range_of_the_input_is_set(open_live: Open, served: Served) -> None:
     form = page.locator(".lw-build form", has_text="link crank")
     form.get_by_label("To [deg]").fill("90")
     form.get_by_role("button", name="Set the input").click()
-    page.get_by_text("91 of 91 rows found").wait_for()
+    page.get_by_text("91 of 91 positions found").wait_for()
     assert float(lw.loads(served.workbench.text).sweep()["crank"][-1]) == 90.0
 
 

@@ -1,0 +1,60 @@
+// All kinds of arrows over the drawing, their switches, and the legend that tells their scales.
+
+import { Arrows, type ArrowKind } from "./arrows";
+import { toggle } from "./controls";
+import type { Drawing } from "./drawing";
+import type { MotionView } from "./motion";
+import type { PageData } from "./page_data";
+import { html, say } from "./svg";
+
+const CALLED: Readonly<Record<ArrowKind, string>> = {
+  vectors: "Vectors",
+  velocities: "Velocities",
+  accelerations: "Accelerations",
+  forces: "Forces",
+};
+
+export class ArrowSets {
+  private readonly kinds: readonly Arrows[];
+  private readonly legend: HTMLElement;
+  private row = -1;
+
+  constructor(
+    data: PageData,
+    private readonly drawing: Drawing,
+    canvas: Element,
+  ) {
+    const kinds = Object.keys(CALLED) as ArrowKind[];
+    this.kinds = kinds.map((kind) => new Arrows(data, drawing.overlay, kind));
+    this.legend = html("p", { class: "lw-legend", hidden: "" }, canvas);
+  }
+
+  /** A switch for every kind that there is something of; forces are on. */
+  switches(box: Element): void {
+    for (const arrows of this.kinds) {
+      if (!arrows.any) continue;
+      arrows.shown = arrows.kind === "forces";
+      toggle(box, CALLED[arrows.kind], arrows.shown, (on) => {
+        arrows.shown = on;
+        if (arrows.kind === "vectors") this.drawing.dim(on);
+        this.draw(this.row);
+      });
+    }
+  }
+
+  renew(data: PageData): void {
+    for (const arrows of this.kinds) arrows.renew(data);
+  }
+
+  show(view: MotionView): void {
+    for (const arrows of this.kinds) arrows.show(view);
+  }
+
+  draw(row: number): void {
+    this.row = row;
+    for (const arrows of this.kinds) arrows.draw(row);
+    const told = this.kinds.filter((arrows) => arrows.shown && arrows.legend).map((arrows) => arrows.legend);
+    say(this.legend, told.join("\n"));
+    this.legend.hidden = told.length === 0;
+  }
+}

@@ -1,0 +1,66 @@
+"""Forces on points, to be shown."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
+
+__all__ = ["Force", "check_forces", "force_unit"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Force:
+    """A force on a point.
+
+    Parameters
+    ----------
+    at : str
+        The point.
+    x, y : float
+        Its components, in ``unit``.
+    unit : str
+        For example ``N``; all forces of a picture have the same.
+    """
+
+    at: str
+    x: float
+    y: float
+    unit: str = ""
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.x) and math.isfinite(self.y)):
+            raise InputError(f"the force at {self.at} is not finite: {self.x:g}, {self.y:g}")
+
+
+def force_unit(forces: Iterable[Force]) -> str:
+    """The unit that all forces have.
+
+    Raises
+    ------
+    InputError
+        If they have different ones.
+    """
+    units = dict.fromkeys(force.unit for force in forces)
+    if len(units) > 1:
+        listed = ", ".join(unit or "none" for unit in units)
+        raise InputError(f"forces of one picture need one unit, these have several: {listed}")
+    return next(iter(units), "")
+
+
+def check_forces(forces: Iterable[Force], points: Iterable[str]) -> None:
+    """Refuse forces at points that are not there, and units that differ.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+    """
+    known, every = tuple(points), tuple(forces)
+    for force in every:
+        if force.at not in known:
+            raise UnknownNameError(
+                f'there is no point "{force.at}" for a force {choices("points", known, force.at)}'
+            )
+    force_unit(every)
