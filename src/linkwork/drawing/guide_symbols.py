@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import cmath
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +14,8 @@ from linkwork.drawing.link_symbols import Gap, uncovered
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Polygon, Polyline, Primitive, Role, xy
-from linkwork.mechanism.skeleton import Guide
+from linkwork.mechanism.linkage import GROUND
+from linkwork.mechanism.skeleton import Guide, Rail
 
 __all__ = ["Track", "guide_symbols", "track_gaps", "tracks"]
 
@@ -56,7 +57,30 @@ def tracks(pose: Pose, measures: Measures, tone_of: Mapping[str, int]) -> list[T
     groups: dict[str, list[Guide]] = {}
     for guide in pose.skeleton.guides:
         groups.setdefault(guide.name, []).append(guide)
-    return [_track(pose, measures, guides, tone_of) for guides in groups.values()]
+    found = [_track(pose, measures, guides, tone_of) for guides in groups.values()]
+    return found + [_rail_track(pose, measures, rail) for rail in pose.skeleton.rails]
+
+
+def _rail_track(pose: Pose, measures: Measures, rail: Rail) -> Track:
+    """A block on a line that stands still, where the sliding body is joined to another one."""
+    carrying = [p for p in rail.points if p in pose.skeleton.pins] or list(rail.points[:1])
+    places = tuple(pose.points[p] for p in carrying)
+    ways = [pose.paths.get(p, np.array([pose.points[p]])) for p in carrying]
+    far = np.concatenate([((way - places[0]) * rail.along.conjugate()).real for way in ways])
+    return Track(
+        name=rail.name,
+        on=GROUND,
+        tone=1,
+        block=True,
+        fixed=True,
+        along=rail.along,
+        away=_rail_side(pose, rail.points, rail.along, measures),
+        start=places[0] + float(np.nanmin(far)) * rail.along,
+        end=places[0] + float(np.nanmax(far)) * rail.along,
+        places=places,
+        foot=places[0],
+        tip=places[0] + rail.along,
+    )
 
 
 def _track(
@@ -84,7 +108,7 @@ def _track(
         block=guide.block,
         fixed=fixed,
         along=along,
-        away=_rail_side(pose, guides, along, measures) if fixed else along * -1j,
+        away=_rail_side(pose, [g.point for g in guides], along, measures) if fixed else along * -1j,
         start=first + low * along,
         end=first + high * along,
         places=places,
@@ -104,7 +128,7 @@ def _slot_without_motion(
     return low - margin, high + margin
 
 
-def _rail_side(pose: Pose, guides: list[Guide], along: complex, measures: Measures) -> complex:
+def _rail_side(pose: Pose, points: Sequence[str], along: complex, measures: Measures) -> complex:
     """The side of a fixed line that hatching lies on, the same in all positions of a motion.
 
     Below, as people draw the ground; above only if the links that move the slider always come
@@ -112,13 +136,13 @@ def _rail_side(pose: Pose, guides: list[Guide], along: complex, measures: Measur
     """
     upright = abs(along.real) < 0.2
     below = along * -1j if along.real > 0 or upright else along * 1j
-    own = {guide.point for guide in guides}
+    own = set(points)
     others = {
         point for bar in pose.skeleton.bars if own & set(bar.points) for point in bar.points
     } - own
     if not others:
         return below
-    start = pose.points[guides[0].point]
+    start = pose.points[points[0]]
     depths = np.concatenate([
         ((pose.paths.get(name, np.array([pose.points[name]])) - start) * below.conjugate()).real
         for name in sorted(others)

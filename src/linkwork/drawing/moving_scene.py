@@ -381,6 +381,9 @@ def _driving(pose: Pose, arrow: Primitive, frames: Frames) -> Frame:
             if guide.name == part.name:
                 line = ">".join(guide.line)
                 return Frame(guide.point, line if line in frames.turns else "")
+        for rail in skeleton.rails:
+            if rail.name == part.name:
+                return Frame(rail.points[0], "")
         for bar in skeleton.bars:
             if bar.name == part.name:
                 turn = bar.name if bar.name in frames.turns else ""

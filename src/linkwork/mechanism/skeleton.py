@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from linkwork.mechanism.contact_shapes import ContactShapes
 from linkwork.mechanism.linkage import GROUND, Linkage
 
-__all__ = ["Bar", "DrivenPart", "Guide", "RigidJoint", "Skeleton", "Strut"]
+__all__ = ["Bar", "DrivenPart", "Guide", "Rail", "RigidJoint", "Skeleton", "Strut"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,6 +35,17 @@ class Guide:
     offset: float = 0.0
     block: bool = False
     link: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rail:
+    """A straight line on ground that points of one body run along: ``along`` is its direction, a
+    unit vector; ``name`` is that of the variable that tells how far they are.
+    """
+
+    name: str
+    points: tuple[str, ...]
+    along: complex
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,6 +88,7 @@ class Skeleton:
     bars: tuple[Bar, ...] = ()
     pins: tuple[str, ...] = ()
     guides: tuple[Guide, ...] = ()
+    rails: tuple[Rail, ...] = ()
     struts: tuple[Strut, ...] = ()
     rigid: tuple[RigidJoint, ...] = ()
     driven: tuple[DrivenPart, ...] = ()
@@ -133,14 +146,26 @@ class Skeleton:
         fixed: tuple[str, ...],
         traced: tuple[str, ...],
         driven: tuple[DrivenPart, ...],
+        rails: tuple[Rail, ...] = (),
     ) -> Skeleton:
         """The skeleton of a mechanism given by equations: its drawable points and links."""
         bars = tuple(
             Bar(name=name, points=points) for name, points in links.items() if name != GROUND
         )
         joined = [p for points in links.values() for p in points]
-        pins = tuple(p for p in dict.fromkeys(joined) if joined.count(p) + (p in fixed) > 1)
-        return cls(fixed=fixed, bars=bars, pins=pins, driven=driven, traced=traced)
+        bodies = Counter([*joined, *fixed, *_joined_to_blocks(links, rails)])
+        pins = tuple(p for p in dict.fromkeys(joined) if bodies[p] > 1)
+        return cls(fixed=fixed, bars=bars, pins=pins, rails=rails, driven=driven, traced=traced)
+
+
+def _joined_to_blocks(
+    links: Mapping[str, tuple[str, ...]], rails: tuple[Rail, ...]
+) -> Iterator[str]:
+    """Points at which a link that does not slide itself is joined to a block on a rail."""
+    for rail in rails:
+        for points in links.values():
+            on = [point for point in points if point in rail.points]
+            yield from on if len(on) < len(points) else ()
 
 
 def _rigid_joints(linkage: Linkage) -> Iterator[RigidJoint]:

@@ -20,6 +20,7 @@ from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.skeleton import DrivenPart, Skeleton
 from linkwork.motion.lock_step import lock_step
+from linkwork.motion.rails import rails_of
 from linkwork.motion.redundancy import check_redundancy
 from linkwork.motion.speeds import input_speed
 from linkwork.results.position import Position
@@ -198,7 +199,10 @@ def model_of(description: Description) -> Model:
             equations = read_loops(description)
             fixed = description.links.get("ground", equations.fixed)
             driven = tuple(_driven_part(description, equations, v) for v in equations.inputs)
-            skeleton = Skeleton.of_points(description.links, fixed, description.trace, driven)
+            rails = tuple(rails_of(equations))
+            skeleton = Skeleton.of_points(
+                description.links, fixed, description.trace, driven, rails
+            )
         case PlainEquations():
             equations = read_plain_equations(description)
             skeleton = Skeleton()
