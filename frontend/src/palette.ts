@@ -614,5 +614,28 @@ export const PALETTE: readonly PalettePart[] = [
         "named": []
       }
     ]
+  },
+  {
+    "table": "springs",
+    "title": "Spring",
+    "doc": "A spring between two points: drawn, and no constraint",
+    "fields": [
+      {
+        "name": "name",
+        "doc": "Name of the spring",
+        "entry": "text",
+        "required": true,
+        "words": [],
+        "named": []
+      },
+      {
+        "name": "between",
+        "doc": "The two points it connects",
+        "entry": "points",
+        "required": true,
+        "words": [],
+        "named": []
+      }
+    ]
   }
 ];

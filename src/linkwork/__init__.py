@@ -55,7 +55,7 @@ if TYPE_CHECKING:
         Segment,
         Weld,
     )
-    from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
+    from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot, Spring
     from linkwork.numerics.newton import NewtonOptions
     from linkwork.results.check import CheckReport
     from linkwork.results.circuits import Branch, Circuit, Circuits
@@ -108,7 +108,7 @@ else:
                 "Segment",
                 "Weld",
             ),
-            "mechanism.parts": ("Cylinder", "Input", "Slider", "Slot"),
+            "mechanism.parts": ("Cylinder", "Input", "Slider", "Slot", "Spring"),
             "numerics.newton": ("NewtonOptions",),
             "results.check": ("CheckReport",),
             "results.circuits": ("Branch", "Circuit", "Circuits"),
@@ -174,6 +174,7 @@ __all__ = [
     "Series",
     "Slider",
     "Slot",
+    "Spring",
     "Status",
     "Table",
     "UnknownNameError",

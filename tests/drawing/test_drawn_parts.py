@@ -23,6 +23,7 @@ from linkwork.drawing import (
 from linkwork.drawing.link_symbols import convex_outline, uncovered
 from linkwork.drawing.trace_path import drawn_once, thinned
 from linkwork.foundation.status import Status
+from linkwork.mechanism.skeleton import Strut
 
 MECHANISMS = [
     "four_bar", "slider_crank", "inverted_slider_crank", "collar", "six_link", "boom", "jansen",
@@ -496,3 +497,23 @@ def test_a_scaled_mechanism_has_the_same_picture_scaled(ternary):
     assert other.measures.stroke == pytest.approx(1000 * one.measures.stroke)
     for p, q in zip(one.primitives, other.primitives, strict=True):
         np.testing.assert_allclose(1000 * np.array(p.outline), q.outline, rtol=1e-9, atol=1e-6)
+
+
+def test_a_spring_is_a_zigzag_from_point_to_point(four_bar):
+    spring = Strut(name="return", between=("O4", "A"))
+    skeleton = replace(four_bar.skeleton, springs=(spring,))
+    lengths = []
+    for angle in (20.0, 200.0):
+        position = replace(four_bar.position(angle), skeleton=skeleton)
+        scene = scene_of(position)
+        (drawn,) = scene.select(Polyline, Role.SPRING)
+        start, end = (z(position.points[name]) for name in spring.between)
+        assert drawn.of == "return"
+        assert z(drawn.points[0]) == start
+        assert close(z(drawn.points[-1]), end, abs(end - start))
+        along = (end - start) / abs(end - start)
+        beside = [((z(p) - start) / along).imag for p in drawn.points[2:-2]]
+        assert [b > 0 for b in beside] == [k % 2 == 0 for k in range(9)]
+        assert max(map(abs, beside)) == pytest.approx(2.0 * scene.measures.pin)
+        lengths.append(abs(end - start))
+    assert abs(lengths[0] - lengths[1]) > 10  # it follows the motion

@@ -10,7 +10,7 @@ from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
+from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot, Spring
 
 __all__ = ["descriptions", "linkages", "loop_systems", "plain_systems"]
 
@@ -98,6 +98,7 @@ def linkages(draw: st.DrawFn) -> Linkage:
             ),
         ),
         cylinders=draw(st.sampled_from([(), (Cylinder(name=names[10], between=(p[5], p[3])),)])),
+        springs=draw(st.sampled_from([(), (Spring(name=names[15], between=(p[2], p[5])),)])),
         inputs=tuple(draw(st.sampled_from([inputs[:0], inputs[:1], inputs]))),
         trace=tuple(draw(st.lists(st.sampled_from(p), max_size=3))),
         outputs={name: draw(any_text) for name in output_names},

@@ -108,6 +108,10 @@ points = ["P"]
 
 [outputs]
 mu = "rocker - crank"
+
+[[springs]]
+name = "return"
+between = ["K", "D"]
 """
 
 RAPIER = """\

@@ -29,6 +29,7 @@ from linkwork.drawing.pose import Pose
 from linkwork.drawing.rack_symbols import rack_symbols, rolling_symbols
 from linkwork.drawing.scene import Primitive, Role, Scene, xy
 from linkwork.drawing.scene_options import SceneOptions
+from linkwork.drawing.spring_symbols import spring_symbols
 from linkwork.drawing.trace_path import trace_symbols
 from linkwork.drawing.vector_polygon import Edge
 from linkwork.drawing.vector_symbols import vector_edges
@@ -161,6 +162,7 @@ def symbols(
     yield from guide_symbols(found, measures)
     yield from link_symbols(pose, track_gaps(found, measures))
     yield from cylinder_symbols(pose, measures)
+    yield from spring_symbols(pose, measures)
     yield from trace_symbols(pose, names, measures)
     yield from weld_symbols(pose, measures)
     yield from pin_symbols(pose, measures)

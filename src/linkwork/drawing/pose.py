@@ -124,6 +124,7 @@ class Pose:
         skeleton = self.skeleton
         used = {point for bar in skeleton.bars for point in bar.points}
         used |= {point for strut in skeleton.struts for point in strut.between}
+        used |= {point for spring in skeleton.springs for point in spring.between}
         used |= {guide.point for guide in skeleton.guides} | set(skeleton.traced)
         contacts = skeleton.contacts
         used |= {disc.center for disc in contacts.discs}
@@ -194,6 +195,7 @@ def _named(skeleton: Skeleton) -> dict[str, None]:
     names = [*skeleton.fixed, *skeleton.pins, *skeleton.traced]
     names += [point for bar in skeleton.bars for point in bar.points]
     names += [point for strut in skeleton.struts for point in strut.between]
+    names += [point for spring in skeleton.springs for point in spring.between]
     names += [point for guide in skeleton.guides for point in (guide.point, *guide.line)]
     return dict.fromkeys(names)
 

@@ -57,6 +57,7 @@ class Role(Enum):
     SLOT = "the slot a pin runs in"
     SLIDER = "a sliding block"
     CYLINDER = "the barrel of a cylinder"
+    SPRING = "a spring"
     LINK = "a link drawn as a bar"
     WELD = "a rigid joint of two links"
     PIN = "a pin joint"

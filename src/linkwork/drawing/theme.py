@@ -131,6 +131,7 @@ def _styles(c: _Inks) -> FrozenDict[Role, Style]:
             Role.SLOT: Style(line="tone", width=1.7, fill=c.page),
             Role.SLIDER: Style(line=c.ink, width=1.3, fill=c.block),
             Role.LINK: Style(line="tone", width=2.8),
+            Role.SPRING: Style(line=c.ink, width=1.2),
             Role.CYLINDER: Style(line="tone", width=1.4, fill=c.page),
             Role.WELD: Style(line=c.ink, width=1.0, fill=c.ink),
             Role.PIN: Style(line=c.ink, width=1.4, fill=c.page),

@@ -11,7 +11,15 @@ from linkwork.foundation.names import canonical
 from linkwork.mechanism.contacts import Belt, Cam, Curve, Gear, Rack, Rolling, Weld
 from linkwork.mechanism.description import Description, Problems
 from linkwork.mechanism.linkage_checks import check_linkage
-from linkwork.mechanism.parts import Cylinder, Input, Number, Slider, Slot, replaced_names
+from linkwork.mechanism.parts import (
+    Cylinder,
+    Input,
+    Number,
+    Slider,
+    Slot,
+    Spring,
+    replaced_names,
+)
 from linkwork.mechanism.shape import Shapes
 
 __all__ = ["GROUND", "PART_KINDS", "Linkage"]
@@ -21,7 +29,7 @@ GROUND = "ground"
 #: What a linkage is made of besides points and links: fields of the class, tables of a file.
 PART_KINDS = (
     "slots", "sliders", "cylinders", "welds", "gears", "belts", "racks", "rolling", "cams",
-    "curves",
+    "curves", "springs",
 )  # fmt: skip
 
 
@@ -59,6 +67,7 @@ class Linkage(Description):
     rolling: tuple[Rolling, ...] = ()
     cams: tuple[Cam, ...] = ()
     curves: tuple[Curve, ...] = ()
+    springs: tuple[Spring, ...] = ()
     sketch: bool = False
     #: The exact shape of every link, as local coordinates, and what was measured.
     shapes: Shapes = field(init=False, repr=False, compare=False)

@@ -10,7 +10,7 @@ from linkwork.foundation.errors import choices
 from linkwork.mechanism.contact_checks import check_contacts
 from linkwork.mechanism.contacts import names_of
 from linkwork.mechanism.description import Problems, declared
-from linkwork.mechanism.parts import Cylinder, Input, Number, Slider, Slot
+from linkwork.mechanism.parts import Input, Number, Slider, Slot
 from linkwork.mechanism.shape import Shapes
 from linkwork.mechanism.wheel_checks import check_distances
 
@@ -39,6 +39,7 @@ def check_linkage(linkage: Linkage, problems: Problems) -> Shapes:
                 (("cylinders", k, "name"), part.angle_name)
                 for k, part in enumerate(linkage.cylinders)
             ),
+            *((("springs", k, "name"), part.name) for k, part in enumerate(linkage.springs)),
             *(
                 ((kind, k, "name"), name)
                 for kind in ("gears", "belts", "racks", "rolling", "cams", "curves")
@@ -56,7 +57,9 @@ def check_linkage(linkage: Linkage, problems: Problems) -> Shapes:
         _check_slider(linkage, slider, ("sliders", k), problems)
     _check_guided_once(linkage, problems)
     for k, cylinder in enumerate(linkage.cylinders):
-        _check_cylinder(linkage, cylinder, ("cylinders", k), problems)
+        _check_ends(linkage, cylinder.between, ("cylinders", k, "between"), problems)
+    for k, spring in enumerate(linkage.springs):
+        _check_ends(linkage, spring.between, ("springs", k, "between"), problems)
     check_contacts(linkage, problems)
     _check_dimension_keys(linkage, problems)
     _check_inputs(linkage, problems)
@@ -239,15 +242,15 @@ def _check_slider(linkage: Linkage, slider: Slider, key: Key, problems: Problems
         linkage.numbers.check_number(problems.add, (*key, "angle"), slider.angle)
 
 
-def _check_cylinder(linkage: Linkage, cylinder: Cylinder, key: Key, problems: Problems) -> None:
-    if len(set(cylinder.between)) > 2 or len(cylinder.between) < 2:
-        problems.add((*key, "between"), f"needs two points, got {len(cylinder.between)}")
-    elif len(set(cylinder.between)) == 1:
-        message = f"needs two different points, got {cylinder.between[0]} twice"
-        problems.add((*key, "between"), message)
-    for point in cylinder.between:
+def _check_ends(linkage: Linkage, between: tuple[str, ...], key: Key, problems: Problems) -> None:
+    """The two points of a cylinder or spring."""
+    if len(set(between)) > 2 or len(between) < 2:
+        problems.add(key, f"needs two points, got {len(between)}")
+    elif len(set(between)) == 1:
+        problems.add(key, f"needs two different points, got {between[0]} twice")
+    for point in between:
         if point not in linkage.points:
-            problems.add((*key, "between"), _no_point(linkage, point))
+            problems.add(key, _no_point(linkage, point))
 
 
 def _check_dimension_keys(linkage: Linkage, problems: Problems) -> None:

@@ -5,7 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["Cylinder", "Input", "Number", "Slider", "Slot", "as_tuples", "replaced_names"]
+__all__ = [
+    "Cylinder",
+    "Input",
+    "Number",
+    "Slider",
+    "Slot",
+    "Spring",
+    "as_tuples",
+    "replaced_names",
+]
 
 #: Wherever a number is expected, a formula of the named dimensions may stand.
 Number = float | int | str
@@ -119,6 +128,17 @@ class Cylinder:
         """The name of its angle in results."""
         stem = self.name.rstrip("'")
         return f"{stem}_angle{self.name[len(stem) :]}"  # primes stand at the end of a name
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spring:
+    """A spring between two points: drawn, and no constraint."""
+
+    name: str
+    between: tuple[str, str]
+
+    def __post_init__(self) -> None:
+        as_tuples(self, "between")
 
 
 #: Fields that hold numbers, words or labels: no name of a part of the mechanism.

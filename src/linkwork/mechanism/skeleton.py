@@ -50,7 +50,7 @@ class Rail:
 
 @dataclass(frozen=True, kw_only=True)
 class Strut:
-    """A cylinder: a link of variable length between two points."""
+    """A cylinder or a spring: something of variable length between two points."""
 
     name: str
     between: tuple[str, str]
@@ -90,6 +90,7 @@ class Skeleton:
     guides: tuple[Guide, ...] = ()
     rails: tuple[Rail, ...] = ()
     struts: tuple[Strut, ...] = ()
+    springs: tuple[Strut, ...] = ()
     rigid: tuple[RigidJoint, ...] = ()
     driven: tuple[DrivenPart, ...] = ()
     traced: tuple[str, ...] = ()
@@ -107,6 +108,7 @@ class Skeleton:
         guided = {slot.point for slot in linkage.slots} | {curve.point for curve in linkage.curves}
         contacts = ContactShapes.of(linkage, outlines)
         guided |= {disc.center for disc in contacts.discs if disc.kind == "roller"}
+        guided |= {point for spring in linkage.springs for point in spring.between}
         rigid = tuple(_rigid_joints(linkage))
         return cls(
             fixed=linkage.links[GROUND],
@@ -133,6 +135,7 @@ class Skeleton:
                 ]
             ),
             struts=tuple(Strut(name=c.name, between=c.between) for c in linkage.cylinders),
+            springs=tuple(Strut(name=s.name, between=s.between) for s in linkage.springs),
             rigid=rigid,
             driven=tuple(_driven_parts(linkage, carriers)),
             traced=linkage.trace,

@@ -240,6 +240,11 @@ _CYLINDER = (
     Key("between", _POINT_PAIR, "The two points it connects", required=True),
 )
 
+_SPRING = (
+    Key("name", Text(), "Name of the spring", required=True),
+    Key("between", _POINT_PAIR, "The two points it connects", required=True),
+)
+
 _NUMBER_PAIR = ListOf(Number(), "number", 2, 2)
 _COORDINATES = ListOf(ListOf(Number(), "coordinate", 2, 2), "point", 3)
 _WELD = (
@@ -349,6 +354,7 @@ LINKAGE = Form(
         Key("rolling", Tables(_ROLLING), "A wheel that rolls without slipping"),
         Key("cams", Tables(_CAM), "A cam and its follower"),
         Key("curves", Tables(_CURVE), "A point runs along a curve of another link"),
+        Key("springs", Tables(_SPRING), "A spring between two points: drawn, and no constraint"),
         Key("input", Tables(_DRIVES, single=True), "What is driven, and over which values"),
         _TRACE,
         _OUTPUTS,

@@ -11,7 +11,7 @@ from linkwork.foundation.errors import MechanismError, MechanismFileError, Probl
 from linkwork.mechanism.contacts import Belt, Cam, Curve, Gear, Rack, Rolling, Segment, Weld
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot
+from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot, Spring
 from linkwork.textfile.keys import EQUATIONS, FORMAT, LOOPS, Form, form_of
 from linkwork.textfile.lines import Lines
 from linkwork.textfile.structure import Structure
@@ -162,6 +162,7 @@ _PARTS: dict[str, Callable[..., Any]] = {
     "rolling": Rolling,
     "cams": _cam,
     "curves": Curve,
+    "springs": Spring,
 }
 
 

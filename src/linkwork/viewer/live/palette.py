@@ -32,6 +32,7 @@ _TITLES = {
     "rolling": "Rolling wheel",
     "cams": "Cam",
     "curves": "Curve",
+    "springs": "Spring",
 }
 
 
