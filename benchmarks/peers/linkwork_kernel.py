@@ -11,8 +11,7 @@ from benchmarks.peers.linkwork_sweep import family_of
 from benchmarks.peers.peer import Peer, Prepared
 from benchmarks.peers.work import Work
 from linkwork.batch.lane_rows import Path
-from linkwork.foundation.aligned import aligned
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import Array
 from linkwork.kernels.lanes.gear import Gear
 
 __all__ = ["LinkworkKernel"]
@@ -43,17 +42,17 @@ class LinkworkKernel(Peer):
         march = path.march(family.designs, self.certify, 1, Gear(specialised=self.compiled))
         t = model.rows[:, path.lead]
         t = np.ascontiguousarray(t[::-1] if path.falling else t)
-        unknowns = len(model.equations.unknowns)
 
-        def run() -> tuple[Array, BoolArray]:
-            v = aligned(unknowns, len(t), 1)
-            radius = aligned(len(t) if self.certify else 0, 1)
-            return v, march.through(t, v, radius)[1]
+        one = march.of_one(t)
 
-        def read(found: tuple[Array, BoolArray]) -> ComplexArray:
+        def run() -> Array:
+            found = one.run()
+            assert found is not None
+            return found[0]
+
+        def read(v: Array) -> ComplexArray:
             way = slice(None, None, -1 if path.falling else 1)
-            v, reached = found
-            rows, reached = replace(motion.rows, v=v[:, way]), reached[way]
-            return np.where(reached.T, replace(motion, rows=rows).trace("T"), np.nan)
+            rows = replace(motion.rows, v=v[:, way])
+            return replace(motion, rows=rows).trace("T")
 
         return Prepared(run=run, read=read)

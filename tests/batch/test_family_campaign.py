@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from linkwork.kernels.lanes import lane_kernel, rowwise
 from tests.campaigns import families, kinds
 from tests.campaigns.motion import FAMILIES
 
@@ -24,3 +25,17 @@ def test_random_designs_of_every_kind_stay_on_their_branch(part: int) -> None:
     assert not false
     assert counts["mechanisms"] == 20
     assert counts["row CERTIFIED"] > 0.9 * counts["rows found"] > 0
+
+
+@pytest.mark.parametrize("step", [1, 4])
+@pytest.mark.parametrize("part", range(len(FAMILIES)), ids=FAMILIES)
+def test_rows_side_by_side_stay_on_their_branch(
+    part: int, step: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done = []
+    inner = lane_kernel.by_rows
+    monkeypatch.setattr(lane_kernel, "by_rows", lambda *a: (done.append(inner(*a)), done[-1])[1])
+    counts, false = kinds.kind_campaign(part, 8, step)
+    assert not false
+    assert counts["row CERTIFIED"] > 0.9 * counts["rows found"] > 0
+    assert rowwise.DONE in done

@@ -22,7 +22,7 @@ from linkwork.foundation.status import Status
 from linkwork.kernels.lanes.device_kernel import DeviceKernel
 from linkwork.kernels.lanes.folding import dead_points
 from linkwork.kernels.lanes.gear import Gear
-from linkwork.kernels.lanes.lane_kernel import LaneKernel, LaneRows, Steps
+from linkwork.kernels.lanes.lane_kernel import LaneKernel, LaneRows, RowsOfOne, Steps
 from linkwork.mechanism.parts import Input
 from linkwork.motion import sweep
 from linkwork.motion.drive import Drive
@@ -272,6 +272,16 @@ class March:
         settled = self._settled(t, reached[:, stopped], limits)
         done[stopped[settled]] = True
         return done, reached
+
+    def of_one(self, t: Array) -> RowsOfOne:
+        """The rows of a family of one design, to be computed again and again."""
+        return self.kernel.alone(
+            self.coefficients,
+            self.guess[:, 0],
+            float(self.start[0]),
+            t,
+            Steps().times(self.path.size),
+        )
 
     def _marched(
         self,

@@ -23,15 +23,16 @@ from linkwork.kernels.lanes.march_programs import ROLES, WEIGHTS, march_programs
 from linkwork.kernels.lanes.marching import march
 from linkwork.kernels.lanes.printing import trial_source
 from linkwork.kernels.lanes.program import SOURCES, Op, Program
-from linkwork.kernels.lanes.rowwise import by_rows, most_nodes
+from linkwork.kernels.lanes.rowwise import DONE, NOT_NEAR, by_rows
 from linkwork.kernels.lanes.tasks import Found, Table, Tasks
 from linkwork.kernels.lanes.trial import Topology
 from linkwork.kernels.lanes.written import is_written, written
 from linkwork.kernels.loop_table import LoopTable
 
-__all__ = ["LaneKernel", "LaneRows", "Steps"]
+__all__ = ["LaneKernel", "LaneRows", "RowsOfOne", "Steps"]
 
 _FEW = 16  # designs in a part of which each goes with its rows side by side
+_FAR = 1e-7  # of an angle or a length's weight: as much as a row may be off before it is proved
 _PART = 4096  # designs that one thread works on at a time
 
 
@@ -298,29 +299,63 @@ class LaneKernel:
         steps: Steps,
         found: LaneRows,
     ) -> None:
-        """One design after the other, its rows side by side."""
-        space = own = self._space(steps)
-        ahead = ready
-        node, begun = self._begun(ready, space, given)
-        found.found[:] = begun
+        """One design after the other, its rows side by side; then those that this is not for."""
+        alone, n = self._alone(ready, coefficients, table, steps), self.table.unknowns
+        for k in range(given.shape[1]):
+            guess = np.append(given[:n, k], given[-1, k])
+            found.found[k] = alone.loaded(k).run(guess, found.at(k))
+        left = ~found.found
+        if left.any():
+            space = self._space(steps)
+            node, begun = self._begun(ready, space, given)
+            found.found[left] = begun[left]
+            _marched(ready, space, node, begun & left, table, found.at(0))
+
+    def alone(
+        self,
+        coefficients: Mapping[str, Array],
+        guess: Array,
+        start: float,
+        rows: Array,
+        steps: Steps,
+    ) -> RowsOfOne:
+        """One design's rows, ready to be computed again and again; a kernel keeps one of these.
+
+        Parameters
+        ----------
+        coefficients : Mapping[str, (1,)]
+            As for :meth:`run`.
+        guess : (n,)
+            Of the unknowns at ``start``.
+        """
+        ready = self._ready(coefficients, 1)
+        table = self._table(rows, steps)
+        loaded = self._alone(ready, coefficients, table, steps).loaded(0)
+        size = 2 * self.nodes.shape[1]
+        room = (np.zeros((len(rows), 1), dtype=bool), np.empty((2, 1)), np.empty((2, size, 1)))
+        return RowsOfOne(loaded=loaded, guess=np.append(guess, start), room=room, kernel=self)
+
+    def _alone(
+        self, ready: _Ready, coefficients: Mapping[str, Array], table: Table, steps: Steps
+    ) -> _Alone:
+        count = ready.design.shape[1]
+        ahead, scout = ready, self.scout or self
         if self.scout is not None:
             if self.trial:
                 self.scout.shift(Gear(specialised=True))
-            ahead = self.scout._ready(coefficients, len(begun))
-            own = self.scout._space(steps)
-        for k in np.flatnonzero(begun):
-            start = np.ascontiguousarray(node[:, k])
-            far = np.abs(table.rows[[0, -1]] - start[-1]).max()
-            room = np.empty((3, most_nodes(far, steps.largest), len(start)))
-            ready.load(space, int(k))
-            ahead.load(own, int(k))
-            place = found.at(int(k))
-            if by_rows(ready.topology, ahead.topology, space, own, start, table, room, place):
-                begun[k] = False
-            else:
-                found.reached[:, k] = False
-        if begun.any():
-            _marched(ready, space, node, begun, table, found.at(0))
+            ahead = self.scout._ready(coefficients, count)
+        space = self._space(steps)
+        ones = np.ones(count)
+        scales = [coefficients.get(f"scale{k}", ones) for k in range(self.table.unknowns)]
+        return _Alone(
+            scout=scout,
+            ready=ready,
+            ahead=ahead,
+            space=space,
+            own=space if scout is self else scout._space(steps),
+            table=table,
+            far=np.ascontiguousarray(_FAR * np.array(scales).T),
+        )
 
     def _topology(self, coefficients: IndexArray) -> Topology:
         return Topology(
@@ -347,9 +382,74 @@ class _Ready:
         """Some of the designs."""
         return _Ready(self.topology, np.ascontiguousarray(self.design[:, which]))
 
+    def one(self, k: int) -> _Ready:
+        """One of the designs."""
+        return self.part(slice(k, k + 1))
+
     def load(self, space: Array, k: int) -> None:
         """One design into all lanes of a workspace."""
         space[self.topology.coefficients] = self.design[:, k, None]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Alone:
+    """What computes the rows of one design side by side, with room for one of them at a time.
+
+    ``far`` (D, n): as much as unknowns may be off before they are proved.
+    """
+
+    scout: LaneKernel
+    ready: _Ready
+    ahead: _Ready
+    space: Array
+    own: Array
+    table: Table
+    far: Array
+
+    def loaded(self, k: int) -> _Loaded:
+        """With a design in place, until another one is."""
+        self.ready.load(self.space, k)
+        if self.own is not self.space:
+            self.ahead.load(self.own, k)
+        return _Loaded(self, k, (self.ready.topology, self.ahead.topology, self.space, self.own))
+
+
+@dataclass(frozen=True, eq=False)
+class _Loaded:
+    """One design in place."""
+
+    alone: _Alone
+    design: int
+    spaces: tuple[Topology, Topology, Array, Array]
+
+    def run(self, guess: Array, found: Found) -> bool:
+        """From a guess (n + 1,) of the unknowns and of t; whether all rows are found."""
+        alone, far = self.alone, self.alone.far[self.design]
+        code = by_rows(*self.spaces, guess, False, alone.table, far, found)
+        if code == NOT_NEAR:
+            node = alone.scout.given(guess[:-1, None], guess[-1:])
+            start, begun = alone.scout._begun(alone.ahead.one(self.design), alone.own, node)
+            if not begun[0]:
+                return False
+            code = by_rows(*self.spaces, start[:, 0].copy(), True, alone.table, far, found)
+        return bool(code == DONE)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RowsOfOne:
+    """The rows of one design, computed as often as wanted; see :meth:`LaneKernel.alone`."""
+
+    loaded: _Loaded
+    guess: Array
+    room: tuple[BoolArray, Array, Array]
+    kernel: LaneKernel
+
+    def run(self) -> tuple[Array, Array] | None:
+        """Unknowns (n, R, 1) and radii of their proofs (R, 1); ``None`` if this is not the way."""
+        rows, n = len(self.loaded.alone.table.rows), self.kernel.table.unknowns
+        v, radius = aligned(n, rows, 1), aligned(rows if self.kernel.certified else 0, 1)
+        done = self.loaded.run(self.guess, Found(0, v, radius, *self.room))
+        return (v, radius) if done else None
 
 
 def _marched(

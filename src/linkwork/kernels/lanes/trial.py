@@ -32,6 +32,7 @@ __all__ = [
     "extrapolated",
     "judged",
     "loaded",
+    "met",
     "proved",
     "settled",
     "solved_slowly",
@@ -191,6 +192,31 @@ def settled(topology, turn, w, standing, together, lanes):  # type: ignore[no-un
                 w[live[later], :lanes] = 1.0
         _iterate(topology, turn, w, BLOCKS + 2 * blocks + k, live[k], STEPS - 1, standing, lanes)
     judged(topology, turn, w, lanes)
+
+
+@compiled
+def met(topology, turn, w, standing, lanes, unknowns):  # type: ignore[no-untyped-def]
+    """From a guess in the place of the oldest node, the only one that has weight, to a position;
+    whether all lanes have converged. The judgement is made, but need not be good.
+    """
+    blocks, live = _blocks(topology), topology.noted[LIVE:]
+    if topology.trial == 0:
+        settled(topology, turn, w, standing, False, lanes)
+    else:
+        _given(topology, turn, w, False, lanes)
+    for again in range(STEPS):
+        if topology.trial != 0:
+            if again:
+                for k in range(unknowns):
+                    guess = topology.nodes[(ROLES - 1 - turn) % ROLES, k]
+                    w[guess, :lanes] = w[topology.nodes[-turn % ROLES, k], :lanes]
+            _by_written(topology, turn, w, lanes)
+        moving = False
+        for k in range(blocks):
+            moving |= _any(w, live[k], standing, lanes)
+        if not moving:
+            return True
+    return False
 
 
 @compiled
