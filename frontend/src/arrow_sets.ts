@@ -1,6 +1,6 @@
 // All kinds of arrows over the drawing, their switches, and the legend that tells their scales.
 
-import { Arrows, type ArrowKind } from "./arrows";
+import { Arrows, Names, type ArrowKind } from "./arrows";
 import { toggle } from "./controls";
 import type { Drawing } from "./drawing";
 import type { MotionView } from "./motion";
@@ -17,6 +17,7 @@ const CALLED: Readonly<Record<ArrowKind, string>> = {
 export class ArrowSets {
   private readonly kinds: readonly Arrows[];
   private readonly legend: HTMLElement;
+  private readonly names: Names;
   private row = -1;
 
   constructor(
@@ -25,7 +26,8 @@ export class ArrowSets {
     canvas: Element,
   ) {
     const kinds = Object.keys(CALLED) as ArrowKind[];
-    this.kinds = kinds.map((kind) => new Arrows(data, drawing.overlay, kind));
+    this.names = new Names(data.view);
+    this.kinds = kinds.map((kind) => new Arrows(data, drawing.overlay, kind, this.names));
     this.legend = html("p", { class: "lw-legend", hidden: "" }, canvas);
   }
 
@@ -43,6 +45,7 @@ export class ArrowSets {
   }
 
   renew(data: PageData): void {
+    this.names.view = data.view;
     for (const arrows of this.kinds) arrows.renew(data);
   }
 
@@ -52,6 +55,7 @@ export class ArrowSets {
 
   draw(row: number): void {
     this.row = row;
+    this.names.begin();
     for (const arrows of this.kinds) arrows.draw(row);
     const told = this.kinds.filter((arrows) => arrows.shown && arrows.legend).map((arrows) => arrows.legend);
     say(this.legend, told.join("\n"));

@@ -8,6 +8,7 @@ import { toneClass } from "./theme";
 
 const HEAD = 2.4; // length of an arrow head, in pins
 const LONGEST = 0.16; // of the usual largest, of the drawing's longer side
+const SHORTEST = 1.5; // pins: a shorter arrow would be hidden by its pin
 const USUAL = 0.98; // of the rows are not faster: rates grow without bound beside dead points
 
 interface Arrow {
@@ -37,6 +38,7 @@ export class Arrows {
     private data: PageData,
     overlay: SVGGElement,
     readonly kind: ArrowKind,
+    private readonly names: Names,
   ) {
     this.group = svg("g", { class: `lw-${kind}` }, overlay);
   }
@@ -87,6 +89,7 @@ export class Arrows {
 
   private rates(view: MotionView, order: 1 | 2): Ends {
     const rate = ({ dx, dy, ddx, ddy }: Point): readonly [Float64Array, Float64Array] => (order === 1 ? [dx, dy] : [ddx, ddy]);
+    const factor = (view.data.speed || 1) ** order;
     const points = view.points.filter((point) => point.moving);
     const rates = points.map(rate);
     let largest = 0;
@@ -94,8 +97,10 @@ export class Arrows {
       const sizes = view.order.map((row) => Math.hypot(dx[row]!, dy[row]!)).sort((a, b) => a - b);
       largest = Math.max(largest, sizes[Math.floor(USUAL * (sizes.length - 1))] ?? 0);
     }
-    const by = `${this.data.derivative_unit}${order === 2 ? "²" : ""}`;
-    const scale = this.scaled(largest, order === 1 ? "Velocity" : "Acceleration", `${this.data.length_unit || "1"}/${by}`);
+    const speed = view.data.speed;
+    const per = speed ? "s" : this.data.derivative_unit;
+    const by = `${per}${order === 2 ? "²" : ""}`;
+    const scale = factor * this.scaled(Math.abs(factor) * largest, order === 1 ? "Velocity" : "Acceleration", `${this.data.length_unit || "1"}/${by}`);
     for (const point of points) this.add(order === 1 ? "lw-velocity" : "lw-acceleration", `${order === 1 ? "v" : "a"}(${point.shown})`);
     return (row) =>
       points.map(({ x, y }, k) => {
@@ -143,7 +148,7 @@ export class Arrows {
   private place(arrow: Arrow, [x0, y0, x1, y1]: number[]): void {
     const [dx, dy] = [x1! - x0!, y1! - y0!];
     const length = Math.hypot(dx, dy);
-    const long = Number.isFinite(length) && length > 0.6 * this.data.pin;
+    const long = Number.isFinite(length) && length > (this.kind === "vectors" ? 0.6 : SHORTEST) * this.data.pin;
     arrow.group.style.display = long ? "" : "none";
     if (!long) return;
     const head = Math.min(HEAD * this.data.pin, 0.5 * length);
@@ -158,15 +163,55 @@ export class Arrows {
     if (arrow.name) this.write(arrow.name, [x0!, y0!], [x1!, y1!], [ux, uy]);
   }
 
-  /** A name: beside the middle of a vector of a loop, beyond the tip of what is at a point. */
+  /** Where a name may stand: beside the middle of a vector of a loop; beyond the tip of what is at a
+   * point, or beside it. */
   private write(name: SVGTextElement, tail: readonly [number, number], tip: readonly [number, number], along: readonly [number, number]): void {
     const [ux, uy] = along;
+    const size = 0.85 * this.data.text;
+    const half = 0.29 * size * name.textContent!.length;
     const beside = this.kind === "vectors";
-    const away = (beside ? 0.85 : 1.1) * this.data.text;
-    const x = beside ? 0.5 * (tail[0] + tip[0]) - away * uy : tip[0] + away * ux;
-    const y = beside ? 0.5 * (tail[1] + tip[1]) + away * ux : tip[1] + away * uy;
-    name.setAttribute("x", String(x));
-    name.setAttribute("y", String(-y + 0.3 * this.data.text));
+    const [x0, y0] = beside ? [0.5 * (tail[0] + tip[0]), 0.5 * (tail[1] + tip[1])] : tip;
+    const away = (u: number, v: number): Spot => {
+      const far = (beside ? 0.85 : 0.75) * this.data.text + Math.abs(u) * half;
+      return { x: x0 + far * u, y: y0 + far * v, half, height: 0.62 * size };
+    };
+    const places = beside ? [away(-uy, ux), away(uy, -ux)] : [away(ux, uy), away(-uy, ux), away(uy, -ux)];
+    const place = this.names.freest(places);
+    name.style.display = place ? "" : "none";
+    if (!place) return;
+    name.setAttribute("x", String(place.x));
+    name.setAttribute("y", String(-place.y + 0.3 * size));
+  }
+}
+
+/** The middle of a name, and half of its width and height. */
+export interface Spot {
+  readonly x: number;
+  readonly y: number;
+  readonly half: number;
+  readonly height: number;
+}
+
+/** The names of all arrows in a row: none stands on another one, or out of sight. */
+export class Names {
+  private taken: Spot[] = [];
+
+  constructor(public view: readonly number[]) {}
+
+  begin(): void {
+    this.taken = [];
+  }
+
+  /** The first place that is free, which it then is no more. */
+  freest(places: readonly Spot[]): Spot | undefined {
+    const [left, bottom, right, top] = this.view as [number, number, number, number];
+    const found = places.find(
+      (one) =>
+        one.x - one.half > left && one.x + one.half < right && one.y - one.height > bottom && one.y + one.height < top &&
+        this.taken.every((other) => Math.abs(one.x - other.x) > one.half + other.half || Math.abs(one.y - other.y) > one.height + other.height),
+    );
+    if (found) this.taken.push(found);
+    return found;
   }
 }
 

@@ -8,6 +8,9 @@ import { toneClass } from "./theme";
 /** The frame of a shape that changes its form. */
 const OWN_COURSE = -2;
 
+/** Of the view, on each side, for what is shown beside the mechanism. */
+const MOST_GROWTH = 1;
+
 /** Of names on the screen [px]. */
 const SMALLEST = 12.5;
 
@@ -30,6 +33,8 @@ export class Drawing {
   /** Arrows of what is driven, turned round while it runs backwards. */
   private turned: Moved[] = [];
   private backwards = false;
+  /** Places that are shown beside the view. */
+  private more: (readonly [number, number])[] = [];
   private view!: MotionView;
 
   constructor(
@@ -50,11 +55,21 @@ export class Drawing {
   /** Other data: sizes of symbols, what is in view. */
   renew(data: PageData): void {
     this.data = data;
-    const [left, bottom, right, top] = data.view as [number, number, number, number];
+    const [left, bottom, right, top] = around(data.view, this.more);
     const box = `${left} ${-top} ${right - left} ${top - bottom}`;
     if (box === this.element.getAttribute("viewBox")) return;
     this.element.setAttribute("viewBox", box);
     this.fit();
+  }
+
+  /** Show these places too, as far as that leaves the mechanism large enough; none: no more. */
+  include(places: readonly (readonly [number, number])[]): void {
+    const [left, bottom, right, top] = this.data.view as [number, number, number, number];
+    const most = MOST_GROWTH * Math.max(right - left, top - bottom);
+    const near = places.filter(([x, y]) => x > left - most && x < right + most && y > bottom - most && y < top + most);
+    const air = places.length ? 0.06 * Math.max(right - left, top - bottom) : 0;
+    this.more = near.flatMap(([x, y]) => [[x - air, y - air] as const, [x + air, y + air] as const]);
+    this.renew(this.data);
   }
 
   /** Names grow in small drawings, so that they can be read. */
@@ -223,6 +238,14 @@ export class Drawing {
       });
     });
   }
+}
+
+/** A view and more places. */
+function around(view: readonly number[], places: readonly (readonly [number, number])[]): [number, number, number, number] {
+  const [left, bottom, right, top] = view as [number, number, number, number];
+  const xs = places.map(([x]) => x);
+  const ys = places.map(([, y]) => y);
+  return [Math.min(left, ...xs), Math.min(bottom, ...ys), Math.max(right, ...xs), Math.max(top, ...ys)];
 }
 
 /** The transform that lets an arrow, straight or round, point the other way at the same place. */

@@ -78,10 +78,18 @@ export class MotionView {
   falls(index: number): boolean {
     const value = (k: number): number => this.input.values[this.order[k]!]!;
     const last = this.order.length - 1;
-    const after = index < last ? value(index + 1) - value(index) : NaN;
-    const before = index > 0 ? value(index) - value(index - 1) : NaN;
+    const turn = { deg: 360, rad: 2 * Math.PI }[this.input.unit];
+    const from = (a: number, b: number): number => (turn ? shorter(value(b) - value(a), turn) : value(b) - value(a));
+    const after = index < last ? from(index, index + 1) : NaN;
+    const before = index > 0 ? from(index - 1, index) : NaN;
     // At a dead point the way on counts; where a turn is complete, the way that led there.
     return Number.isFinite(after) ? after < 0 : before < 0;
+  }
+
+  /** Whether arrows of inputs point the other way than they are drawn, at an index that is passed
+   * forwards or on the way back. */
+  turned(index: number, back: boolean): boolean {
+    return (this.falls(index) !== back) !== this.data.backwards;
   }
 
   /** Where a frame is in a row; -1 is the ground. */
@@ -120,6 +128,11 @@ export class MotionView {
     });
     return way;
   }
+}
+
+/** A difference of angles, the shorter way around. */
+function shorter(angle: number, turn: number): number {
+  return angle - turn * Math.round(angle / turn);
 }
 
 /** Numbers that are unpacked when they are asked for. */

@@ -269,7 +269,7 @@ class Page implements Mounted {
     const row = this.view.order[this.player.at]!;
     if (row !== this.drawn) {
       this.drawn = row;
-      this.drawing.draw(row, this.view.falls(this.player.at) !== this.player.back);
+      this.drawing.draw(row, this.view.turned(this.player.at, this.player.back));
       this.arrows.draw(row);
       for (const chart of this.charts) chart.draw(row);
       this.transport.draw(this.view, this.player.at, row);

@@ -18,6 +18,7 @@ export function shortNumber(value: number, digits = 6, rounding = 0): string {
 /** A value as m·10ⁿ, as residuals are written. */
 export function powerOfTen(value: number, digits = 2): string {
   if (!Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
   const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
   const raised = String(Number(exponent)).replace(/[-0-9]/g, (sign) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(sign)]!);
   return withMinus(`${mantissa}·10${raised}`);
@@ -31,6 +32,11 @@ export function measured(value: number, unit: string): string {
   const text = shortNumber(value, 6, unit === "deg" || unit === "rad" ? LEAST_ANGLE : 0);
   if (unit === "deg") return `${trimmed(text)}°`;
   return unit ? `${text} ${unit}` : text;
+}
+
+/** A name as it is drawn: O2 as O₂. */
+export function printedName(name: string): string {
+  return name.replace(/^([\p{L}]+)([0-9]+)$/u, (_, letters: string, digits: string) => letters + digits.replace(/[0-9]/g, (d) => "₀₁₂₃₄₅₆₇₈₉"[Number(d)]!));
 }
 
 /** A number without zeros at the end of its decimals. */

@@ -36,13 +36,15 @@ export interface LimitMark {
   readonly text: string;
 }
 
-/** One circuit or branch as it is shown. `order` are the found rows in the order in which the mechanism passes them; `closed` tells that the last is followed by the first. */
+/** One circuit or branch as it is shown. `order` are the found rows in the order in which the mechanism passes them; `closed` tells that the last is followed by the first. `speed` is that of the leading input, 0 if it has none; `backwards` tells that its arrow is drawn towards smaller values. */
 export interface MotionData {
   readonly name: string;
   readonly summary: string;
   readonly rows: number;
   readonly order: PackedColumn;
   readonly closed: boolean;
+  readonly speed: number;
+  readonly backwards: boolean;
   readonly columns: readonly Column[];
   readonly points: readonly PointData[];
   readonly turns: readonly TurnData[];
@@ -54,11 +56,12 @@ export interface MotionData {
   readonly limits: readonly LimitMark[];
 }
 
-/** Numbers of the rows that were found: whole multiples of `step`, differenced `order` times, zigzag integers of seven bits a byte, in base64. Order -1: plain floats of eight bytes, the lowest first; -2: of four. */
+/** Numbers of the rows that were found: whole multiples of `step`, differenced `order` times, zigzag integers of seven bits a byte, in base64. Order -1: plain floats of eight bytes, the lowest first; -2: of four. `gaps` are places among these rows where there is no number, as derivatives at dead points; plain floats have NaN there. */
 export interface PackedColumn {
   readonly step: number;
   readonly order: number;
   readonly content: string;
+  readonly gaps: readonly number[];
 }
 
 /** Everything a page shows. `view` is left, bottom, right, top of the drawing. */

@@ -44,7 +44,9 @@ export function dense(column: PackedColumn): Float64Array {
   for (let again = 0; again < column.order; again++) {
     for (let k = 1; k < whole.length; k++) whole[k]! += whole[k - 1]!;
   }
-  return whole.map((number) => number * column.step);
+  const numbers = whole.map((number) => number * column.step);
+  for (const gap of column.gaps) numbers[gap] = NaN;
+  return numbers;
 }
 
 /** The numbers of all rows, NaN where there is no position. */

@@ -111,7 +111,7 @@ describe("the palette", () => {
   it("has every kind of part that a file can hold", () => {
     expect(PIECES.map((piece) => piece.title)).toEqual([
       "Point", "Link", "Joint", "Pin in slot", "Slider", "Cylinder", "Weld", "Gear pair", "Belt or chain",
-      "Rack and pinion", "Rolling wheel", "Cam", "Curve",
+      "Rack and pinion", "Rolling wheel", "Cam", "Curve", "Spring",
     ]);
   });
 

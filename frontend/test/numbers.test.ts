@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { degreeTicks, measured, powerOfTen, roundUp, shortNumber, ticks } from "../src/numbers";
+import { degreeTicks, measured, powerOfTen, printedName, roundUp, shortNumber, ticks } from "../src/numbers";
 
 describe("numbers", () => {
   it("has six digits, and a true minus sign", () => {
@@ -16,6 +16,11 @@ describe("numbers", () => {
 
   it("writes powers of ten as people do", () => {
     expect(powerOfTen(2.2e-14)).toBe("2.2·10⁻¹⁴");
+    expect(powerOfTen(10 ** -400)).toBe("0");
+  });
+
+  it("prints names as they are drawn", () => {
+    expect(["O2", "A", "θ12", "left stop", "B2C"].map(printedName)).toEqual(["O₂", "A", "θ₁₂", "left stop", "B2C"]);
   });
 
   it("measures with the unit", () => {

@@ -49,6 +49,7 @@ def test_animate_goes_on_through_dead_points_where_the_range_is_not_reached(
         (("x.html", "--rows", "9"), "--rows is for films: a page shows all rows"),
         (("x.gif", "--force", "B=1,2"), "--force is for a page: name it .html"),
         (("x.html", "--force", "Q=1,2"), 'there is no point "Q" for a force (points: '),
+        (("x.html", "--force", "B=1,2,3 N"), "--force B=1,2,3 N: a force is a point and two "),
         (("x.html", "--force", "B=1"), "--force B=1: a force is a point and two components, "),
         (
             ("x.html", "--all", "--configuration", "open"),

@@ -13,7 +13,7 @@ from linkwork.mechanism.skeleton import Rail
 
 FOUND = {
     "rapier-drive": [("s16", ("D", "E"), -1)],
-    "coupled-six-link": [("s6", ("D",), 1)],
+    "coupled-six-link": [("s6", ("D",), 1), ("s4", ("A",), ("rod", ("C", "D")))],
     "crank-slider": [("d", ("B",), 1)],
     "slider-input": [("d", ("B",), 1)],
     "double-four-bar": [],
@@ -23,9 +23,13 @@ FOUND = {
 @pytest.mark.parametrize("name", FOUND)
 def test_rails_of_the_library(name: str) -> None:
     rails = lw.example(name).model.skeleton.rails
-    assert rails == tuple(
-        Rail(name=variable, points=points, along=along) for variable, points, along in FOUND[name]
-    )
+    assert rails == tuple(_rail(*expected) for expected in FOUND[name])
+
+
+def _rail(variable: str, points: tuple[str, ...], where: complex | tuple) -> Rail:
+    if isinstance(where, tuple):
+        return Rail(name=variable, points=points, on=where[0], line=where[1])
+    return Rail(name=variable, points=points, along=where)
 
 
 @pytest.mark.parametrize("name", [name for name, rails in FOUND.items() if rails])
@@ -35,10 +39,15 @@ def test_points_stay_on_their_rail_as_far_as_the_variable_says(name: str) -> Non
     for rail in mechanism.model.skeleton.rails:
         for point in rail.points:
             way = motion.trace(point)[motion.found]
-            far = (way - way[0]) * np.conj(rail.along)
+            along, from_ = rail.along, way[0]
+            if rail.line is not None:
+                foot, tip = (motion.trace(end)[motion.found] for end in rail.line)
+                along, from_ = (tip - foot) / abs(tip - foot), foot
+            far = (way - from_) * np.conj(along)
             np.testing.assert_allclose(far.imag, 0.0, atol=1e-9 * abs(way).max())
             value = motion[rail.name][motion.found]
-            np.testing.assert_allclose(far.real, value - value[0], atol=1e-9 * abs(way).max())
+            start = value[0] - far.real[0]
+            np.testing.assert_allclose(far.real, value - start, atol=1e-9 * abs(way).max())
 
 
 INCLINED = """
@@ -81,6 +90,18 @@ def test_an_inclined_rail_carries_a_block_with_a_pin() -> None:
     assert middle == pytest.approx(complex(*position.points["B"]))
     assert {pin.of for pin in scene.select(Disc, Role.PIN)} == {"O", "A", "B"}
     assert "s" in {hatch.of for hatch in scene.select(Hatch)}
+
+
+def test_a_block_on_a_link_turns_with_it() -> None:
+    mechanism = lw.example("coupled-six-link")
+    position = mechanism.solve(200)
+    blocks = scene_of(position, mechanism.sweep()).select(Polygon, Role.SLIDER)
+    (block,) = [block for block in blocks if block.of == "s4"]
+    corners = [complex(*corner) for corner in block.points]
+    rod = complex(*position.points["D"]) - complex(*position.points["C"])
+    assert ((corners[1] - corners[0]) / rod).imag == pytest.approx(0, abs=1e-9)
+    assert np.mean(corners) == pytest.approx(complex(*position.points["A"]))
+    assert "A" in mechanism.model.skeleton.pins
 
 
 def test_the_arrow_of_a_driven_block_goes_with_it() -> None:

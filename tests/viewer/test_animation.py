@@ -13,6 +13,8 @@ import pytest
 from PIL import Image
 
 import linkwork as lw
+from linkwork.drawing import Arc, Role, Scene
+from linkwork.drawing.moving_scene import MovingScene
 from linkwork.viewer import FilmOptions, animation, check_animation
 
 _FEW = FilmOptions(rows=6, fps=20, dpi=40)
@@ -21,6 +23,29 @@ _FEW = FilmOptions(rows=6, fps=20, dpi=40)
 @pytest.fixture(scope="module")
 def motion() -> lw.Motion:
     return lw.example("four-bar").sweep(certify=False)
+
+
+@pytest.mark.parametrize("name", ["rapier-drive-limited", "crank-slider"])
+def test_arrows_of_inputs_point_the_way_they_run(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown: list[tuple[int, bool]] = []
+    inner = MovingScene.at
+
+    def at(self: MovingScene, row: int, *, turned: bool = False) -> Scene:
+        scene = inner(self, row, turned=turned)
+        (arrow,) = scene.select(Arc, Role.INPUT)
+        shown.append((row, arrow.sweep > 0))
+        return scene
+
+    monkeypatch.setattr(MovingScene, "at", at)
+    motion = lw.example(name).cycle()
+    animation({"motion": motion}, "gif", options=FilmOptions(rows=60, dpi=20))
+    del shown[:-60]  # where names were tried
+    values = next(iter(motion.inputs.values()))[[row for row, _ in shown]]
+    rises = np.remainder(np.diff(values) + 180, 360) - 180 > 0
+    assert [up for _, up in shown[:-1]] == rises.tolist()
+    assert set(rises) == ({True, False} if name == "rapier-drive-limited" else {False})
 
 
 @pytest.mark.parametrize("kind", ["gif", "apng", "webp"])

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from linkwork.results.force import Force
 from linkwork.viewer import drawn_page, motion_page, offline_page
 from linkwork.viewer.offline_page import page_json
 from linkwork.viewer.packing import unpressed
+from linkwork.viewer.play_order import play_order
 
 Open = Callable[..., Any]
 
@@ -218,6 +220,61 @@ def test_arrows_have_the_length_that_the_legend_tells(
     kind = {1: "velocities", 2: "accelerations"}[order]
     arrow = _arrow(page, kind, _moving(jansen).index("F"))
     assert arrow == pytest.approx(float(found[1]) / float(found[2]) * rate, rel=2e-3)
+
+
+def test_there_is_no_rate_at_a_dead_point(open_page: Open, limited: lw.Motion) -> None:
+    page = open_page({"motion": limited})
+    row = next(int(k) for k in play_order(limited)[0] if limited.limit[k])
+    assert not np.isfinite(limited["s16.d1"][row])
+    page.evaluate(f"linkwork.goToRow({row})")
+    assert _number(_cells(page, "s₁₆")[0]) == pytest.approx(limited["s16"][row], rel=1e-5)
+    assert _cells(page, "s₁₆")[1] == "– mm/rad"
+    page.get_by_label("Velocities").check()
+    assert page.locator(".lw-velocities .shaft:visible").count() == 0
+
+
+def test_residuals_of_zero_are_zero(open_page: Open) -> None:
+    motion = lw.example("four-bar").cycle()
+    row = int(np.flatnonzero(motion.residual == 0)[0])
+    page = open_page({"motion": motion})
+    page.evaluate(f"linkwork.goToRow({row})")
+    assert page.locator('[data-fact="residual"]').inner_text() == "0 of the longest link"
+
+
+def test_a_negative_speed_turns_everything_the_other_way(open_page: Open) -> None:
+    motion = lw.example("crank-slider").cycle()
+    assert motion.speed == -30
+    page = open_page({"motion": motion})
+    page.keyboard.press("ArrowRight")
+    assert _row(page) == 359
+    page.get_by_label("Velocities").check()
+    tip, tail = page.evaluate(_INPUT_ENDS.replace('"A0"', '"O2"'))
+    assert tail[0] * tip[1] - tail[1] * tip[0] < 0
+    velocity = complex(motion["A.x.velocity"][359], motion["A.y.velocity"][359])
+    arrow = _arrow(page, "velocities", _moving(motion).index("A"))
+    assert (arrow / velocity).imag == pytest.approx(0, abs=1e-3 * abs(arrow / velocity))
+    found = re.fullmatch(
+        r"Velocity: ([\d.]+) mm shows ([\d.]+) mm/s", page.locator(".lw-legend").inner_text()
+    )
+    assert found is not None
+    assert (arrow / velocity).real == pytest.approx(float(found[1]) / float(found[2]), rel=2e-3)
+
+
+def test_names_of_arrows_do_not_stand_on_each_other(open_page: Open) -> None:
+    motion = lw.example("rapier-drive").cycle()
+    page = open_page({"motion": motion})
+    for label in ("Velocities", "Accelerations"):
+        page.get_by_label(label).check()
+    for row in (0, 40, 200, 300):
+        page.evaluate(f"linkwork.goToRow({row})")
+        boxes = page.locator(".lw-overlay text:visible").evaluate_all(
+            "all => all.map(one => one.getBoundingClientRect().toJSON())"
+        )
+        assert len(boxes) >= 4
+        for one, other in combinations(boxes, 2):
+            across = min(one["right"], other["right"]) - max(one["left"], other["left"])
+            up = min(one["bottom"], other["bottom"]) - max(one["top"], other["top"])
+            assert min(across / one["width"], up / one["height"]) < 0.3
 
 
 def test_forces_are_shown_at_once(open_page: Open, jansen: lw.Motion) -> None:

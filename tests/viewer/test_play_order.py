@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.viewer.play_order import play_order
+from linkwork.viewer.play_order import falling, play_order
 
 
 def _steps(motion: lw.Motion, order: np.ndarray, closed: bool) -> np.ndarray:
@@ -19,6 +19,24 @@ def test_a_full_turn_is_closed_and_its_last_row_not_passed_twice() -> None:
     order, closed = play_order(lw.example("jansen-leg").sweep())
     assert closed
     assert order.tolist() == list(range(360))
+
+
+def test_time_runs_forward_where_the_speed_is_against_the_table() -> None:
+    motion = lw.example("crank-slider").sweep()
+    assert motion.speed < 0 < motion["θ2"][1]
+    order, closed = play_order(motion)
+    assert closed
+    assert order.tolist() == [0, *range(359, 0, -1)]
+    order, closed = play_order(lw.example("crank-slider").sweep(stop=90))
+    assert not closed
+    assert order.tolist() == list(range(90, -1, -1))
+
+
+def test_where_the_input_falls() -> None:
+    motion = lw.example("four-bar").sweep()
+    assert falling(motion, [0, 30, 60, 30, 0]) == [False, False, True, True, True]
+    assert falling(motion, [350, 355, 5]) == [False, False, False]
+    assert falling(motion, [7]) == [False]
 
 
 def test_a_part_of_a_turn_is_open() -> None:

@@ -34,7 +34,7 @@ const one = (name: string, entry: string, required = true): Field => ({ name, en
 export const PIECES: readonly Piece[] = [
   {
     title: "Point",
-    doc: "x and y are its place in the sketch of the file, where the mechanism is first put together.",
+    doc: "x and y are its place in the sketch of the file, where the mechanism is first put together",
     fields: [one("name", "text"), one("x", "plain number"), one("y", "plain number"), one("on link", "link", false)],
     edit: (v) => ({
       kind: "add_point",
@@ -56,6 +56,9 @@ export const PIECES: readonly Piece[] = [
   },
   ...PALETTE.map(({ table, title, doc, fields }) => ({ title, doc, fields, edit: (v: Entries): LiveEdit => partOf(table, v) })),
 ];
+
+/** Fields that may be left empty, but seldom are. */
+const USUAL = new Set(["on link", "radii", "teeth"]);
 
 /** What was filled in of a part; what was left empty is left out. */
 export function partOf(table: string, entries: Entries): LiveEdit {
@@ -210,10 +213,11 @@ export class Build {
   private form(box: HTMLElement, piece: Piece, file: FileState): void {
     const form = html("form", { class: "lw-form" }, box);
     if (piece.doc) html("p", { class: "lw-lead" }, form, `${piece.doc}.`);
-    const rest = piece.fields.some((one) => !one.required) ? html("details", { class: "lw-more" }) : null;
+    const first = (one: Field): boolean => one.required || USUAL.has(one.name);
+    const rest = piece.fields.some((one) => !first(one)) ? html("details", { class: "lw-more" }) : null;
     if (rest) html("summary", {}, rest, "More");
     const more = rest && html("div", { class: "lw-form" }, rest);
-    const entries = piece.fields.map((one) => [one.name, entry(one.required ? form : more!, one, file)] as const);
+    const entries = piece.fields.map((one) => [one.name, entry(first(one) ? form : more!, one, file)] as const);
     if (rest) form.append(rest);
     html("button", { type: "submit" }, form, `Add ${piece.title.toLowerCase()}`);
     form.addEventListener("submit", (event) => {

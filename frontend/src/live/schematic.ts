@@ -2,6 +2,7 @@
 // iterate, a configuration, a sketch.
 
 import type { Link, OpenEnd } from "../messages";
+import { printedName } from "../numbers";
 import { pathOf, svg } from "../svg";
 
 export type Points = Readonly<Record<string, readonly [number, number]>>;
@@ -61,7 +62,7 @@ export function drawLinks(group: SVGGElement, links: readonly Link[], points: Po
     svg("circle", { class: "lw-plain-pin", cx: x, cy: -y, r: 2.6 * stroke, "stroke-width": 1.2 * stroke }, group);
     if (!look.names) continue;
     const text = svg("text", { x: x + 0.6 * look.names, y: -y - 0.6 * look.names, "font-size": look.names }, group);
-    text.textContent = name;
+    text.textContent = printedName(name);
   }
 }
 

@@ -22,6 +22,7 @@ export class Sketch {
   private readonly handles = svg("g", {}, this.group);
   private page: Mounted | null = null;
   private held: string | null = null;
+  private shown = false;
 
   constructor(private readonly desk: Desk) {
     this.switch.append("Move points");
@@ -47,6 +48,8 @@ export class Sketch {
     const focused = (document.activeElement as Element | null)?.getAttribute("data-sketched");
     this.links.replaceChildren();
     this.handles.replaceChildren();
+    if (on || this.shown) page.places.drawing.include(on ? Object.values(file.points) : []);
+    this.shown = on;
     if (!on || this.switch.hidden) return;
     const stroke = this.stroke();
     drawLinks(this.links, file.links, file.points, { stroke, names: 13 * stroke });

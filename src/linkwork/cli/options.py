@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -177,14 +178,15 @@ def forces_of(mechanism: Mechanism, asked: tuple[str, ...]) -> tuple[Force, ...]
     return forces
 
 
+_NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
+_FORCE = re.compile(rf"\s*(.+?)\s*=\s*{_NUMBER}\s*,\s*{_NUMBER}\s*([^\W\d].*?)?\s*")
+
+
 def _force(text: str) -> Force:
-    name, _, value = text.partition("=")
-    first, _, rest = value.partition(",")
-    second, _, unit = rest.strip().partition(" ")
-    try:
-        x, y = float(first), float(second)
-    except ValueError:
+    match = _FORCE.fullmatch(text)
+    if match is None:
         raise InputError(
             f'--force {text}: a force is a point and two components, --force "C=0,-981 N"'
-        ) from None
-    return Force(at=name.strip(), x=x, y=y, unit=unit.strip())
+        )
+    name, x, y, unit = match.groups()
+    return Force(at=name, x=float(x), y=float(y), unit=unit or "")

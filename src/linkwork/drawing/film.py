@@ -32,6 +32,7 @@ def film(
     moving: MovingScene,
     rows: Sequence[int],
     captions: Sequence[str],
+    turned: Sequence[bool],
     *,
     dpi: float = 110.0,
     theme: Theme = LIGHT,
@@ -45,6 +46,8 @@ def film(
         Rows that were found.
     captions : sequence of str
         What stands under the title in each.
+    turned : sequence of bool
+        Whether arrows of inputs point the other way in each.
     dpi : float
         Pixels per inch; the longer side of the drawing is six inches.
     theme : Theme
@@ -58,12 +61,12 @@ def film(
         page, ax, caption = _page(moving, theme, dpi)
         canvas = page.canvas
         drawn: list[Artist] = []
-        for row, text in zip(rows, captions, strict=True):
+        for row, text, back in zip(rows, captions, turned, strict=True):
             for artist in drawn:
                 artist.remove()
             known = set(ax.get_children())
             brush = Brush(ax, moving.scene, theme)
-            for primitive in moving.at(row).primitives:
+            for primitive in moving.at(row, turned=back).primitives:
                 brush.draw(primitive)
             drawn = [artist for artist in ax.get_children() if artist not in known]
             caption.set_text(text)

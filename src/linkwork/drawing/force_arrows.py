@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from linkwork.drawing.annotation import Annotation, round_up
+from linkwork.drawing.captions import printed_name
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.point_arrows import LONGEST, ArrowLook, point_arrows, scale_caption
 from linkwork.drawing.pose import Pose
@@ -38,13 +39,14 @@ def force_arrows(
     if not most:
         return Annotation(caption="force: all are zero")
     scale = 1.0 / round_up(most / (LONGEST * measures.size))
-    parts, short = [], list[str]()
+    parts = []
     for force in forces:
         vector = {force.at: complex(force.x, force.y)}
-        part, hidden = point_arrows(vector, pose.points, scale, _LOOK, measures)
-        parts.append(part)
-        short += hidden
+        parts.append(point_arrows(vector, pose.points, scale, _LOOK, measures)[0])
     caption = scale_caption("force", scale, length_unit, force_unit(forces), measures.size)
-    if short:
-        caption += f" (too short to draw: {', '.join(dict.fromkeys(short))})"
+    drawn = {primitive.of for part in parts for primitive in part.drawn}
+    hidden_at = [force.at for force in forces if force.at not in drawn]
+    if hidden_at:
+        listed = ", ".join(map(printed_name, dict.fromkeys(hidden_at)))
+        caption += f" (too short to draw: {listed})"
     return Annotation.joined([*parts, Annotation(caption=caption)])

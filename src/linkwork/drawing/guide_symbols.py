@@ -12,7 +12,7 @@ from linkwork.drawing.follower_symbols import stems
 from linkwork.drawing.ground_symbols import hatching
 from linkwork.drawing.link_symbols import Gap, uncovered
 from linkwork.drawing.measures import Measures
-from linkwork.drawing.pose import Pose
+from linkwork.drawing.pose import Pose, travel_along
 from linkwork.drawing.scene import Polygon, Polyline, Primitive, Role, xy
 from linkwork.mechanism.linkage import GROUND
 from linkwork.mechanism.skeleton import Guide, Rail
@@ -58,11 +58,34 @@ def tracks(pose: Pose, measures: Measures, tone_of: Mapping[str, int]) -> list[T
     for guide in pose.skeleton.guides:
         groups.setdefault(guide.name, []).append(guide)
     found = [_track(pose, measures, guides, tone_of) for guides in groups.values()]
-    return found + [_rail_track(pose, measures, rail) for rail in pose.skeleton.rails]
+    return found + [_rail_track(pose, measures, rail, tone_of) for rail in pose.skeleton.rails]
 
 
-def _rail_track(pose: Pose, measures: Measures, rail: Rail) -> Track:
-    """A block on a line that stands still, where the sliding body is joined to another one."""
+def _on_link(pose: Pose, rail: Rail, line: tuple[str, str], tone_of: Mapping[str, int]) -> Track:
+    """A block on a link."""
+    foot, tip = (pose.points[name] for name in line)
+    along = (tip - foot) / abs(tip - foot)
+    travel = travel_along(pose, rail.points[0], line)
+    return Track(
+        name=rail.name,
+        on=rail.on,
+        tone=tone_of.get(rail.on, 1),
+        block=True,
+        fixed=False,
+        along=along,
+        away=along * -1j,
+        start=foot + travel.low * along,
+        end=foot + travel.high * along,
+        places=(pose.points[rail.points[0]],),
+        foot=foot,
+        tip=tip,
+    )
+
+
+def _rail_track(pose: Pose, measures: Measures, rail: Rail, tone_of: Mapping[str, int]) -> Track:
+    """A block on a line, where the sliding body is joined to another one."""
+    if rail.line is not None:
+        return _on_link(pose, rail, rail.line, tone_of)
     carrying = [p for p in rail.points if p in pose.skeleton.pins] or list(rail.points[:1])
     places = tuple(pose.points[p] for p in carrying)
     ways = [pose.paths.get(p, np.array([pose.points[p]])) for p in carrying]
@@ -152,6 +175,7 @@ def _rail_side(pose: Pose, points: Sequence[str], along: complex, measures: Meas
         return -below if np.mean(depths) > 0.01 * measures.size else below
     # Without a motion a link must come steeply from below before the picture is turned over.
     clear = 0.0 if pose.paths else 0.5 * max(abs(pose.points[name] - start) for name in others)
+    clear += 1e-6 * measures.size  # a link that comes level is not above
     return -below if np.min(depths, initial=np.inf) > clear else below
 
 

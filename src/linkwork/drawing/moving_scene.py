@@ -90,11 +90,13 @@ class MovingScene:
     frames: Frames
     parts: tuple[Moving, ...]
 
-    def at(self, row: int) -> Scene:
-        """The picture in a row that was found."""
+    def at(self, row: int, *, turned: bool = False) -> Scene:
+        """The picture in a row that was found; ``turned``: with arrows of inputs the other way."""
         if not self.found[row]:
             raise InputError(f"row {row} of the motion has no position to draw")
         shapes = tuple(filter(None, (self._placed(part, row) for part in self.parts)))
+        if turned:
+            shapes = tuple(map(_turned, shapes))
         return replace(self.scene, primitives=shapes)
 
     def _placed(self, part: Moving, row: int) -> Primitive | None:
@@ -218,6 +220,15 @@ def _scene(motion: Motion, parts: Sequence[Moving], measures: Measures, within: 
 
 #: Kind, role and part of a primitive, and its number among those that agree in all of these.
 Key = tuple[type[Primitive], Role, str, int]
+
+
+def _turned(shape: Primitive) -> Primitive:
+    """The arrow of an input the other way; everything else as it is."""
+    if shape.role is Role.INPUT and isinstance(shape, Arc):
+        return replace(shape, start=shape.start + shape.sweep, sweep=-shape.sweep)
+    if shape.role is Role.INPUT and isinstance(shape, Polyline):
+        return replace(shape, points=shape.points[::-1])
+    return shape
 
 
 def _drawn(pose: Pose, measures: Measures) -> Iterator[Primitive]:

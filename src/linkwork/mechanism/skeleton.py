@@ -39,13 +39,18 @@ class Guide:
 
 @dataclass(frozen=True, kw_only=True)
 class Rail:
-    """A straight line on ground that points of one body run along: ``along`` is its direction, a
-    unit vector; ``name`` is that of the variable that tells how far they are.
+    """A straight line that points of one body run along; ``name`` is that of the variable that
+    tells how far they are.
+
+    On ground ``along`` is its direction, a unit vector; on a link it runs from the first to the
+    second point of ``line``.
     """
 
     name: str
     points: tuple[str, ...]
-    along: complex
+    along: complex = 1.0 + 0.0j
+    on: str = GROUND
+    line: tuple[str, str] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

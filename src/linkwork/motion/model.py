@@ -198,8 +198,11 @@ def model_of(description: Description) -> Model:
         case Loops():
             equations = read_loops(description)
             fixed = description.links.get("ground", equations.fixed)
-            driven = tuple(_driven_part(description, equations, v) for v in equations.inputs)
-            rails = tuple(rails_of(equations))
+            driven = tuple(
+                _driven_part(description, equations, variable, description.falls(which))
+                for variable, which in zip(equations.inputs, description.inputs, strict=True)
+            )
+            rails = tuple(rails_of(equations, description.links))
             skeleton = Skeleton.of_points(
                 description.links, fixed, description.trace, driven, rails
             )
@@ -215,15 +218,17 @@ def model_of(description: Description) -> Model:
     return model
 
 
-def _driven_part(loops: Loops, equations: LoopEquations, variable: Variable) -> DrivenPart:
+def _driven_part(
+    loops: Loops, equations: LoopEquations, variable: Variable, backwards: bool
+) -> DrivenPart:
     """The drawn link that turns with an input angle, if there is one: its direction is e^(iφ)."""
     for link, points in loops.links.items():
         if link == GROUND or variable.kind != "angle" or len(points) < 2:
             continue
         for start, end in ((points[0], points[1]), (points[1], points[0])):
             if _turns_with(equations, start, end, variable.symbol):
-                return DrivenPart(kind="link", name=link, pivot=start)
-    return DrivenPart(kind="variable", name=variable.name)
+                return DrivenPart(kind="link", name=link, pivot=start, backwards=backwards)
+    return DrivenPart(kind="variable", name=variable.name, backwards=backwards)
 
 
 def _turns_with(equations: LoopEquations, start: str, end: str, symbol: str) -> bool:

@@ -1,11 +1,12 @@
-"""Straight lines on ground that points of a mechanism given by loop equations run along."""
+"""Straight lines that points of a mechanism given by loop equations run along."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
 
 from linkwork.equations.model import LoopEquations, Term
+from linkwork.mechanism.linkage import GROUND
 from linkwork.mechanism.skeleton import Rail
 
 __all__ = ["rails_of"]
@@ -17,27 +18,58 @@ _LEAST = 1e-12  # of the largest: rounding of terms that cancel
 _Sum = dict[tuple[object, ...], complex]
 
 
-def rails_of(equations: LoopEquations) -> Iterator[Rail]:
+def rails_of(equations: LoopEquations, links: Mapping[str, tuple[str, ...]]) -> Iterator[Rail]:
     """Rails by the variable that tells how far a point is along them.
 
-    A point runs along a rail if its place is a constant and a length times a constant vector: as
-    its formula has it, or after loop equations are added to it or subtracted.
+    A point runs along a rail if its place is a constant and a length times a constant vector; along
+    a link, if it is a length away from one of its points in the link's direction: as formulas have
+    it, or after loop equations are added to it or subtracted.
     """
-    lengths = {v.symbol: v for v in equations.variables if v.kind == "length"}
+    lengths = {v.symbol: v.name for v in equations.variables if v.kind == "length"}
     loops = [_sum(loop.terms) for loop in equations.loops]
-    if not any(key[0] in lengths and not key[1] for loop in loops for key in loop):
+    if not any(key[0] in lengths for loop in loops for key in loop):
         return
+    places = {name: _sum(point.terms) for name, point in equations.points.items()}
     rails: dict[tuple[str, complex], list[str]] = {}
-    for name, point in equations.points.items():
-        for place in _ways(_sum(point.terms), loops):
-            moving = [key for key in place if key[0] is not None or key[1]]
+    on_links: list[Rail] = []
+    for name, place in places.items():
+        for way in _ways(place, loops):
+            moving = [key for key in way if key[0] is not None or key[1]]
             if len(moving) == 1 and moving[0][0] in lengths and not moving[0][1]:
-                vector = place[moving[0]]
-                along = vector / abs(vector)
-                rails.setdefault((str(moving[0][0]), along), []).append(name)
+                vector = way[moving[0]]
+                rails.setdefault((lengths[str(moving[0][0])], vector / abs(vector)), []).append(
+                    name
+                )
                 break
-    for (symbol, along), points in rails.items():
-        yield Rail(name=lengths[symbol].name, points=tuple(points), along=along)
+        else:
+            on_links += _on_links(name, places, links, lengths, loops)
+    for (variable, along), points in rails.items():
+        yield Rail(name=variable, points=tuple(points), along=along)
+    yield from on_links
+
+
+def _on_links(
+    name: str,
+    places: Mapping[str, _Sum],
+    links: Mapping[str, tuple[str, ...]],
+    lengths: Mapping[str, str],
+    loops: list[_Sum],
+) -> Iterator[Rail]:
+    """Links that a point runs along."""
+    for link, points in links.items():
+        if link == GROUND or name in points or len(points) < 2:
+            continue
+        foot, tip = points[:2]
+        line = _added([(1, places[tip]), (-1, places[foot])])
+        if len(line) != 1:
+            continue
+        ((length, turn),) = line
+        for way in _ways(_added([(1, places[name]), (-1, places[foot])]), loops):
+            if length is None and len(way) == 1:
+                ((far, way_turn),) = way
+                if far in lengths and turn == way_turn and turn:
+                    yield Rail(name=lengths[str(far)], points=(name,), on=link, line=(foot, tip))
+                    break
 
 
 def _sum(terms: Iterable[Term]) -> _Sum:

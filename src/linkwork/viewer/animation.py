@@ -19,7 +19,7 @@ from linkwork.results.motion import Motion
 from linkwork.viewer.film_file import FILM_FORMATS, check_film, film_bytes
 from linkwork.viewer.offline_page import offline_page
 from linkwork.viewer.page_building import Loops, motion_page
-from linkwork.viewer.play_order import play_order
+from linkwork.viewer.play_order import falling, play_order
 
 __all__ = [
     "ANIMATION_FORMATS",
@@ -151,7 +151,10 @@ def _film(
         )
         for row in rows
     ]
-    pictures = film(moving_scene(motion), rows, captions, dpi=options.dpi, theme=options.theme)
+    backwards = any(part.backwards for part in motion.skeleton.driven[:1])
+    turned = [falls != backwards for falls in falling(motion, rows)]
+    scene = moving_scene(motion)
+    pictures = film(scene, rows, captions, turned, dpi=options.dpi, theme=options.theme)
 
     def told() -> Iterator[AnyArray]:
         for k, picture in enumerate(pictures, 1):

@@ -41,7 +41,7 @@ class Pack(Protocol):
 def packed(
     values: Array, found: BoolArray, *, step: float | None = None, rate: bool = False
 ) -> PackedColumn:
-    """A column (N,) of which only the ``found`` rows are kept; what is not finite counts as 0.
+    """A column (N,) of which only the ``found`` rows are kept; what is not finite is no number.
 
     Parameters
     ----------
@@ -52,7 +52,8 @@ def packed(
     rate : bool
         A derivative, which grows without bound beside a dead point: seven digits of usual values.
     """
-    kept = np.where(np.isfinite(values[found]), values[found], 0.0)
+    known = np.isfinite(values[found])
+    kept = np.where(known, values[found], 0.0)
     if rate:
         kept, step = _clipped(kept)
     largest = float(np.abs(kept).max(initial=0.0))
@@ -64,7 +65,9 @@ def packed(
         raise ValueError(f"step {chosen:g} is too fine for values up to {largest:g}")
     order, differences = _smallest(whole.astype(np.int64))
     content = _bytes(differences)
-    return PackedColumn(step=chosen, order=order, content=base64.b64encode(content).decode())
+    text = base64.b64encode(content).decode()
+    gaps = tuple(np.flatnonzero(~known).tolist())
+    return PackedColumn(step=chosen, order=order, content=text, gaps=gaps)
 
 
 def unpressed(
@@ -88,8 +91,9 @@ def unpacked(column: PackedColumn, found: BoolArray) -> Array:
     whole = _whole(content) if kind is None else np.frombuffer(content, dtype=kind)
     for _ in range(column.order):
         whole = np.cumsum(whole)
-    values = np.full(len(found), np.nan)
-    values[found] = whole * column.step
+    values, numbers = np.full(len(found), np.nan), whole * column.step
+    numbers[list(column.gaps)] = np.nan
+    values[found] = numbers
     return values
 
 
@@ -104,7 +108,7 @@ def _clipped(kept: Array) -> tuple[Array, float]:
 
 
 def _plain(values: Array, found: BoolArray, order: int) -> PackedColumn:
-    kept = np.where(np.isfinite(values[found]), values[found], 0.0).astype(_FLOATS[order])
+    kept = np.where(np.isfinite(values[found]), values[found], np.nan).astype(_FLOATS[order])
     return PackedColumn(step=1.0, order=order, content=base64.b64encode(kept.tobytes()).decode())
 
 

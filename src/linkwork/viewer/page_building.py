@@ -47,6 +47,7 @@ Loops = Callable[[Motion], Sequence[MovingLoop]]
 FORMAT = 1
 
 _MARGIN = 0.05  # of the drawing, left free around it
+_NOTHING = -400.0
 _COARSE = 0.001  # of a decade: how exactly residuals and radii are kept
 
 
@@ -155,6 +156,8 @@ def _motion(
         rows=len(motion),
         order=pack(order.astype(float), everyone, step=1.0),
         closed=closed,
+        speed=motion.speed or 0.0,
+        backwards=any(part.backwards for part in motion.skeleton.driven[:1]),
         columns=tuple(_columns(motion, pack)),
         points=tuple(_points(motion, pack)),
         turns=turns,
@@ -248,8 +251,9 @@ def _evidence(motion: Motion, pack: Pack) -> RowEvidence:
 
 
 def _log10(values: Array, motion: Motion, pack: Pack) -> PackedColumn:
-    known = np.where(np.isfinite(values) & (values > 0), values, 1e-99)
-    return pack(np.log10(known), motion.found, step=_COARSE)
+    """Exponents; of 0 one that no float has."""
+    known = np.log10(np.where(values > 0, values, np.nan))
+    return pack(np.where(values == 0, _NOTHING, known), motion.found, step=_COARSE)
 
 
 def _numbered(texts: Iterable[str]) -> tuple[Array, tuple[str, ...]]:

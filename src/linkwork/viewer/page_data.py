@@ -31,12 +31,14 @@ __all__ = [
 class PackedColumn:
     """Numbers of the rows that were found: whole multiples of ``step``, differenced ``order``
     times, zigzag integers of seven bits a byte, in base64. Order -1: plain floats of eight bytes,
-    the lowest first; -2: of four.
+    the lowest first; -2: of four. ``gaps`` are places among these rows where there is no number, as
+    derivatives at dead points; plain floats have NaN there.
     """
 
     step: float
     order: int
     content: str
+    gaps: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,7 +164,8 @@ class MotionData:
     """One circuit or branch as it is shown.
 
     ``order`` are the found rows in the order in which the mechanism passes them; ``closed`` tells
-    that the last is followed by the first.
+    that the last is followed by the first. ``speed`` is that of the leading input, 0 if it has
+    none; ``backwards`` tells that its arrow is drawn towards smaller values.
     """
 
     name: str
@@ -170,6 +173,8 @@ class MotionData:
     rows: int
     order: PackedColumn
     closed: bool
+    speed: float
+    backwards: bool
     columns: tuple[Column, ...]
     points: tuple[PointData, ...]
     turns: tuple[TurnData, ...]

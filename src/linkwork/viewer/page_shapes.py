@@ -106,8 +106,8 @@ def _flat(line: ComplexArray, size: float) -> tuple[float, ...]:
 
 def _course(course: ComplexArray, found: BoolArray, pack: Pack) -> Iterator[PackedColumn]:
     for corner in course.T:
-        yield pack(corner.real, found)
-        yield pack(corner.imag, found)
+        yield pack(np.nan_to_num(corner.real), found)
+        yield pack(np.nan_to_num(corner.imag), found)
 
 
 def _shown(course: ComplexArray, pack: Pack) -> PackedColumn:

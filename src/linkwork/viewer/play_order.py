@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from linkwork.foundation.arrays import BoolArray, ComplexArray, CountArray
 from linkwork.results.motion import Motion
 
-__all__ = ["play_order"]
+__all__ = ["falling", "play_order"]
 
 _SAME = 1e-9  # of the way of all points: positions nearer than this are one
 _MEETING = 1.5  # largest steps between rows: runs whose ends are nearer than this are joined
@@ -18,7 +20,8 @@ def play_order(motion: Motion) -> tuple[CountArray, bool]:
 
     A table starts somewhere on a circuit, may leave a gap where the input reaches no position, and
     lists further branches after it. Runs of neighbouring rows are put together where their ends
-    meet; runs that meet nothing follow each other.
+    meet; runs that meet nothing follow each other. Time runs forward: where the speed of the input
+    is against the table, so is the order.
     """
     places = _places(motion)
     runs = _runs(places, motion)
@@ -46,7 +49,24 @@ def play_order(motion: Motion) -> tuple[CountArray, bool]:
         order = order[:-1]
     if closed:
         order = np.roll(order, -int(np.argmin(order)))
+    if motion.speed:
+        lead = next(iter(motion.inputs.values()))[motion.asked]
+        if (motion.speed < 0) == (lead[-1] > lead[0]):
+            order = np.roll(order[::-1], 1) if closed else order[::-1]
     return order, bool(closed and len(order) > 2)
+
+
+def falling(motion: Motion, rows: Sequence[int]) -> list[bool]:
+    """Whether the leading input falls from each of these rows to the next, to the last from the one
+    before.
+    """
+    name, values = next(iter(motion.inputs.items()))
+    ahead = np.diff(values[list(rows)])
+    turn = {"deg": 360.0, "rad": 2.0 * np.pi}.get(motion.input_units[name])
+    if turn is not None:  # the shorter way around
+        ahead = np.remainder(ahead + 0.5 * turn, turn) - 0.5 * turn
+    falls = (ahead < 0).tolist()
+    return [*falls, *falls[-1:]] if falls else [False] * len(rows)
 
 
 def _places(motion: Motion) -> ComplexArray:

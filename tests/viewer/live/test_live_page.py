@@ -244,7 +244,6 @@ def test_a_point_is_added_from_the_palette_and_removed_again(
     piece.locator("summary").first.click()
     for label, text in (("name", "Q"), ("x", "120"), ("y", "40")):
         piece.get_by_label(label, exact=True).fill(text)
-    piece.locator("summary", has_text="More").click()
     piece.get_by_label("on link").select_option("rocker")
     piece.get_by_role("button", name="Add point").click()
     page.locator(".lw-drawing text[data-of=Q]").wait_for()

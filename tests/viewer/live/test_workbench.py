@@ -107,6 +107,13 @@ def test_an_edit_that_cannot_be_read_changes_nothing(bench: Workbench) -> None:
     assert not bench.unsaved
 
 
+def test_what_cannot_be_added_is_told_without_a_line_that_the_file_lacks(bench: Workbench) -> None:
+    found = only(bench.handle(ask.AddPoint(name="Q", x=1, y=2, links=())), tell.ProblemsFound)
+    (problem,) = found.problems
+    assert (problem.line, problem.key) == (None, "points.Q")
+    assert problem.message.startswith("is on no link")
+
+
 def test_the_text_typed_by_hand_is_judged_by_the_reader(bench: Workbench) -> None:
     found = only(bench.handle(ask.SetText(text=FOUR_BAR + "[lenghts]\n")), tell.ProblemsFound)
     assert [p.line for p in found.problems] == [len(FOUR_BAR.splitlines()) + 1]

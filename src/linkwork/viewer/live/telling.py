@@ -159,12 +159,14 @@ def _iterate(each: Iterate) -> tell.NewtonIterate:
     )
 
 
-def problems_found(error: MechanismError) -> tell.ProblemsFound:
-    """What the reader says is wrong."""
+def problems_found(error: MechanismError, *, lines: bool = True) -> tell.ProblemsFound:
+    """What the reader says is wrong; in which ``lines``, if that is a text that the person has."""
     return tell.ProblemsFound(
         where=error.where,
         problems=tuple(
-            tell.ProblemShown(line=p.line, key=key_text(p.key), message=p.message)
+            tell.ProblemShown(
+                line=p.line if lines else None, key=key_text(p.key), message=p.message
+            )
             for p in error.problems
         ),
     )

@@ -49,6 +49,10 @@ class _Drag:
     latest: str | None = None
 
 
+#: What would stand in lines that the file does not have.
+_ADDING = (ask.AddPoint, ask.AddLink, ask.AddJoint, ask.AddPart, ask.Together)
+
+
 class Workbench:
     """One mechanism file, its text, its history and its motion.
 
@@ -104,7 +108,8 @@ class Workbench:
                 self._end_drag()
             return self._handle(request)
         except MechanismError as error:
-            events: Events = [telling.problems_found(error), *self._after_refusal(request)]
+            found = telling.problems_found(error, lines=not isinstance(request, _ADDING))
+            events: Events = [found, *self._after_refusal(request)]
         except InputError as error:
             events = [tell.Refused(message=str(error)), *self._after_refusal(request)]
         return [*events, *(self._solved() if self._owed else [])]
