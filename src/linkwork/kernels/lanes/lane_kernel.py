@@ -33,7 +33,8 @@ __all__ = ["LaneKernel", "LaneRows", "RowsOfOne", "Steps"]
 
 _FEW = 16  # designs in a part of which each goes with its rows side by side
 _FAR = 1e-7  # of an angle or a length's weight: as much as a row may be off before it is proved
-_PART = 4096  # designs that one thread works on at a time
+_PART = 4096  # designs that one thread works on at a time, at most
+_SHARES = 4  # parts for each thread, at least, so that none waits long for the others
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -209,14 +210,16 @@ class LaneKernel:
         count, given = len(start), self.given(guess, start)
         ready, table = self._ready(coefficients, count), self._table(rows, steps)
 
+        size = _part_size(count, threads)
+
         def one(first: int) -> None:
-            part = slice(first, first + _PART)
+            part = slice(first, first + size)
             self._part(ready.part(part), given[:, part], table, steps, found, part)
 
         if count <= _FEW and len(rows) >= LANES:
             self._few(ready, coefficients, given, table, steps, found)
             return
-        firsts = range(0, count, _PART)
+        firsts = range(0, count, size)
         if threads > 1 and len(firsts) > 1:
             with ThreadPoolExecutor(threads) as pool:
                 list(pool.map(one, firsts))
@@ -450,6 +453,14 @@ class RowsOfOne:
         v, radius = aligned(n, rows, 1), aligned(rows if self.kernel.certified else 0, 1)
         done = self.loaded.run(self.guess, Found(0, v, radius, *self.room))
         return (v, radius) if done else None
+
+
+def _part_size(count: int, threads: int) -> int:
+    """Whole lanes, so many that every thread has several parts."""
+    if threads == 1:
+        return _PART
+    lanes = -(-count // (LANES * _SHARES * threads))
+    return min(_PART, max(1, lanes) * LANES)
 
 
 def _marched(
