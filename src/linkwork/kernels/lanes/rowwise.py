@@ -32,7 +32,7 @@ __all__ = ["DONE", "LEFT", "NOT_NEAR", "by_rows"]
 
 DONE, LEFT, NOT_NEAR = 1, 0, -1
 
-_STRIDE = 0.75  # of the largest step: as far a lane goes from row to row
+_STRIDE = 0.6  # of the largest step: as far a lane goes from row to row
 _EIGHT = 8  # lanes that a processor computes at once
 _FEWEST = 4  # with fewer the march is as quick
 _FAR = 1e-7  # of an angle or a length's weight: as much as a row may be off before it is proved
