@@ -15,7 +15,7 @@ from linkwork.batch import Family
 from linkwork.batch.family_motion import FamilyMotion
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
-from linkwork.kernels.lanes import lane_kernel
+from linkwork.kernels.lanes import lane_kernel, one_design
 from linkwork.mechanism.quantities import quantities
 from linkwork.motion import sweep
 from linkwork.motion.model import Model
@@ -154,10 +154,10 @@ def test_rows_side_by_side_are_those_of_designs_in_step(
 ) -> None:
     monkeypatch.setattr("linkwork.kernels.lanes.lane_kernel._FEW", few)
     ways = []
-    for way in ("in_step", "by_rows"):
-        inner = getattr(lane_kernel, way)
+    for where, way in ((lane_kernel, "in_step"), (one_design, "by_rows")):
+        inner = getattr(where, way)
         monkeypatch.setattr(
-            lane_kernel, way, lambda *a, inner=inner, way=way: (ways.append(way), inner(*a))[1]
+            where, way, lambda *a, inner=inner, way=way: (ways.append(way), inner(*a))[1]
         )
     family = family_of(name, 0.998, 1.002)
     motion = family.sweep()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwork.kernels.lanes import lane_kernel, rowwise
+from linkwork.kernels.lanes import one_design, rowwise
 from tests.campaigns import families, kinds
 from tests.campaigns.motion import FAMILIES
 
@@ -33,8 +33,8 @@ def test_rows_side_by_side_stay_on_their_branch(
     part: int, step: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     done = []
-    inner = lane_kernel.by_rows
-    monkeypatch.setattr(lane_kernel, "by_rows", lambda *a: (done.append(inner(*a)), done[-1])[1])
+    inner = one_design.by_rows
+    monkeypatch.setattr(one_design, "by_rows", lambda *a: (done.append(inner(*a)), done[-1])[1])
     counts, false = kinds.kind_campaign(part, 8, step)
     assert not false
     assert counts["row CERTIFIED"] > 0.9 * counts["rows found"] > 0

@@ -21,9 +21,9 @@ from linkwork.kernels.lanes.lockstep import in_step
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import ROLES, WEIGHTS, march_programs
 from linkwork.kernels.lanes.marching import march
+from linkwork.kernels.lanes.one_design import Alone, Ready, RowsOfOne
 from linkwork.kernels.lanes.printing import trial_source
 from linkwork.kernels.lanes.program import SOURCES, Op, Program
-from linkwork.kernels.lanes.rowwise import DONE, NOT_NEAR, by_rows
 from linkwork.kernels.lanes.tasks import Found, Table, Tasks
 from linkwork.kernels.lanes.trial import Topology
 from linkwork.kernels.lanes.written import is_written, written
@@ -250,9 +250,9 @@ class LaneKernel:
         values = np.array([coefficients[name] for name in used]).reshape(len(used), count)
         return np.array([named[name] for name in used], dtype=np.intp), values
 
-    def _ready(self, coefficients: Mapping[str, Array], count: int) -> _Ready:
+    def _ready(self, coefficients: Mapping[str, Array], count: int) -> Ready:
         places, design = self._registered(coefficients, count)
-        return _Ready(self._topology(places), design)
+        return Ready(self._topology(places), design)
 
     def _space(self, steps: Steps) -> Array:
         """A workspace with constants and options in place."""
@@ -267,7 +267,7 @@ class LaneKernel:
         own[:] = self._blank[steps]
         return own
 
-    def _begun(self, ready: _Ready, space: Array, given: Array) -> tuple[Array, BoolArray]:
+    def begun(self, ready: Ready, space: Array, given: Array) -> tuple[Array, BoolArray]:
         """Nodes (S, D) where designs start, and whether they do, (D,)."""
         node, begun = np.empty_like(given), np.zeros(given.shape[1], dtype=bool)
         given = np.ascontiguousarray(given)
@@ -276,7 +276,7 @@ class LaneKernel:
 
     def _part(
         self,
-        ready: _Ready,
+        ready: Ready,
         given: Array,
         table: Table,
         steps: Steps,
@@ -285,7 +285,7 @@ class LaneKernel:
     ) -> None:
         """Designs side by side."""
         space = self._space(steps)
-        node, begun = self._begun(ready, space, given)
+        node, begun = self.begun(ready, space, given)
         found.found[part] = begun
         _marched(ready, space, node, begun, table, found.at(part.start))
 
@@ -295,7 +295,7 @@ class LaneKernel:
 
     def _few(
         self,
-        ready: _Ready,
+        ready: Ready,
         coefficients: Mapping[str, Array],
         given: Array,
         table: Table,
@@ -310,7 +310,7 @@ class LaneKernel:
         left = ~found.found
         if left.any():
             space = self._space(steps)
-            node, begun = self._begun(ready, space, given)
+            node, begun = self.begun(ready, space, given)
             found.found[left] = begun[left]
             _marched(ready, space, node, begun & left, table, found.at(0))
 
@@ -339,8 +339,8 @@ class LaneKernel:
         return RowsOfOne(loaded=loaded, guess=np.append(guess, start), room=room, kernel=self)
 
     def _alone(
-        self, ready: _Ready, coefficients: Mapping[str, Array], table: Table, steps: Steps
-    ) -> _Alone:
+        self, ready: Ready, coefficients: Mapping[str, Array], table: Table, steps: Steps
+    ) -> Alone:
         count = ready.design.shape[1]
         ahead, scout = ready, self.scout or self
         if self.scout is not None:
@@ -350,7 +350,7 @@ class LaneKernel:
         space = self._space(steps)
         ones = np.ones(count)
         scales = [coefficients.get(f"scale{k}", ones) for k in range(self.table.unknowns)]
-        return _Alone(
+        return Alone(
             scout=scout,
             ready=ready,
             ahead=ahead,
@@ -374,87 +374,6 @@ class LaneKernel:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class _Ready:
-    """A topology and the coefficients (C, D) of designs."""
-
-    topology: Topology
-    design: Array
-
-    def part(self, which: slice) -> _Ready:
-        """Some of the designs."""
-        return _Ready(self.topology, np.ascontiguousarray(self.design[:, which]))
-
-    def one(self, k: int) -> _Ready:
-        """One of the designs."""
-        return self.part(slice(k, k + 1))
-
-    def load(self, space: Array, k: int) -> None:
-        """One design into all lanes of a workspace."""
-        space[self.topology.coefficients] = self.design[:, k, None]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Alone:
-    """What computes the rows of one design side by side, with room for one of them at a time.
-
-    ``far`` (D, n): as much as unknowns may be off before they are proved.
-    """
-
-    scout: LaneKernel
-    ready: _Ready
-    ahead: _Ready
-    space: Array
-    own: Array
-    table: Table
-    far: Array
-
-    def loaded(self, k: int) -> _Loaded:
-        """With a design in place, until another one is."""
-        self.ready.load(self.space, k)
-        if self.own is not self.space:
-            self.ahead.load(self.own, k)
-        return _Loaded(self, k, (self.ready.topology, self.ahead.topology, self.space, self.own))
-
-
-@dataclass(frozen=True, eq=False)
-class _Loaded:
-    """One design in place."""
-
-    alone: _Alone
-    design: int
-    spaces: tuple[Topology, Topology, Array, Array]
-
-    def run(self, guess: Array, found: Found) -> bool:
-        """From a guess (n + 1,) of the unknowns and of t; whether all rows are found."""
-        alone, far = self.alone, self.alone.far[self.design]
-        code = by_rows(*self.spaces, guess, False, alone.table, far, found)
-        if code == NOT_NEAR:
-            node = alone.scout.given(guess[:-1, None], guess[-1:])
-            start, begun = alone.scout._begun(alone.ahead.one(self.design), alone.own, node)
-            if not begun[0]:
-                return False
-            code = by_rows(*self.spaces, start[:, 0].copy(), True, alone.table, far, found)
-        return bool(code == DONE)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class RowsOfOne:
-    """The rows of one design, computed as often as wanted; see :meth:`LaneKernel.alone`."""
-
-    loaded: _Loaded
-    guess: Array
-    room: tuple[BoolArray, Array, Array]
-    kernel: LaneKernel
-
-    def run(self) -> tuple[Array, Array] | None:
-        """Unknowns (n, R, 1) and radii of their proofs (R, 1); ``None`` if this is not the way."""
-        rows, n = len(self.loaded.alone.table.rows), self.kernel.table.unknowns
-        v, radius = aligned(n, rows, 1), aligned(rows if self.kernel.certified else 0, 1)
-        done = self.loaded.run(self.guess, Found(0, v, radius, *self.room))
-        return (v, radius) if done else None
-
-
 def _part_size(count: int, threads: int) -> int:
     """Whole lanes, so many that every thread has several parts."""
     if threads == 1:
@@ -464,7 +383,7 @@ def _part_size(count: int, threads: int) -> int:
 
 
 def _marched(
-    ready: _Ready, space: Array, node: Array, begun: BoolArray, table: Table, kept: Found
+    ready: Ready, space: Array, node: Array, begun: BoolArray, table: Table, kept: Found
 ) -> None:
     tasks = Tasks.room(2 * len(begun), len(node))
     many = in_step(ready.topology, space, ready.design, node, begun, table, tasks, kept)

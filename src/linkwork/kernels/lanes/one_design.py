@@ -1,0 +1,100 @@
+"""One design at a time, its rows side by side in the lanes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from linkwork.foundation.aligned import aligned
+from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.kernels.lanes.rowwise import DONE, NOT_NEAR, by_rows
+from linkwork.kernels.lanes.tasks import Found, Table
+from linkwork.kernels.lanes.trial import Topology
+
+if TYPE_CHECKING:
+    from linkwork.kernels.lanes.lane_kernel import LaneKernel
+
+__all__ = ["Alone", "Ready", "RowsOfOne"]
+
+
+@dataclass(frozen=True, eq=False)
+class Ready:
+    """A topology and the coefficients (C, D) of designs."""
+
+    topology: Topology
+    design: Array
+
+    def part(self, which: slice) -> Ready:
+        """Some of the designs."""
+        return Ready(self.topology, np.ascontiguousarray(self.design[:, which]))
+
+    def one(self, k: int) -> Ready:
+        """One of the designs."""
+        return self.part(slice(k, k + 1))
+
+    def load(self, space: Array, k: int) -> None:
+        """One design into all lanes of a workspace."""
+        space[self.topology.coefficients] = self.design[:, k, None]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Alone:
+    """What computes the rows of one design side by side, with room for one of them at a time.
+
+    ``far`` (D, n): as much as unknowns may be off before they are proved.
+    """
+
+    scout: LaneKernel
+    ready: Ready
+    ahead: Ready
+    space: Array
+    own: Array
+    table: Table
+    far: Array
+
+    def loaded(self, k: int) -> Loaded:
+        """With a design in place, until another one is."""
+        self.ready.load(self.space, k)
+        if self.own is not self.space:
+            self.ahead.load(self.own, k)
+        return Loaded(self, k, (self.ready.topology, self.ahead.topology, self.space, self.own))
+
+
+@dataclass(frozen=True, eq=False)
+class Loaded:
+    """One design in place."""
+
+    alone: Alone
+    design: int
+    spaces: tuple[Topology, Topology, Array, Array]
+
+    def run(self, guess: Array, found: Found) -> bool:
+        """From a guess (n + 1,) of the unknowns and of t; whether all rows are found."""
+        alone, far = self.alone, self.alone.far[self.design]
+        code = by_rows(*self.spaces, guess, False, alone.table, far, found)
+        if code == NOT_NEAR:
+            node = alone.scout.given(guess[:-1, None], guess[-1:])
+            start, begun = alone.scout.begun(alone.ahead.one(self.design), alone.own, node)
+            if not begun[0]:
+                return False
+            code = by_rows(*self.spaces, start[:, 0].copy(), True, alone.table, far, found)
+        return bool(code == DONE)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RowsOfOne:
+    """The rows of one design, computed as often as wanted; see :meth:`LaneKernel.alone`."""
+
+    loaded: Loaded
+    guess: Array
+    room: tuple[BoolArray, Array, Array]
+    kernel: LaneKernel
+
+    def run(self) -> tuple[Array, Array] | None:
+        """Unknowns (n, R, 1) and radii of their proofs (R, 1); ``None`` if this is not the way."""
+        rows, n = len(self.loaded.alone.table.rows), self.kernel.table.unknowns
+        v, radius = aligned(n, rows, 1), aligned(rows if self.kernel.certified else 0, 1)
+        done = self.loaded.run(self.guess, Found(0, v, radius, *self.room))
+        return (v, radius) if done else None
