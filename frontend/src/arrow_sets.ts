@@ -19,6 +19,7 @@ export class ArrowSets {
   private readonly legend: HTMLElement;
   private readonly names: Names;
   private row = -1;
+  private room = "[]";
 
   constructor(
     data: PageData,
@@ -45,7 +46,7 @@ export class ArrowSets {
   }
 
   renew(data: PageData): void {
-    this.names.view = data.view;
+    this.names.view = this.drawing.view;
     for (const arrows of this.kinds) arrows.renew(data);
   }
 
@@ -53,10 +54,21 @@ export class ArrowSets {
     for (const arrows of this.kinds) arrows.show(view);
   }
 
+  /** What arrows reach is in view, if that has changed. */
+  private makeRoom(): void {
+    const reach = this.kinds.flatMap((arrows) => (arrows.shown ? arrows.reach : []));
+    const wanted = JSON.stringify(reach);
+    if (wanted === this.room) return;
+    this.room = wanted;
+    this.drawing.include("arrows", reach);
+    this.names.view = this.drawing.view;
+  }
+
   draw(row: number): void {
     this.row = row;
     this.names.begin();
     for (const arrows of this.kinds) arrows.draw(row);
+    this.makeRoom();
     const told = this.kinds.filter((arrows) => arrows.shown && arrows.legend).map((arrows) => arrows.legend);
     say(this.legend, told.join("\n"));
     this.legend.hidden = told.length === 0;

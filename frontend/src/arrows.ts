@@ -33,6 +33,8 @@ export class Arrows {
   /** How long an arrow is for what it shows; "" where that need not be said. */
   legend = "";
   shown = false;
+  /** How far arrows reach over the whole motion: two corners; of vectors of loops, nothing. */
+  reach: (readonly [number, number])[] = [];
 
   constructor(
     private data: PageData,
@@ -75,6 +77,7 @@ export class Arrows {
       forces: () => this.forces(view),
     };
     this.ends = made[this.kind]();
+    this.reach = this.kind === "vectors" ? [] : corners(view.order.flatMap((row) => this.ends(row)));
   }
 
   private vectors(view: MotionView): Ends {
@@ -182,6 +185,19 @@ export class Arrows {
     name.setAttribute("x", String(place.x));
     name.setAttribute("y", String(-place.y + 0.3 * size));
   }
+}
+
+/** Two corners of the box around the tips of arrows; nothing around no arrows. */
+function corners(ends: readonly (readonly number[])[]): (readonly [number, number])[] {
+  const box = [Infinity, Infinity, -Infinity, -Infinity];
+  for (const [, , x, y] of ends) {
+    if (!Number.isFinite(x! + y!)) continue;
+    box[0] = Math.min(box[0]!, x!);
+    box[1] = Math.min(box[1]!, y!);
+    box[2] = Math.max(box[2]!, x!);
+    box[3] = Math.max(box[3]!, y!);
+  }
+  return Number.isFinite(box[0]) ? [[box[0]!, box[1]!], [box[2]!, box[3]!]] : [];
 }
 
 /** The middle of a name, and half of its width and height. */

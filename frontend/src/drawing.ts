@@ -25,6 +25,8 @@ export class Drawing {
   readonly element: SVGSVGElement;
   /** Above everything: arrows that a row computes. */
   readonly overlay: SVGGElement;
+  /** What is in view: left, bottom, right, top. */
+  view: readonly number[] = [];
   private readonly shapes: SVGGElement;
   private readonly handles: SVGGElement;
   private moved: Moved[] = [];
@@ -33,9 +35,9 @@ export class Drawing {
   /** Arrows of what is driven, turned round while it runs backwards. */
   private turned: Moved[] = [];
   private backwards = false;
-  /** Places that are shown beside the view. */
-  private more: (readonly [number, number])[] = [];
-  private view!: MotionView;
+  /** Places that are shown beside the view, by what they are shown for. */
+  private readonly more = new Map<string, readonly (readonly [number, number])[]>();
+  private motion!: MotionView;
 
   constructor(
     private data: PageData,
@@ -55,7 +57,7 @@ export class Drawing {
   /** Other data: sizes of symbols, what is in view. */
   renew(data: PageData): void {
     this.data = data;
-    const [left, bottom, right, top] = around(data.view, this.more);
+    const [left, bottom, right, top] = (this.view = around(data.view, [...this.more.values()].flat()));
     const box = `${left} ${-top} ${right - left} ${top - bottom}`;
     if (box === this.element.getAttribute("viewBox")) return;
     this.element.setAttribute("viewBox", box);
@@ -63,12 +65,12 @@ export class Drawing {
   }
 
   /** Show these places too, as far as that leaves the mechanism large enough; none: no more. */
-  include(places: readonly (readonly [number, number])[]): void {
+  include(what: string, places: readonly (readonly [number, number])[]): void {
     const [left, bottom, right, top] = this.data.view as [number, number, number, number];
     const most = MOST_GROWTH * Math.max(right - left, top - bottom);
     const near = places.filter(([x, y]) => x > left - most && x < right + most && y > bottom - most && y < top + most);
     const air = places.length ? 0.06 * Math.max(right - left, top - bottom) : 0;
-    this.more = near.flatMap(([x, y]) => [[x - air, y - air] as const, [x + air, y + air] as const]);
+    this.more.set(what, near.flatMap(([x, y]) => [[x - air, y - air] as const, [x + air, y + air] as const]));
     this.renew(this.data);
   }
 
@@ -82,7 +84,7 @@ export class Drawing {
 
   /** Draw another motion; where it has the same shapes, they are kept and only get its measures. */
   show(view: MotionView): void {
-    this.view = view;
+    this.motion = view;
     const wanted = madeOf(view);
     if (wanted === this.made) {
       view.data.parts.forEach((part, k) => this.renewed[k]!(part));
@@ -145,7 +147,7 @@ export class Drawing {
     if (frame >= 0) {
       group.classList.add("lw-moving");
       this.moved.push((row) => {
-        const { x, y, angle } = this.view.pose(frame, row);
+        const { x, y, angle } = this.motion.pose(frame, row);
         group.setAttribute("transform", `translate(${x} ${-y}) rotate(${(-angle * 180) / Math.PI})`);
       });
     }
@@ -186,7 +188,7 @@ export class Drawing {
     const path = svg("path", this.look(part), this.shapes);
     path.classList.add("lw-changing");
     const closed = part.kind === "area";
-    this.measured(part, (own) => (course = this.view.course(own)));
+    this.measured(part, (own) => (course = this.motion.course(own)));
     this.moved.push((row) => {
       const there = course.shown[row] === 1;
       const corners = course.corners.map((corner) => corner[row]!);
@@ -203,7 +205,7 @@ export class Drawing {
     element.textContent = part.text;
     let [u, v] = [0, 0];
     const place = (row: number): void => {
-      const { x, y, angle } = this.view.pose(part.frame, row);
+      const { x, y, angle } = this.motion.pose(part.frame, row);
       const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
       put(element, { transform: `translate(${x + cos * u - sin * v} ${-(y + sin * u + cos * v)})` });
     };
@@ -227,13 +229,13 @@ export class Drawing {
   /** Round places to take hold of, larger than pins, above everything. */
   private addHandles(): void {
     const drawn = new Set(
-      this.view.data.parts.filter((part) => part.kind === "disc").map((part) => part.of),
+      this.motion.data.parts.filter((part) => part.kind === "disc").map((part) => part.of),
     );
-    this.view.points.forEach((point, k) => {
+    this.motion.points.forEach((point, k) => {
       if (!point.moving || !drawn.has(point.name)) return;
       const handle = svg("circle", { class: "lw-handle", "data-point": k }, this.handles);
       this.moved.push((row) => {
-        const { x, y } = this.view.points[k]!;
+        const { x, y } = this.motion.points[k]!;
         put(handle, { cx: x[row]!, cy: -y[row]!, r: 3.2 * this.data.pin });
       });
     });

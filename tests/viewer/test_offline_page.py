@@ -222,6 +222,20 @@ def test_arrows_have_the_length_that_the_legend_tells(
     assert arrow == pytest.approx(float(found[1]) / float(found[2]) * rate, rel=2e-3)
 
 
+def test_arrows_stay_in_view(open_page: Open) -> None:
+    motion = lw.example("rapier-drive").cycle()
+    page = open_page({"motion": motion}, forces=[Force(at="D", x=-50.0, y=0.0)])
+    canvas = page.locator(".lw-drawing").bounding_box()
+    for row in (0, 90, 180, 270):
+        page.evaluate(f"linkwork.goToRow({row})")
+        for what in (".head", "text"):
+            box = page.locator(f".lw-forces {what}").bounding_box()
+            assert canvas["x"] <= box["x"] <= canvas["x"] + canvas["width"] - box["width"]
+    whole = page.locator(".lw-drawing").get_attribute("viewBox")
+    page.get_by_label("Forces").uncheck()
+    assert page.locator(".lw-drawing").get_attribute("viewBox") != whole
+
+
 def test_there_is_no_rate_at_a_dead_point(open_page: Open, limited: lw.Motion) -> None:
     page = open_page({"motion": limited})
     row = next(int(k) for k in play_order(limited)[0] if limited.limit[k])

@@ -67,7 +67,7 @@ export class Newton {
   private clear(): void {
     this.links.replaceChildren();
     this.handles.replaceChildren();
-    this.page?.places.drawing.include([]);
+    this.page?.places.drawing.include("newton", []);
   }
 
   renew(): void {
@@ -205,7 +205,7 @@ export class Newton {
   }
 
   private draw(iterate: NewtonIterate): void {
-    if (!this.held) this.page?.places.drawing.include([...Object.values(iterate.points), ...iterate.open_ends.map((end) => end.end)]);
+    if (!this.held) this.page?.places.drawing.include("newton", [...Object.values(iterate.points), ...iterate.open_ends.map((end) => end.end)]);
     const matrix = this.page?.places.drawing.element.getScreenCTM();
     if (!matrix) return;
     const stroke = 1.2 / matrix.a;

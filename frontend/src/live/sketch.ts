@@ -48,7 +48,7 @@ export class Sketch {
     const focused = (document.activeElement as Element | null)?.getAttribute("data-sketched");
     this.links.replaceChildren();
     this.handles.replaceChildren();
-    if (on || this.shown) page.places.drawing.include(on ? Object.values(file.points) : []);
+    if (on || this.shown) page.places.drawing.include("sketch", on ? Object.values(file.points) : []);
     this.shown = on;
     if (!on || this.switch.hidden) return;
     const stroke = this.stroke();
