@@ -54,21 +54,26 @@ export class ArrowSets {
     for (const arrows of this.kinds) arrows.show(view);
   }
 
+  private drawAll(row: number): void {
+    this.names.begin();
+    for (const arrows of this.kinds) arrows.draw(row);
+  }
+
   /** What arrows reach is in view, if that has changed. */
-  private makeRoom(): void {
+  private makeRoom(): boolean {
     const reach = this.kinds.flatMap((arrows) => (arrows.shown ? arrows.reach : []));
     const wanted = JSON.stringify(reach);
-    if (wanted === this.room) return;
+    if (wanted === this.room) return false;
     this.room = wanted;
     this.drawing.include("arrows", reach);
     this.names.view = this.drawing.view;
+    return true;
   }
 
   draw(row: number): void {
     this.row = row;
-    this.names.begin();
-    for (const arrows of this.kinds) arrows.draw(row);
-    this.makeRoom();
+    this.drawAll(row);
+    if (this.makeRoom()) this.drawAll(row); // names stand where there was no room before
     const told = this.kinds.filter((arrows) => arrows.shown && arrows.legend).map((arrows) => arrows.legend);
     say(this.legend, told.join("\n"));
     this.legend.hidden = told.length === 0;

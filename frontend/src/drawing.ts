@@ -69,7 +69,7 @@ export class Drawing {
     const [left, bottom, right, top] = this.data.view as [number, number, number, number];
     const most = MOST_GROWTH * Math.max(right - left, top - bottom);
     const near = places.filter(([x, y]) => x > left - most && x < right + most && y > bottom - most && y < top + most);
-    const air = places.length ? 0.1 * Math.max(right - left, top - bottom) : 0;
+    const air = places.length ? 0.08 * Math.max(right - left, top - bottom) : 0;
     this.more.set(what, near.flatMap(([x, y]) => [[x - air, y - air] as const, [x + air, y + air] as const]));
     this.renew(this.data);
   }
