@@ -15,9 +15,10 @@ from linkwork.mechanism.linkage import Linkage
 from tests.laws.agreement import CLOSE, agree, angles_of, internal, series_of
 from tests.laws.contacts import KINDS, contact
 from tests.laws.transforms import mirrored, scaled
+from tests.thinned import thinned
 
 seeds = st.integers(0, 10**6)
-every = pytest.mark.parametrize("kind", KINDS)
+every = pytest.mark.parametrize("kind", thinned(KINDS, 2))
 some = settings(max_examples=3)
 
 

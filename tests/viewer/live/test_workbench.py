@@ -16,6 +16,7 @@ from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.workbench import Workbench
 from linkwork.viewer.packing import unpacked
+from tests.thinned import thinned
 from tests.viewer.live.conftest import FOUR_BAR
 
 
@@ -523,7 +524,7 @@ def test_points_of_equations_cannot_be_dragged(tmp_path: Path) -> None:
     assert '"θ13" = 190' in state.text
 
 
-@pytest.mark.parametrize("name", lw.examples())
+@pytest.mark.parametrize("name", thinned(lw.examples()))
 def test_every_mechanism_of_the_library_opens_and_is_edited(name: str, tmp_path: Path) -> None:
     file = tmp_path / f"{name}.toml"
     file.write_text(lw.example_text(name), encoding="utf-8")
