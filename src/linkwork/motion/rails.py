@@ -64,10 +64,12 @@ def _on_links(
         if len(line) != 1:
             continue
         ((length, turn),) = line
+        if length is not None or not turn:
+            continue
         for way in _ways(_added([(1, places[name]), (-1, places[foot])]), loops):
-            if length is None and len(way) == 1:
+            if len(way) == 1:
                 ((far, way_turn),) = way
-                if far in lengths and turn == way_turn and turn:
+                if far in lengths and turn == way_turn:
                     yield Rail(name=lengths[str(far)], points=(name,), on=link, line=(foot, tip))
                     break
 
@@ -89,8 +91,8 @@ def _added(parts: Iterable[tuple[int, _Sum]]) -> _Sum:
 
 def _ways(place: _Sum, loops: list[_Sum]) -> Iterator[_Sum]:
     """The place of a point with loop equations added or subtracted, its own formula first."""
-    yield place
     if len(loops) > _MOST_LOOPS:
+        yield place
         for loop in loops:
             yield _added([(1, place), (1, loop)])
             yield _added([(1, place), (-1, loop)])

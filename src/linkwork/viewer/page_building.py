@@ -47,7 +47,7 @@ Loops = Callable[[Motion], Sequence[MovingLoop]]
 FORMAT = 1
 
 _MARGIN = 0.05  # of the drawing, left free around it
-_NOTHING = -400.0
+_NOTHING = -400.0  # the exponent of 0: no float is so small
 _COARSE = 0.001  # of a decade: how exactly residuals and radii are kept
 
 
@@ -251,7 +251,7 @@ def _evidence(motion: Motion, pack: Pack) -> RowEvidence:
 
 
 def _log10(values: Array, motion: Motion, pack: Pack) -> PackedColumn:
-    """Exponents; of 0 one that no float has."""
+    """Exponents of what is not negative."""
     known = np.log10(np.where(values > 0, values, np.nan))
     return pack(np.where(values == 0, _NOTHING, known), motion.found, step=_COARSE)
 

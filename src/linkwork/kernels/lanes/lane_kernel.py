@@ -32,7 +32,6 @@ from linkwork.kernels.loop_table import LoopTable
 __all__ = ["LaneKernel", "LaneRows", "RowsOfOne", "Steps"]
 
 _FEW = 16  # designs in a part of which each goes with its rows side by side
-_FAR = 1e-7  # of an angle or a length's weight: as much as a row may be off before it is proved
 _PART = 4096  # designs that one thread works on at a time, at most
 _SHARES = 4  # parts for each thread, at least, so that none waits long for the others
 
@@ -322,7 +321,7 @@ class LaneKernel:
         rows: Array,
         steps: Steps,
     ) -> RowsOfOne:
-        """One design's rows, ready to be computed again and again; a kernel keeps one of these.
+        """One design's rows, ready to be computed again and again.
 
         Parameters
         ----------
@@ -357,7 +356,7 @@ class LaneKernel:
             space=space,
             own=space if scout is self else scout._space(steps),
             table=table,
-            far=np.ascontiguousarray(_FAR * np.array(scales).T),
+            scale=np.ascontiguousarray(np.array(scales).T),
         )
 
     def _topology(self, coefficients: IndexArray) -> Topology:

@@ -43,7 +43,7 @@ class Ready:
 class Alone:
     """What computes the rows of one design side by side, with room for one of them at a time.
 
-    ``far`` (D, n): as much as unknowns may be off before they are proved.
+    ``scale`` (D, n): weights of the unknowns.
     """
 
     scout: LaneKernel
@@ -52,7 +52,7 @@ class Alone:
     space: Array
     own: Array
     table: Table
-    far: Array
+    scale: Array
 
     def loaded(self, k: int) -> Loaded:
         """With a design in place, until another one is."""
@@ -72,14 +72,14 @@ class Loaded:
 
     def run(self, guess: Array, found: Found) -> bool:
         """From a guess (n + 1,) of the unknowns and of t; whether all rows are found."""
-        alone, far = self.alone, self.alone.far[self.design]
-        code = by_rows(*self.spaces, guess, False, alone.table, far, found)
+        alone, scale = self.alone, self.alone.scale[self.design]
+        code = by_rows(*self.spaces, guess, False, alone.table, scale, found)
         if code == NOT_NEAR:
             node = alone.scout.given(guess[:-1, None], guess[-1:])
             start, begun = alone.scout.begun(alone.ahead.one(self.design), alone.own, node)
             if not begun[0]:
                 return False
-            code = by_rows(*self.spaces, start[:, 0].copy(), True, alone.table, far, found)
+            code = by_rows(*self.spaces, start[:, 0].copy(), True, alone.table, scale, found)
         return bool(code == DONE)
 
 

@@ -33,14 +33,15 @@ __all__ = ["DONE", "LEFT", "NOT_NEAR", "by_rows"]
 DONE, LEFT, NOT_NEAR = 1, 0, -1
 
 _STRIDE = 0.6  # of the largest step: as far a lane goes from row to row
-_EIGHT = 8  # lanes that a processor computes at once
+_VECTOR = 8  # lanes that a processor computes at once
 _FEWEST = 4  # with fewer the march is as quick
-_FAR = 1e-7  # of an angle or a length's weight: as much as a row may be off before it is proved
 _APART = 0.2  # of a step: nodes that are closer do not tell more
-# without proofs, from row to row, of an angle or a length's weight:
-_BEND = 0.1  # a change of rates times the distance
-_CLOSE = 0.1  # of an angle or a length's weight: a guess that is as near needs no care
-_ROUGH = 0.03  # what rates do not explain, of the way and of as much for a largest step
+_ANY = 1 << 30  # nodes: as many as the way takes
+# of an angle, or of a length's weight:
+_FAR = 1e-7  # as much as a row may be off before it is proved
+_CLOSE = 0.1  # a guess that is as near needs no care
+_BEND = 0.1  # without proofs, from row to row: a change of rates times the distance,
+_ROUGH = 0.03  # and what rates do not explain, of the way and of as much for a largest step
 
 
 @compiled
@@ -69,9 +70,9 @@ def _noted(topology, turn, w, lane, node):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _started(topology, w, guess, far, node):  # type: ignore[no-untyped-def]
+def _started(topology, w, guess, scale, node):  # type: ignore[no-untyped-def]
     """The position at a guess (n + 1,) close to it, into ``node`` (S,); whether it is close."""
-    nodes, n, last = topology.nodes, len(far), topology.nodes.shape[1] - 1
+    nodes, n, last = topology.nodes, len(scale), topology.nodes.shape[1] - 1
     for role in range(1, ROLES):
         for j in range(last):
             w[nodes[role, j], 0] = guess[j] if j < n else 0.0
@@ -82,7 +83,7 @@ def _started(topology, w, guess, far, node):  # type: ignore[no-untyped-def]
     _noted(topology, 0, w, 0, node)
     near = 0
     for k in range(n):
-        near += abs(node[k] - guess[k]) <= _CLOSE * far[k] / _FAR
+        near += abs(node[k] - guess[k]) <= _CLOSE * scale[k]
     return near == n
 
 
@@ -117,7 +118,7 @@ def _ready(topology, w, node, row, table):  # type: ignore[no-untyped-def]
     """Nodes from a node to a row and some behind that; the same as :func:`_scouted`."""
     rows, steps = table.rows, table.steps
     _set_out(topology, w, node)
-    turn, known = _scouted(topology, w, 0, 1, rows[row], steps, 1 << 30)
+    turn, known = _scouted(topology, w, 0, 1, rows[row], steps, _ANY)
     if known and known < NODES:
         turn, known = _scouted(topology, w, turn, known, rows[-1], steps, NODES)
     return turn, known
@@ -161,7 +162,8 @@ def _predicted(topology, turn, w, lanes, used, cells, unknowns):  # type: ignore
     nodes = topology.nodes
     for k in range(unknowns):
         guess = nodes[(ROLES - 1 - turn) % ROLES, k]
-        w[guess, :lanes] = 0.0
+        for i in range(lanes):
+            w[guess, i] = 0.0
         for role in range(1, used + 1):
             place = (role - turn) % ROLES
             x, d = nodes[place, k], nodes[place, unknowns + k]
@@ -170,21 +172,21 @@ def _predicted(topology, turn, w, lanes, used, cells, unknowns):  # type: ignore
 
 
 @compiled
-def _smooth(topology, turn, w, lanes, before, is_first, far, gap, largest):  # type: ignore[no-untyped-def]
+def _smooth(topology, turn, w, lanes, before, is_first, scale, gap, largest):  # type: ignore[no-untyped-def]
     """Whether rows follow from the rates of the rows before them, and det J keeps its sign.
 
     ``before`` (S,): the row before the first lane, unless that is the first one of all.
     """
-    nodes, n, rough, trial = topology.nodes, len(far), 0, -turn % ROLES
+    nodes, n, rough, trial = topology.nodes, len(scale), 0, -turn % ROLES
     for k in range(n):
-        x, d, scale = nodes[trial, k], nodes[trial, n + k], far[k] / _FAR
-        least = scale * gap / largest
+        x, d = nodes[trial, k], nodes[trial, n + k]
+        most, least = _BEND * scale[k], scale[k] * gap / largest
         x0, d0 = before[k], before[n + k]
         for i in range(lanes):
             if i > 0 or not is_first:
                 bend, way = gap * abs(w[d, i] - d0), 0.5 * gap * (w[d, i] + d0)
                 off = abs(w[x, i] - x0 - way)
-                rough += not (bend <= _BEND * scale and off <= bend + _ROUGH * (abs(way) + least))
+                rough += not (bend <= most and off <= bend + _ROUGH * (abs(way) + least))
             x0, d0 = w[x, i], w[d, i]
     for k in range(2 * n, nodes.shape[1] - 1):
         side, sign = nodes[trial, k], before[k]
@@ -204,7 +206,9 @@ def _kept(topology, turn, w, lanes, row, unknowns, found):  # type: ignore[no-un
 
 
 @compiled
-def _stretch(topology, w, first, width, before, table, far, gap, trusting, standing, cells, found):  # type: ignore[no-untyped-def]
+def _stretch(
+    topology, w, first, width, before, table, scale, gap, trusting, standing, cells, found
+):  # type: ignore[no-untyped-def]
     """From a row on, as far as it goes well with so many rows at once: the first row not found.
 
     ``before`` (S,): the start, or the row before the first one; set to the last row.
@@ -218,10 +222,12 @@ def _stretch(topology, w, first, width, before, table, far, gap, trusting, stand
     for role in range(ROLES):
         for j in range(size):
             register = nodes[role, j]
-            w[register, 1:width] = w[register, 0]
+            for i in range(1, width):
+                w[register, i] = w[register, 0]
     for j in range(len(topology.weights)):
         # the guess stands in the place of the oldest node
-        w[topology.weights[j], :width] = 1.0 if j == 2 * NODES - 2 else 0.0
+        for i in range(width):
+            w[topology.weights[j], i] = 1.0 if j == 2 * NODES - 2 else 0.0
     block = 0
     while first < len(rows):
         lanes, t = min(width, len(rows) - first), nodes[-turn % ROLES, size - 1]
@@ -233,12 +239,13 @@ def _stretch(topology, w, first, width, before, table, far, gap, trusting, stand
         elif block == NODES - 1:  # now all lanes have rows behind them, in the same distances
             _weigh(topology, turn, w, 1, used, cells)
             for k in range(2 * used):
-                cells[k, 1:] = cells[k, 0]
+                for i in range(1, width):
+                    cells[k, i] = cells[k, 0]
         _predicted(topology, turn, w, lanes, used, cells, n)
         if not met(topology, turn, w, standing, lanes, n):
             return first
         if not trusting and not _smooth(
-            topology, turn, w, lanes, before, first == 0, far, gap, table.steps[1]
+            topology, turn, w, lanes, before, first == 0, scale, gap, table.steps[1]
         ):
             return first
         _kept(topology, turn, w, lanes, first, n, found)
@@ -249,12 +256,12 @@ def _stretch(topology, w, first, width, before, table, far, gap, trusting, stand
 
 
 @compiled
-def _linked(topology, w, first, table, far, standing, found):  # type: ignore[no-untyped-def]
+def _linked(topology, w, first, table, scale, standing, found):  # type: ignore[no-untyped-def]
     """Prove rows from one on, each from the one before it; whether that is done.
 
-    While that one's error is not known it is taken to be ``far`` (n,), and looked at afterwards.
+    While that one's error is not known it is taken to be :data:`_FAR`, and looked at afterwards.
     """
-    nodes, n, m, rows = topology.nodes, len(far), found.first, table.rows
+    nodes, n, m, rows = topology.nodes, len(scale), found.first, table.rows
     last, lanes = nodes.shape[1] - 1, min(LANES, len(rows) - first)
     for i in range(lanes):
         w[nodes[0, last], i] = rows[first + i]
@@ -265,7 +272,8 @@ def _linked(topology, w, first, table, far, standing, found):  # type: ignore[no
             w[mine, i] = source[first + i, m]
         for i in range(lanes):
             w[near, i] = source[max(first + i - 1, 0), m]
-        w[nodes[1, 2 * n + k], :lanes] = far[k]
+        for i in range(lanes):
+            w[nodes[1, 2 * n + k], i] = _FAR * scale[k]
     settled(topology, 0, w, standing, False, lanes)
     if not _all_good(topology, w, lanes):
         return False
@@ -273,7 +281,7 @@ def _linked(topology, w, first, table, far, standing, found):  # type: ignore[no
     for k in range(n):
         x, error, guess = nodes[0, k], nodes[0, 2 * n + k], nodes[2, k]
         for i in range(lanes):
-            outside += not abs(w[x, i] - w[guess, i]) + w[error, i] <= far[k]
+            outside += not abs(w[x, i] - w[guess, i]) + w[error, i] <= _FAR * scale[k]
     _kept(topology, 0, w, lanes, first, n, found)
     radius = topology.noted[RADIUS]
     for i in range(lanes):
@@ -282,30 +290,31 @@ def _linked(topology, w, first, table, far, standing, found):  # type: ignore[no
 
 
 @compiled
-def _joined(topology, w, start, rows, far, found, standing):  # type: ignore[no-untyped-def]
+def _joined(topology, w, start, rows, scale, found, standing):  # type: ignore[no-untyped-def]
     """Whether the start (S,) is proved to lie on the branch of the row next to it."""
-    nodes, n = topology.nodes, len(far)
+    nodes, n = topology.nodes, len(scale)
     last = nodes.shape[1] - 1
     row = min(np.searchsorted(rows, start[-1]), len(rows) - 1)
     if row > 0 and start[-1] - rows[row - 1] < rows[row] - start[-1]:
         row -= 1
     for k in range(n):
         w[nodes[2, k], 0], w[nodes[1, k], 0] = start[k], found.unknowns[k, row, found.first]
-        w[nodes[1, 2 * n + k], 0] = far[k]
+        w[nodes[1, 2 * n + k], 0] = _FAR * scale[k]
     w[nodes[0, last], 0], w[nodes[1, last], 0] = start[-1], rows[row]
     settled(topology, 0, w, standing, False, 1)
     return w[topology.noted[GOOD], 0] > 0.5
 
 
 @compiled
-def _proved(topology, w, start, table, far, standing, found):  # type: ignore[no-untyped-def]
+def _proved(topology, w, start, table, scale, standing, found):  # type: ignore[no-untyped-def]
     """Whether all rows are proved, and to be on the branch of the start."""
     for j in range(len(topology.weights)):
-        w[topology.weights[j], :] = 1.0 if j == 2 else 0.0  # the guess: the node before the last
+        for i in range(LANES):  # the guess: the node before the last
+            w[topology.weights[j], i] = 1.0 if j == 2 else 0.0
     for first in range(0, len(table.rows), LANES):
-        if not _linked(topology, w, first, table, far, standing, found):
+        if not _linked(topology, w, first, table, scale, standing, found):
             return False
-    return _joined(topology, w, start, table.rows, far, found, standing)
+    return _joined(topology, w, start, table.rows, scale, found, standing)
 
 
 @compiled_for(
@@ -315,7 +324,7 @@ def _proved(topology, w, start, table, far, standing, found):  # type: ignore[no
         types.Array(types.float64, 1, "C"), FOUND,
     )
 )  # fmt: skip
-def by_rows(topology, scout, w, own, begin, solved, table, far, found):  # type: ignore[no-untyped-def]
+def by_rows(topology, scout, w, own, begin, solved, table, scale, found):  # type: ignore[no-untyped-def]
     """One mechanism through all rows.
 
     Parameters
@@ -330,8 +339,8 @@ def by_rows(topology, scout, w, own, begin, solved, table, far, found):  # type:
         t behind it.
     solved : bool
     table : Table
-    far : (n,)
-        As much as the unknowns of a row may be off before they are proved.
+    scale : (n,)
+        Weights of the unknowns: 1 of an angle.
     found : Found
         The column ``first`` is filled.
 
@@ -343,25 +352,27 @@ def by_rows(topology, scout, w, own, begin, solved, table, far, found):  # type:
     """
     rows, gap = table.rows, _gap(table.rows)
     width = 0 if gap == 0.0 else int(min(float(LANES), _STRIDE * table.steps[1] / gap))
-    width -= width % _EIGHT if width > _EIGHT else 0
+    width -= width % _VECTOR if width > _VECTOR else 0
     start = np.zeros(scout.nodes.shape[1])
-    standing, cells = np.ones(LANES), np.empty((2 * NODES, LANES))
+    standing, cells = np.ones(LANES), np.empty((2 * (NODES - 1), LANES))
     if solved:
-        start[:] = begin
+        for j in range(len(start)):
+            start[j] = begin[j]
     else:
         for j in range(len(scout.weights)):
             own[scout.weights[j], 0] = 1.0 if j == 2 * NODES - 2 else 0.0
-        if not _started(scout, own, begin, far, start):
+        if not _started(scout, own, begin, scale, start):
             return NOT_NEAR
     before, certify, first = start.copy(), proved(topology), 0
     while first < len(rows):
         if width < _FEWEST:
             return LEFT
         reached = _stretch(
-            scout, own, first, width, before, table, far, gap, certify, standing, cells, found
+            scout, own, first, width, before, table, scale, gap, certify, standing, cells, found
         )
         first, width = reached, width // 2
-    if certify and not _proved(topology, w, start, table, far, standing, found):
+    if certify and not _proved(topology, w, start, table, scale, standing, found):
         return LEFT
-    found.reached[:, found.first] = True
+    for row in range(len(rows)):
+        found.reached[row, found.first] = True
     return DONE

@@ -116,6 +116,15 @@ def _any(w, row, standing, lanes):  # type: ignore[no-untyped-def]
 
 
 @compiled
+def _any_live(topology, w, standing, lanes):  # type: ignore[no-untyped-def]
+    """Whether a lane that counts has not converged."""
+    found = False
+    for k in range(_blocks(topology)):
+        found |= _any(w, topology.noted[LIVE + k], standing, lanes)
+    return found
+
+
+@compiled
 def _iterate(topology, turn, w, program, live, most, standing, lanes):  # type: ignore[no-untyped-def]
     """Newton-Raphson of one block until no lane iterates."""
     for _ in range(most):
@@ -177,10 +186,7 @@ def settled(topology, turn, w, standing, together, lanes):  # type: ignore[no-un
     _given(topology, turn, w, together, lanes)
     if is_written:
         _by_written(topology, turn, w, lanes)
-        again = False
-        for k in range(blocks):
-            again |= _any(w, live[k], standing, lanes)
-        if not again:
+        if not _any_live(topology, w, standing, lanes):
             return
     else:
         _one(topology, turn, w, PREDICT, lanes)
@@ -199,23 +205,19 @@ def met(topology, turn, w, standing, lanes, unknowns):  # type: ignore[no-untype
     """From a guess in the place of the oldest node, the only one that has weight, to a position;
     whether all lanes have converged. The judgement is made, but need not be good.
     """
-    blocks, live = _blocks(topology), topology.noted[LIVE:]
+    nodes = topology.nodes
     if topology.trial == 0:
         settled(topology, turn, w, standing, False, lanes)
-    else:
-        _given(topology, turn, w, False, lanes)
-    for again in range(STEPS):
-        if topology.trial != 0:
-            if again:
-                for k in range(unknowns):
-                    guess = topology.nodes[(ROLES - 1 - turn) % ROLES, k]
-                    w[guess, :lanes] = w[topology.nodes[-turn % ROLES, k], :lanes]
-            _by_written(topology, turn, w, lanes)
-        moving = False
-        for k in range(blocks):
-            moving |= _any(w, live[k], standing, lanes)
-        if not moving:
+        return not _any_live(topology, w, standing, lanes)
+    _given(topology, turn, w, False, lanes)
+    for _ in range(STEPS):
+        _by_written(topology, turn, w, lanes)
+        if not _any_live(topology, w, standing, lanes):
             return True
+        for k in range(unknowns):
+            guess, trial = nodes[(ROLES - 1 - turn) % ROLES, k], nodes[-turn % ROLES, k]
+            for i in range(lanes):
+                w[guess, i] = w[trial, i]
     return False
 
 
