@@ -39,3 +39,12 @@ def test_rows_side_by_side_stay_on_their_branch(
     assert not false
     assert counts["row CERTIFIED"] > 0.9 * counts["rows found"] > 0
     assert rowwise.DONE in done
+
+
+@pytest.mark.parametrize("part", [7, 25, 49])
+def test_without_proofs_rows_follow_from_the_rows_before(part: int) -> None:
+    """Slider-cranks of which one would leave its branch if only convergence were asked for."""
+    counts, false = kinds.kind_campaign(part, 8, 4, certify=False)
+    assert not false
+    assert counts["branch changes"] == 0
+    assert counts["rows found"] > 300

@@ -19,7 +19,9 @@ __all__ = ["kind_campaign"]
 _STEP = 10
 
 
-def kind_campaign(part: int, count: int, step: int = _STEP) -> tuple[Counter[str], list[str]]:
+def kind_campaign(
+    part: int, count: int, step: int = _STEP, *, certify: bool = True
+) -> tuple[Counter[str], list[str]]:
     """So many designs of one kind, a tenth close to a change point; what is false.
 
     With 16 designs or fewer and a ``step`` of at most 5 degrees rows go side by side.
@@ -28,7 +30,7 @@ def kind_campaign(part: int, count: int, step: int = _STEP) -> tuple[Counter[str
     near = (rng.random(count) < 0.1) & (kind != "triad")
     gaps = np.where(near, 10.0 ** rng.uniform(-9, -3, count), np.nan)
     cases = [random_case(rng, kind, float(g) if np.isfinite(g) else None, step) for g in gaps]
-    motion = _together(cases)
+    motion = _together(cases, certify)
     counts = Counter({
         "mechanisms": count,
         "near a change point": int(near.sum()),
@@ -46,7 +48,7 @@ def kind_campaign(part: int, count: int, step: int = _STEP) -> tuple[Counter[str
     return counts, false
 
 
-def _together(cases: Sequence[Case]) -> FamilyMotion:
+def _together(cases: Sequence[Case], certify: bool) -> FamilyMotion:
     """All of them as designs of the first one."""
     described = [case.mechanism.description for case in cases]
     columns = {
@@ -56,7 +58,7 @@ def _together(cases: Sequence[Case]) -> FamilyMotion:
     columns |= {
         name: np.array([one.guess[name] for one in described]) for name in described[0].guess
     }
-    return cases[0].mechanism.family(columns).sweep()
+    return cases[0].mechanism.family(columns).sweep(certify=certify)
 
 
 def _judged(
