@@ -206,9 +206,7 @@ def _kept(topology, turn, w, lanes, row, unknowns, found):  # type: ignore[no-un
 
 
 @compiled
-def _stretch(
-    topology, w, first, width, before, table, scale, gap, trusting, standing, cells, found
-):  # type: ignore[no-untyped-def]
+def _stretch(topology, w, first, width, before, table, scale, gap, trusting, found):  # type: ignore[no-untyped-def]
     """From a row on, as far as it goes well with so many rows at once: the first row not found.
 
     ``before`` (S,): the start, or the row before the first one; set to the last row.
@@ -216,6 +214,7 @@ def _stretch(
     """
     rows, n, nodes = table.rows, table.unknowns, topology.nodes
     size = nodes.shape[1]
+    standing, cells = np.ones(LANES), np.empty((2 * (NODES - 1), LANES))
     turn, known = _ready(topology, w, before, first, table)
     if known == 0:
         return first
@@ -306,11 +305,12 @@ def _joined(topology, w, start, rows, scale, found, standing):  # type: ignore[n
 
 
 @compiled
-def _proved(topology, w, start, table, scale, standing, found):  # type: ignore[no-untyped-def]
+def _proved(topology, w, start, table, scale, found):  # type: ignore[no-untyped-def]
     """Whether all rows are proved, and to be on the branch of the start."""
     for j in range(len(topology.weights)):
         for i in range(LANES):  # the guess: the node before the last
             w[topology.weights[j], i] = 1.0 if j == 2 else 0.0
+    standing = np.ones(LANES)
     for first in range(0, len(table.rows), LANES):
         if not _linked(topology, w, first, table, scale, standing, found):
             return False
@@ -354,7 +354,6 @@ def by_rows(topology, scout, w, own, begin, solved, table, scale, found):  # typ
     width = 0 if gap == 0.0 else int(min(float(LANES), _STRIDE * table.steps[1] / gap))
     width -= width % _VECTOR if width > _VECTOR else 0
     start = np.zeros(scout.nodes.shape[1])
-    standing, cells = np.ones(LANES), np.empty((2 * (NODES - 1), LANES))
     if solved:
         for j in range(len(start)):
             start[j] = begin[j]
@@ -367,11 +366,9 @@ def by_rows(topology, scout, w, own, begin, solved, table, scale, found):  # typ
     while first < len(rows):
         if width < _FEWEST:
             return LEFT
-        reached = _stretch(
-            scout, own, first, width, before, table, scale, gap, certify, standing, cells, found
-        )
+        reached = _stretch(scout, own, first, width, before, table, scale, gap, certify, found)
         first, width = reached, width // 2
-    if certify and not _proved(topology, w, start, table, scale, standing, found):
+    if certify and not _proved(topology, w, start, table, scale, found):
         return LEFT
     for row in range(len(rows)):
         found.reached[row, found.first] = True
