@@ -6,10 +6,8 @@ import numpy as np
 
 from linkwork.batch.designs import Designs
 from linkwork.foundation.arrays import Array
-from linkwork.kernels.lanes.closure import BlockPart
-from linkwork.motion.model import Model
 
-__all__ = ["block_parts", "loop_coefficients", "zero_coefficients"]
+__all__ = ["loop_coefficients", "zero_coefficients"]
 
 
 def loop_coefficients(designs: Designs) -> dict[str, Array]:
@@ -31,11 +29,3 @@ def zero_coefficients(designs: Designs, coefficients: dict[str, Array]) -> set[s
     """Those that are 0 in every design without a problem."""
     fine = designs.problem == 0
     return {name for name, values in coefficients.items() if not values[fine].any()}
-
-
-def block_parts(model: Model) -> list[BlockPart]:
-    """The blocks of a mechanism in the order in which they are solved."""
-    return [
-        BlockPart(equations=block.equations, unknowns=tuple(block.unknowns.tolist()))
-        for block in model.compiled.solver.blocks
-    ]

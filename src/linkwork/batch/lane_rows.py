@@ -3,28 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from linkwork.batch.coefficients import block_parts, loop_coefficients, zero_coefficients
+from linkwork.batch.coefficients import loop_coefficients, zero_coefficients
 from linkwork.batch.designs import Designs
 from linkwork.batch.entering import led_to_rows
 from linkwork.batch.limits import LIMIT_KINDS
 from linkwork.batch.own_rows import OwnRows, ends_as_limits
-from linkwork.equations.compiling import Compiled
 from linkwork.foundation.aligned import aligned
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray, StatusArray, TurnArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.status import Status
-from linkwork.kernels.lanes.device_kernel import DeviceKernel
 from linkwork.kernels.lanes.folding import dead_points
 from linkwork.kernels.lanes.gear import Gear
-from linkwork.kernels.lanes.lane_kernel import LaneKernel, LaneRows, RowsOfOne, Steps
+from linkwork.kernels.lanes.lane_kernel import LaneRows, RowsOfOne, Steps
 from linkwork.mechanism.parts import Input
 from linkwork.motion import sweep
+from linkwork.motion.by_kernels import are_served, kernel_of
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.lock_step import lock_step
@@ -128,8 +126,7 @@ class Path:
     @classmethod
     def of(cls, model: Model) -> Path | None:
         """``None`` where the compiled march does not serve."""
-        table = model.compiled.table
-        if table.functions or model.equations.redundant or not len(model.equations.inputs):
+        if not are_served(model):
             return None
         lead, rate = lock_step(model.rows)
         drive = Drive.through(model, model.rows[0], rate, lead)
@@ -189,20 +186,6 @@ class Path:
             np.copyto(found.certification, Certification.CERTIFIED.code, where=reached)
 
 
-#: Kernels of mechanisms that are in use.
-_KERNELS: WeakKeyDictionary[Compiled, dict[tuple[frozenset[str], bool, str], LaneKernel]] = (
-    WeakKeyDictionary()
-)
-
-
-def _kernel(model: Model, zeros: frozenset[str], certify: bool, device: str) -> LaneKernel:
-    known, key = _KERNELS.setdefault(model.compiled, {}), (zeros, certify, device)
-    if key not in known:
-        kind = DeviceKernel if device == "gpu" else LaneKernel
-        known[key] = kind(model.compiled.table, block_parts(model), zeros, certify)
-    return known[key]
-
-
 class March:
     """The compiled march of a family, and what becomes of designs that stop at dead points."""
 
@@ -221,7 +204,7 @@ class March:
         fine = designs.problem == 0
         self.coefficients = _coefficients(path, designs)
         self.zeros = zero_coefficients(designs, self.coefficients)
-        self.kernel = _kernel(model, frozenset(self.zeros), certify, gear.device)
+        self.kernel = kernel_of(model, frozenset(self.zeros), certify, gear.device)
         self.kernel.shift(gear)
         self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # else not found
         self.start = designs.start[:, n + path.lead].copy()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.batch.coefficients import block_parts, loop_coefficients, zero_coefficients
+from linkwork.batch.coefficients import loop_coefficients, zero_coefficients
 from linkwork.batch.designs import Designs
 from linkwork.batch.lane_rows import DesignRows
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
@@ -19,6 +19,7 @@ from linkwork.kernels.lanes.places import at_places
 from linkwork.kernels.lanes.rate_programs import PlaceProgram, evidence_program, rate_program
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.quantities import with_numbers
+from linkwork.motion.by_kernels import block_parts, lines_of_lengths
 from linkwork.motion.drive import Drive
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.speeds import leading_speeds
@@ -91,7 +92,7 @@ def design_evidence(designs: Designs, rows: DesignRows, threads: int = 1) -> Des
     condition, residual = np.full((2, *rows.v.shape[1:]), np.nan)
     if _together(designs, rows):
         reading, base = _Reading.of(designs), designs.base
-        lengths = {k for k, line in enumerate(base.equations.linear) if line.kind == "length"}
+        lengths = lines_of_lengths(base)
         program = evidence_program(base.compiled.table, reading.parts, lengths, reading.zeros)
         condition, residual = reading.run(program, rows, threads)
         found = rows.status == Status.CONVERGED.code

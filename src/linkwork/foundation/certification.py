@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from enum import Enum
 
+from linkwork.foundation.arrays import StatusArray
+
 __all__ = ["Certification"]
 
 
@@ -53,6 +55,11 @@ class Certification(Enum):
     def of_code(cls, code: int) -> Certification:
         """The member with this code."""
         return _MEMBERS[code]
+
+    @classmethod
+    def of_codes(cls, codes: StatusArray) -> tuple[Certification, ...]:
+        """Those with these codes (B,)."""
+        return tuple(map(_MEMBERS.__getitem__, codes.tolist()))
 
 
 _MEMBERS = tuple(Certification)

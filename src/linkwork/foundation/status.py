@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from enum import Enum
 
+from linkwork.foundation.arrays import StatusArray
+
 __all__ = ["Status"]
 
 
@@ -64,6 +66,11 @@ class Status(Enum):
     def of_code(cls, code: int) -> Status:
         """The status with this code."""
         return _MEMBERS[code]
+
+    @classmethod
+    def of_codes(cls, codes: StatusArray) -> tuple[Status, ...]:
+        """Those with these codes (B,)."""
+        return tuple(map(_MEMBERS.__getitem__, codes.tolist()))
 
 
 _MEMBERS = tuple(Status)

@@ -11,9 +11,10 @@ from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
+from linkwork.motion import by_kernels
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd, ends_of
-from linkwork.motion.proving import prove_rows
+from linkwork.motion.proving import inputs_apart, prove_rows
 from linkwork.motion.rows import SolvedRows
 from linkwork.motion.tracking import track_to
 from linkwork.numerics.track import (
@@ -107,7 +108,10 @@ def rows_of_branch(
     for care in tries:
         track = _covering(drive, anchor, asked.t, care, report)
         placed = _placed(track, asked.t, drive.free)
-        rows, to_ends = _solved(drive, track, placed, asked, report, certify)
+        work = _Rows(
+            drive=drive, track=track, placed=placed, asked=asked, report=report, certify=certify
+        )
+        rows, to_ends = work.solved()
         if care is None or not _doubtful(rows, placed, to_ends):
             break
     ends = ends_of(drive, track, certify)
@@ -167,32 +171,68 @@ def _placed(track: Track, t: Array, free: bool) -> Array:
     return np.where((moved >= track.first_t) & (moved <= track.last_t), moved, np.nan)
 
 
-def _solved(
-    drive: Drive, track: Track, placed: Array, asked: Asked, report: Report, certify: bool
-) -> tuple[SolvedRows, bool]:
-    """All rows that lie on the track, and whether the track is proved up to its ends."""
-    solver, path = drive.solver, drive.path
-    found = SolvedRows.blank(asked.everyday, solver.variables, Status.CONVERGED)
-    if not certify:
-        found.certification[:] = Certification.NOT_ASKED.code
-    there = np.flatnonzero(~np.isnan(placed))
-    there = there[np.argsort(placed[there], kind="stable")]
-    pieces: list[Rows] = []
-    for begin in range(0, len(there), _CHUNK):
-        chunk = there[begin : begin + _CHUNK]
-        rows = rows_on_track(solver, path, track, placed[chunk])
-        pieces.append(rows)
-        found.v[chunk], found.first[chunk] = rows.v, rows.rates.first
-        found.second[chunk] = rows.rates.second
-        found.status[chunk], found.iterations[chunk] = rows.status, rows.iterations
-        found.residual[chunk], found.condition[chunk] = rows.residual, rows.rates.condition
-        report.solved((begin + len(chunk)) / len(there))
-    if not (certify and pieces):
-        return found, certify
-    rows = joined_rows(pieces)
-    proofs = prove_rows(solver, path, track, rows, asked.inputs[there], report.proved)
-    found.prove(there, proofs)
-    return found, proofs.up_to_ends
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Rows:
+    """Rows to be solved on a track; ``placed`` (B,): where on it each of them lies, or NaN."""
+
+    drive: Drive
+    track: Track
+    placed: Array
+    asked: Asked
+    report: Report
+    certify: bool
+
+    def solved(self) -> tuple[SolvedRows, bool]:
+        """All rows that lie on the track, and whether the track is proved up to its ends."""
+        there = np.flatnonzero(~np.isnan(self.placed))
+        there = there[np.argsort(self.placed[there], kind="stable")]
+        if by_kernels.kernels_pay(self.drive.model, len(there), self.certify):
+            quickly = self._by_kernels(there)
+            if quickly is not None:
+                return quickly
+        found = self._blank()
+        return found, self._fill(found, there)
+
+    def _blank(self) -> SolvedRows:
+        variables = self.drive.solver.variables
+        found = SolvedRows.blank(self.asked.everyday, variables, Status.CONVERGED)
+        if not self.certify:
+            found.certification[:] = Certification.NOT_ASKED.code
+        return found
+
+    def _by_kernels(self, there: IndexArray) -> tuple[SolvedRows, bool] | None:
+        """Most rows by compiled kernels, the others along the track; ``None`` if that is not the
+        way.
+        """
+        drive, t = self.drive, self.placed[there]
+        spread = inputs_apart(drive.path.at(t), self.asked.inputs[there]).max(axis=0)
+        rows = by_kernels.kernel_rows(drive, self.track, t, spread, self.certify)
+        if rows is None:
+            return None
+        found = self._blank()
+        to_ends = self._fill(found, there[rows.checked])
+        weights = drive.solver.variable_scale
+        return (found, to_ends) if rows.put_into(found, there, weights, self.certify) else None
+
+    def _fill(self, found: SolvedRows, there: IndexArray) -> bool:
+        """Solve some rows, in the order of the track; whether that is proved up to its ends."""
+        solver, path, track = self.drive.solver, self.drive.path, self.track
+        pieces: list[Rows] = []
+        for begin in range(0, len(there), _CHUNK):
+            chunk = there[begin : begin + _CHUNK]
+            rows = rows_on_track(solver, path, track, self.placed[chunk])
+            pieces.append(rows)
+            found.v[chunk], found.first[chunk] = rows.v, rows.rates.first
+            found.second[chunk] = rows.rates.second
+            found.status[chunk], found.iterations[chunk] = rows.status, rows.iterations
+            found.residual[chunk], found.condition[chunk] = rows.residual, rows.rates.condition
+            self.report.solved((begin + len(chunk)) / len(there))
+        if not (self.certify and pieces):
+            return self.certify
+        asked, joined = self.asked.inputs[there], joined_rows(pieces)
+        proofs = prove_rows(solver, path, track, joined, asked, self.report.proved)
+        found.prove(there, proofs)
+        return proofs.up_to_ends
 
 
 def _mark_missing(

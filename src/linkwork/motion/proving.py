@@ -15,7 +15,7 @@ from linkwork.numerics.proof import rounding_of_inputs
 from linkwork.numerics.proven_path import Beads, prove_path
 from linkwork.numerics.track import InputPath, Node, Rows, Track
 
-__all__ = ["RowProofs", "prove_rows", "unproved", "way_is_proved"]
+__all__ = ["RowProofs", "inputs_apart", "prove_rows", "unproved", "way_is_proved"]
 
 _FAR_FROM_SINGULAR = 1e5  # condition up to which a track's nodes must be proved
 _UNIT = np.finfo(float).eps / 2
@@ -114,7 +114,7 @@ def _beads(
         v=gathered([node.v for node in nodes], rows.v[found]),
         first=gathered([node.first for node in nodes], rows.rates.first[found]),
         second=gathered([node.second for node in nodes], rows.rates.second[found]),
-        spread=gathered(spread, _apart(solver, rows.v[found], asked[found])),
+        spread=gathered(spread, inputs_apart(rows.v[found][:, solver.unknowns :], asked[found])),
     )
     place = np.empty(len(order), dtype=np.intp)
     place[order] = np.arange(len(order))
@@ -136,15 +136,14 @@ def way_is_proved(solver: BlockSolver, path: InputPath, nodes: Sequence[Node]) -
     return bool(prove_path(solver, path, beads, anchor=0).connected_to(0).all())
 
 
-def _apart(solver: BlockSolver, v: Array, asked: Array) -> Array:
-    """How far the inputs meant may be from those in v, whole turns aside, (B, p).
+def inputs_apart(inputs: Array, asked: Array) -> Array:
+    """How far the inputs meant may be from some, whole turns aside, (B, p).
 
     The conversion of units, what a straight line rounds, and 2π, which is no float.
     """
-    inputs = v[:, solver.unknowns :]
     gap = np.abs(inputs - asked)
     turns = np.round(gap / (2.0 * np.pi))
     rest = np.abs(gap - turns * (2.0 * np.pi)) + _UNIT * 2.0 * (np.abs(inputs) + np.abs(asked))
     turned = (turns > 0) & (rest < _TURN)
-    apart: Array = rounding_of_inputs(v, solver.unknowns) + np.where(turned, rest, gap)
+    apart: Array = rounding_of_inputs(inputs, 0) + np.where(turned, rest, gap)
     return apart

@@ -178,7 +178,7 @@ class Motion:
     @cached_property
     def found(self) -> BoolArray:
         """Which rows hold a position, shape (N,)."""
-        return read_only(np.array([status.ok for status in self.status], dtype=bool))
+        return read_only(np.array([s is Status.CONVERGED for s in self.status], dtype=bool))
 
     @property
     def asked(self) -> BoolArray:

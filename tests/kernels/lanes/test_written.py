@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.batch.coefficients import block_parts
 from linkwork.kernels.lanes import gear
 from linkwork.kernels.lanes.gear import Gear
 from linkwork.kernels.lanes.lane_kernel import LaneKernel
@@ -20,6 +19,7 @@ from linkwork.kernels.lanes.machine import LANES, run
 from linkwork.kernels.lanes.printing import trial_source
 from linkwork.kernels.lanes.program import SOURCES, Op
 from linkwork.kernels.lanes.written import is_written, written
+from linkwork.motion.by_kernels import block_parts
 
 PLACES = 5
 

@@ -303,9 +303,10 @@ class LaneKernel:
     ) -> None:
         """One design after the other, its rows side by side; then those that this is not for."""
         alone, n = self._alone(ready, coefficients, table, steps), self.table.unknowns
+        counts = np.zeros(len(table.rows), dtype=np.int64)
         for k in range(given.shape[1]):
             guess = np.append(given[:n, k], given[-1, k])
-            found.found[k] = alone.loaded(k).run(guess, found.at(k))
+            found.found[k] = alone.loaded(k).run(guess, found.at(k), counts)
         left = ~found.found
         if left.any():
             space = self._space(steps)
@@ -335,7 +336,13 @@ class LaneKernel:
         loaded = self._alone(ready, coefficients, table, steps).loaded(0)
         size = 2 * self.nodes.shape[1]
         room = (np.zeros((len(rows), 1), dtype=bool), np.empty((2, 1)), np.empty((2, size, 1)))
-        return RowsOfOne(loaded=loaded, guess=np.append(guess, start), room=room, kernel=self)
+        return RowsOfOne(
+            loaded=loaded,
+            guess=np.append(guess, start),
+            room=room,
+            counts=np.zeros(len(rows), dtype=np.int64),
+            kernel=self,
+        )
 
     def _alone(
         self, ready: Ready, coefficients: Mapping[str, Array], table: Table, steps: Steps

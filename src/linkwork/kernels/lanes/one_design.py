@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from linkwork.foundation.aligned import aligned
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import Array, BoolArray, CountArray
 from linkwork.kernels.lanes.rowwise import DONE, NOT_NEAR, by_rows
 from linkwork.kernels.lanes.tasks import Found, Table
 from linkwork.kernels.lanes.trial import Topology
@@ -70,16 +70,20 @@ class Loaded:
     design: int
     spaces: tuple[Topology, Topology, Array, Array]
 
-    def run(self, guess: Array, found: Found) -> bool:
-        """From a guess (n + 1,) of the unknowns and of t; whether all rows are found."""
+    def run(self, guess: Array, found: Found, counts: CountArray) -> bool:
+        """From a guess (n + 1,) of the unknowns and of t; whether all rows are found.
+
+        ``counts`` (R,): filled with the corrections that they took.
+        """
         alone, scale = self.alone, self.alone.scale[self.design]
-        code = by_rows(*self.spaces, guess, False, alone.table, scale, found)
+        code = by_rows(*self.spaces, guess, False, alone.table, scale, found, counts)
         if code == NOT_NEAR:
             node = alone.scout.given(guess[:-1, None], guess[-1:])
             start, begun = alone.scout.begun(alone.ahead.one(self.design), alone.own, node)
             if not begun[0]:
                 return False
-            code = by_rows(*self.spaces, start[:, 0].copy(), True, alone.table, scale, found)
+            own = start[:, 0].copy()
+            code = by_rows(*self.spaces, own, True, alone.table, scale, found, counts)
         return bool(code == DONE)
 
 
@@ -90,11 +94,15 @@ class RowsOfOne:
     loaded: Loaded
     guess: Array
     room: tuple[BoolArray, Array, Array]
+    counts: CountArray
     kernel: LaneKernel
 
     def run(self) -> tuple[Array, Array] | None:
-        """Unknowns (n, R, 1) and radii of their proofs (R, 1); ``None`` if this is not the way."""
+        """Unknowns (n, R, 1) and radii of their proofs (R, 1); ``None`` if this is not the way.
+
+        How many corrections each row took is left in ``counts`` (R,).
+        """
         rows, n = len(self.loaded.alone.table.rows), self.kernel.table.unknowns
         v, radius = aligned(n, rows, 1), aligned(rows if self.kernel.certified else 0, 1)
-        done = self.loaded.run(self.guess, Found(0, v, radius, *self.room))
+        done = self.loaded.run(self.guess, Found(0, v, radius, *self.room), self.counts)
         return (v, radius) if done else None

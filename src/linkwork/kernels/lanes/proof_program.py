@@ -28,12 +28,13 @@ Number = Value | float
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """``holds`` as a mask; a solution within ``each``, no other within ``alone`` (own units), and
-    within ``radius``, weighted.
+    """``holds`` as a mask; a solution within ``each``, no other within ``alone`` (own units); the
+    same as ``radius`` and ``unique``, weighted.
     """
 
     holds: Value
     radius: Value
+    unique: Value
     each: list[Value]
     alone: list[Value]
 
@@ -196,7 +197,7 @@ class BlockProof:
             own = row.y + exists * (row.z + 0.5 * curve * exists)
             each.append(rec.smallest([own * _SLACK, exists]) * self.scale[k])
             alone.append(unique * self.scale[k])
-        return Found(holds, exists, each, alone)
+        return Found(holds, exists, unique, each, alone)
 
 
 class _Spread:

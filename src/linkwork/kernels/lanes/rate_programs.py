@@ -10,20 +10,29 @@ with the rates of all variables that a block knows. Registers by name:
 ``first<k>`` ``second<k>``  derivatives of the unknowns by the leading input
 ``condition``        the largest ‖J‖·‖J⁻¹‖ of all blocks, weighted, in the largest norm
 ``residual``         the largest residual of all equations, scaled
+``u<j>.spread``      how far an input may be from the value it stands for, beside its rounding
+``radius`` ``unique``  a position lies within the one and no other within the other, weighted; both
+                     NaN where that is not proved
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence, Set
 from dataclasses import dataclass
+
+import numpy as np
 
 from linkwork.kernels.lanes.closure import BlockPart, Closure, solved
 from linkwork.kernels.lanes.lowering import lowered, reserve
 from linkwork.kernels.lanes.program import Program, Registers
+from linkwork.kernels.lanes.proof_program import BlockProof
 from linkwork.kernels.lanes.recorder import Recorder, Value
 from linkwork.kernels.loop_table import LoopTable
 
-__all__ = ["PlaceProgram", "evidence_program", "rate_program"]
+__all__ = ["PlaceProgram", "evidence_program", "rate_program", "row_program"]
+
+_UNIT = float(np.finfo(float).eps) / 2.0
 
 Number = Value | float
 
@@ -45,6 +54,7 @@ class _Writer:
         self.closures = [Closure(table, part, rec, variables, zeros) for part in parts]
 
     def finished(self, wanted: Sequence[str]) -> PlaceProgram:
+        """The program, which computes these."""
         registers = Registers()
         reserve(self.rec, registers)
         program = lowered(self.rec, registers, registers.count)
@@ -52,8 +62,8 @@ class _Writer:
 
     # ---------------------------------------------------------------- rates
 
-    def rates(self) -> PlaceProgram:
-        """Both derivatives of all unknowns."""
+    def rates(self) -> list[str]:
+        """Both derivatives of all unknowns; the names of what is written."""
         inputs = range(self.table.variables - self.n)
         alone = len(inputs) == 1  # a single input leads
         first: dict[int, Number] = {
@@ -65,7 +75,7 @@ class _Writer:
         for k in range(self.n):
             self.rec.write(f"first{k}", first[k])
             self.rec.write(f"second{k}", second[k])
-        return self.finished([f"{name}{k}" for name in ("first", "second") for k in range(self.n)])
+        return [f"{name}{k}" for name in ("first", "second") for k in range(self.n)]
 
     def _block_rates(
         self, closure: Closure, first: dict[int, Number], second: dict[int, Number]
@@ -94,7 +104,7 @@ class _Writer:
 
     # ---------------------------------------------------------------- evidence
 
-    def evidence(self, lengths: Set[int]) -> PlaceProgram:
+    def evidence(self, lengths: Set[int]) -> list[str]:
         """Condition and residual; ``lengths``: the linear rows that are equations of lengths."""
         rec = self.rec
         conditions, residuals = [rec.constant(1.0)], [rec.constant(0.0)]
@@ -108,13 +118,15 @@ class _Writer:
             ]
         rec.write("condition", rec.largest(conditions))
         rec.write("residual", rec.largest(residuals))
-        return self.finished(["condition", "residual"])
+        return ["condition", "residual"]
+
+    def _weight(self, k: int) -> Value:
+        """Of a variable: 1 for angles."""
+        return self.rec.constant(1.0) if self.table.turns[k] else self.rec.input(f"scale{k}")
 
     def _condition(self, closure: Closure, scales: Sequence[Number]) -> Value:
         rec, n = self.rec, len(scales)
-        weights = [
-            1.0 if self.table.turns[k] else rec.input(f"scale{k}") for k in closure.part.unknowns
-        ]
+        weights = [self._weight(k) for k in closure.part.unknowns]
         matrix = closure.jacobian(closure.part.unknowns)
         units = [[1.0 if i == j else 0.0 for i in range(n)] for j in range(n)]
         columns = solved(rec, matrix, units).columns
@@ -137,6 +149,25 @@ class _Writer:
             for row, scale in zip(matrix, rows, strict=True)
         )
 
+    # ---------------------------------------------------------------- proof
+
+    def proof(self) -> list[str]:
+        """That there is one position near, for all values the inputs may stand for."""
+        rec = self.rec
+        near: dict[int, Value] = {
+            k: rec.absolute(rec.input(f"v{k}")) * (4.0 * _UNIT) + rec.input(f"u{k - self.n}.spread")
+            for k in range(self.n, self.table.variables)
+        }
+        proofs = []
+        for closure in self.closures:
+            used = (*closure.part.unknowns, *closure.known())
+            proofs.append(BlockProof(closure, {k: self._weight(k) for k in used}).within(near))
+            near |= dict(zip(closure.part.unknowns, proofs[-1].each, strict=True))
+        holds = rec.all_of([proof.holds for proof in proofs])
+        rec.write("radius", rec.where(holds, rec.largest(p.radius for p in proofs), math.nan))
+        rec.write("unique", rec.where(holds, rec.smallest(p.unique for p in proofs), math.nan))
+        return ["radius", "unique"]
+
 
 def rate_program(
     table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str] = frozenset()
@@ -152,7 +183,8 @@ def rate_program(
     zeros : set of str
         Names of coefficients that are zero in every design.
     """
-    return _Writer(table, parts, zeros).rates()
+    writer = _Writer(table, parts, zeros)
+    return writer.finished(writer.rates())
 
 
 def evidence_program(
@@ -168,4 +200,22 @@ def evidence_program(
     lengths : set of int
         The linear rows whose residual is a length.
     """
-    return _Writer(table, parts, zeros).evidence(lengths)
+    writer = _Writer(table, parts, zeros)
+    return writer.finished(writer.evidence(lengths))
+
+
+def row_program(
+    table: LoopTable,
+    parts: Sequence[BlockPart],
+    lengths: Set[int],
+    zeros: Set[str] = frozenset(),
+    *,
+    certified: bool,
+) -> PlaceProgram:
+    """Rates, condition and residual; with radii of a proof if it is to be ``certified``.
+
+    Parameters are those of :func:`evidence_program`.
+    """
+    writer = _Writer(table, parts, zeros)
+    proof = writer.proof() if certified else []
+    return writer.finished([*writer.rates(), *writer.evidence(lengths), *proof])

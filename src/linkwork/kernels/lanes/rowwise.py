@@ -78,7 +78,7 @@ def _started(topology, w, guess, scale, node):  # type: ignore[no-untyped-def]
             w[nodes[role, j], 0] = guess[j] if j < n else 0.0
         w[nodes[role, last], 0] = guess[n]
     w[nodes[0, last], 0] = guess[n]
-    if topology.trial == 0 or not met(topology, 0, w, np.ones(1), 1, n):
+    if topology.trial == 0 or met(topology, 0, w, np.ones(1), 1, n) == 0:
         return False
     _noted(topology, 0, w, 0, node)
     near = 0
@@ -206,7 +206,7 @@ def _kept(topology, turn, w, lanes, row, unknowns, found):  # type: ignore[no-un
 
 
 @compiled
-def _stretch(topology, w, first, width, before, table, scale, gap, trusting, found):  # type: ignore[no-untyped-def]
+def _stretch(topology, w, first, width, before, table, scale, gap, trusting, found, counts):  # type: ignore[no-untyped-def]
     """From a row on, as far as it goes well with so many rows at once: the first row not found.
 
     ``before`` (S,): the start, or the row before the first one; set to the last row.
@@ -241,13 +241,16 @@ def _stretch(topology, w, first, width, before, table, scale, gap, trusting, fou
                 for i in range(1, width):
                     cells[k, i] = cells[k, 0]
         _predicted(topology, turn, w, lanes, used, cells, n)
-        if not met(topology, turn, w, standing, lanes, n):
+        count = met(topology, turn, w, standing, lanes, n)
+        if count == 0:
             return first
         if not trusting and not _smooth(
             topology, turn, w, lanes, before, first == 0, scale, gap, table.steps[1]
         ):
             return first
         _kept(topology, turn, w, lanes, first, n, found)
+        for i in range(lanes):
+            counts[first + i] = count
         _noted(topology, turn, w, lanes - 1, before)
         turn = (turn + 1) % ROLES
         first, block = first + lanes, block + 1
@@ -255,7 +258,7 @@ def _stretch(topology, w, first, width, before, table, scale, gap, trusting, fou
 
 
 @compiled
-def _linked(topology, w, first, table, scale, standing, found):  # type: ignore[no-untyped-def]
+def _linked(topology, w, first, table, scale, standing, found, counts):  # type: ignore[no-untyped-def]
     """Prove rows from one on, each from the one before it; whether that is done.
 
     While that one's error is not known it is taken to be :data:`_FAR`, and looked at afterwards.
@@ -273,7 +276,7 @@ def _linked(topology, w, first, table, scale, standing, found):  # type: ignore[
             w[near, i] = source[max(first + i - 1, 0), m]
         for i in range(lanes):
             w[nodes[1, 2 * n + k], i] = _FAR * scale[k]
-    settled(topology, 0, w, standing, False, lanes)
+    count = settled(topology, 0, w, standing, False, lanes)
     if not _all_good(topology, w, lanes):
         return False
     outside = 0
@@ -285,6 +288,7 @@ def _linked(topology, w, first, table, scale, standing, found):  # type: ignore[
     radius = topology.noted[RADIUS]
     for i in range(lanes):
         found.radius[first + i, m] = w[radius, i]
+        counts[first + i] += count
     return outside == 0
 
 
@@ -305,14 +309,14 @@ def _joined(topology, w, start, rows, scale, found, standing):  # type: ignore[n
 
 
 @compiled
-def _proved(topology, w, start, table, scale, found):  # type: ignore[no-untyped-def]
+def _proved(topology, w, start, table, scale, found, counts):  # type: ignore[no-untyped-def]
     """Whether all rows are proved, and to be on the branch of the start."""
     for j in range(len(topology.weights)):
         for i in range(LANES):  # the guess: the node before the last
             w[topology.weights[j], i] = 1.0 if j == 2 else 0.0
     standing = np.ones(LANES)
     for first in range(0, len(table.rows), LANES):
-        if not _linked(topology, w, first, table, scale, standing, found):
+        if not _linked(topology, w, first, table, scale, standing, found, counts):
             return False
     return _joined(topology, w, start, table.rows, scale, found, standing)
 
@@ -321,10 +325,10 @@ def _proved(topology, w, start, table, scale, found):  # type: ignore[no-untyped
     types.int64(
         TOPOLOGY, TOPOLOGY, types.Array(types.float64, 2, "C"), types.Array(types.float64, 2, "C"),
         types.Array(types.float64, 1, "C"), types.boolean, TABLE,
-        types.Array(types.float64, 1, "C"), FOUND,
+        types.Array(types.float64, 1, "C"), FOUND, types.Array(types.int64, 1, "C"),
     )
 )  # fmt: skip
-def by_rows(topology, scout, w, own, begin, solved, table, scale, found):  # type: ignore[no-untyped-def]
+def by_rows(topology, scout, w, own, begin, solved, table, scale, found, counts):  # type: ignore[no-untyped-def]
     """One mechanism through all rows.
 
     Parameters
@@ -343,6 +347,8 @@ def by_rows(topology, scout, w, own, begin, solved, table, scale, found):  # typ
         Weights of the unknowns: 1 of an angle.
     found : Found
         The column ``first`` is filled.
+    counts : (R,)
+        Filled: how many corrections each row took.
 
     Returns
     -------
@@ -366,9 +372,11 @@ def by_rows(topology, scout, w, own, begin, solved, table, scale, found):  # typ
     while first < len(rows):
         if width < _FEWEST:
             return LEFT
-        reached = _stretch(scout, own, first, width, before, table, scale, gap, certify, found)
+        reached = _stretch(
+            scout, own, first, width, before, table, scale, gap, certify, found, counts
+        )
         first, width = reached, width // 2
-    if certify and not _proved(topology, w, start, table, scale, found):
+    if certify and not _proved(topology, w, start, table, scale, found, counts):
         return LEFT
     for row in range(len(rows)):
         found.reached[row, found.first] = True

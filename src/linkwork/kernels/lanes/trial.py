@@ -126,11 +126,12 @@ def _any_live(topology, w, standing, lanes):  # type: ignore[no-untyped-def]
 
 @compiled
 def _iterate(topology, turn, w, program, live, most, standing, lanes):  # type: ignore[no-untyped-def]
-    """Newton-Raphson of one block until no lane iterates."""
-    for _ in range(most):
+    """Newton-Raphson of one block until no lane iterates; how many corrections that took."""
+    for k in range(most):
         if not _any(w, live, standing, lanes):
-            break
+            return k
         _one(topology, turn, w, program, lanes)
+    return most
 
 
 @compiled
@@ -170,7 +171,7 @@ def _given(topology, turn, w, together, lanes):  # type: ignore[no-untyped-def]
 
 @compiled
 def settled(topology, turn, w, standing, together, lanes):  # type: ignore[no-untyped-def]
-    """From the prediction to the judgement.
+    """From the prediction to the judgement; how many corrections the block with most of them took.
 
     Parameters
     ----------
@@ -187,38 +188,43 @@ def settled(topology, turn, w, standing, together, lanes):  # type: ignore[no-un
     if is_written:
         _by_written(topology, turn, w, lanes)
         if not _any_live(topology, w, standing, lanes):
-            return
+            return 1
     else:
         _one(topology, turn, w, PREDICT, lanes)
+    most = 0
     for k in range(blocks):
         if not is_written:
             _one(topology, turn, w, BLOCKS + k, lanes)
         elif _any(w, live[k], standing, lanes):  # what follows was computed with a worse position
             for later in range(k + 1, blocks):
                 w[live[later], :lanes] = 1.0
-        _iterate(topology, turn, w, BLOCKS + 2 * blocks + k, live[k], STEPS - 1, standing, lanes)
+        program = BLOCKS + 2 * blocks + k
+        more = _iterate(topology, turn, w, program, live[k], STEPS - 1, standing, lanes)
+        most = max(most, more)
     judged(topology, turn, w, lanes)
+    return 1 + most
 
 
 @compiled
 def met(topology, turn, w, standing, lanes, unknowns):  # type: ignore[no-untyped-def]
-    """From a guess in the place of the oldest node, the only one that has weight, to a position;
-    whether all lanes have converged. The judgement is made, but need not be good.
+    """From a guess in the place of the oldest node, the only one that has weight, to a position:
+    how many corrections that took, 0 if not all lanes have converged. The judgement is made, but
+    need not be good.
     """
     nodes = topology.nodes
     if topology.trial == 0:
-        settled(topology, turn, w, standing, False, lanes)
-        return not _any_live(topology, w, standing, lanes)
+        count = settled(topology, turn, w, standing, False, lanes)
+        return 0 if _any_live(topology, w, standing, lanes) else count
     _given(topology, turn, w, False, lanes)
-    for _ in range(STEPS):
+    for k in range(STEPS):
         _by_written(topology, turn, w, lanes)
         if not _any_live(topology, w, standing, lanes):
-            return True
+            return k + 1
         for k in range(unknowns):
             guess, trial = nodes[(ROLES - 1 - turn) % ROLES, k], nodes[-turn % ROLES, k]
             for i in range(lanes):
                 w[guess, i] = w[trial, i]
-    return False
+    return 0
 
 
 @compiled

@@ -1,0 +1,240 @@
+"""Long tables by the compiled kernels: what plain NumPy finds, row by row."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.kernels.lanes.at_hand import compiled_code_is_at_hand
+from linkwork.motion import by_kernels
+from tests.thinned import thinned
+
+ROWS = 2400
+SERVED = [
+    name
+    for name in lw.examples()
+    if by_kernels.are_served(lw.example(name).model)
+    and len(lw.example(name).description.inputs) == 1
+]
+Sweep = Callable[..., tuple[lw.Motion, lw.Motion]]
+
+
+@pytest.fixture
+def used(monkeypatch: pytest.MonkeyPatch) -> list[by_kernels.KernelRows | None]:
+    """What the kernels found, call by call."""
+    own, found = by_kernels.kernel_rows, []
+
+    def seen(*arguments: object) -> by_kernels.KernelRows | None:
+        found.append(own(*arguments))  # type: ignore[arg-type]
+        return found[-1]
+
+    monkeypatch.setattr(by_kernels, "kernel_rows", seen)
+    return found
+
+
+@pytest.fixture
+def both(monkeypatch: pytest.MonkeyPatch, used: list[by_kernels.KernelRows | None]) -> Sweep:
+    """A sweep without kernels, and one with them wherever they serve."""
+
+    def sweep(mechanism: lw.Mechanism, **options: object) -> tuple[lw.Motion, lw.Motion]:
+        motions = []
+        for wanted in (False, True):
+            pay = (lambda model, rows, certify: by_kernels.are_served(model)) if wanted else _never
+            monkeypatch.setattr(by_kernels, "kernels_pay", pay)
+            motions.append(mechanism.sweep(**options))  # type: ignore[arg-type]
+            assert bool(used) or not wanted
+        return motions[0], motions[1]
+
+    return sweep
+
+
+def _never(model: object, rows: int, certify: bool) -> bool:
+    return False
+
+
+def fine(mechanism: lw.Mechanism, rows: int = ROWS) -> lw.Mechanism:
+    """With so many steps through its own range."""
+    asked = mechanism.model.everyday_rows[:, 0]
+    (own,) = mechanism.description.inputs
+    step = float(asked[-1] - asked[0]) / rows
+    return mechanism.changed(
+        inputs=(replace(own, start=float(asked[0]), stop=float(asked[-1]), step=step),)
+    )
+
+
+def assert_same(plain: lw.Motion, quick: lw.Motion, mechanism: lw.Mechanism) -> None:
+    assert quick.status == plain.status
+    assert quick.certification == plain.certification
+    assert quick.branch == plain.branch
+    assert quick.limit == plain.limit
+    np.testing.assert_array_equal(quick.added, plain.added)
+    found = plain.found
+    weights = mechanism.model.compiled.solver.variable_scale[: plain.q.shape[1]]
+    away = (np.abs(quick.q - plain.q) / weights).max(axis=1)[found]
+    proved = plain.certified[found]
+    assert (away[proved] <= (quick.radius + plain.radius)[found][proved]).all()
+    assert (away <= 1e-11).all()
+    own, other = quick.radius[plain.certified], plain.radius[plain.certified]
+    assert (own >= 0.1 * other - 1e-14).all()
+    assert (own <= 10.0 * other + 1e-14).all()
+    assert quick.worst <= 1e-13
+    np.testing.assert_allclose(quick.unique_within, plain.unique_within, rtol=1e-6)
+    fair = found & (plain.condition < 1e4)
+    np.testing.assert_allclose(quick.condition[fair], plain.condition[fair], rtol=1e-8)
+    for order in ("first", "second"):
+        own, other = (
+            np.stack([getattr(series, order)[fair] for series in motion.unknowns.values()])
+            for motion in (quick, plain)
+        )
+        size = np.maximum(np.abs(other / weights[:, None]).max(axis=0), 1.0)
+        off = np.abs((own - other) / weights[:, None]).max(axis=0) / size
+        assert (off <= 1e-13 * plain.condition[fair] ** (1 if order == "first" else 2)).all()
+
+
+@pytest.mark.parametrize("certify", [True, False])
+@pytest.mark.parametrize("name", thinned(SERVED, 6))
+def test_rows_are_those_of_plain_sweeps(
+    name: str, certify: bool, both: Sweep, used: list[by_kernels.KernelRows | None]
+) -> None:
+    mechanism = fine(lw.example(name))
+    plain, quick = both(mechanism, certify=certify)
+    assert_same(plain, quick, mechanism)
+    # which comes nearer to a change point than rows are apart
+    assert (None in used) == (name == "hart-inversor" and certify)
+    by_hand = sum(len(rows.checked) for rows in used if rows is not None)
+    assert by_hand < 0.1 * plain.found.sum()
+
+
+@pytest.mark.parametrize("name", ["rapier-drive-limited", "watt-linkage", "chebyshev"])
+def test_every_branch_of_a_circuit_has_its_own(
+    name: str, both: Sweep, used: list[by_kernels.KernelRows | None]
+) -> None:
+    mechanism = fine(lw.example(name))
+    plain, quick = both(mechanism, through=True)
+    assert_same(plain, quick, mechanism)
+    assert len(plain.limits) >= 2
+    assert len(used) >= 2
+    assert None not in used
+
+
+@pytest.mark.parametrize("start", [10.0, 200.0])
+def test_a_table_that_falls_or_winds_is_no_other(start: float, both: Sweep) -> None:
+    crank = replace(
+        lw.example("four-bar").description.inputs[0], start=900.0, stop=start, step=-0.3
+    )
+    mechanism = lw.example("four-bar").changed(inputs=(crank,))
+    assert_same(*both(mechanism), mechanism)
+
+
+def test_two_inputs_move_together(both: Sweep) -> None:
+    mechanism = lw.example("five-bar-robot")
+    ranges = mechanism.model.everyday_rows
+    inputs = tuple(
+        replace(
+            own,
+            start=float(ranges[0, k]),
+            stop=float(ranges[-1, k]),
+            step=float(np.ptp(ranges[:, k])) / ROWS * np.sign(ranges[-1, k] - ranges[0, k]),
+        )
+        for k, own in enumerate(mechanism.description.inputs)
+    )
+    finer = mechanism.changed(inputs=inputs)
+    assert_same(*both(finer), finer)
+
+
+@pytest.mark.parametrize("certify", [True, False])
+def test_rows_on_another_branch_are_not_taken(
+    certify: bool, both: Sweep, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = by_kernels.kernel_rows
+
+    def strayed(*arguments: object) -> by_kernels.KernelRows | None:
+        rows = own(*arguments)  # type: ignore[arg-type]
+        assert rows is not None
+        v = rows.v.copy()
+        v[0, len(rows.where) // 2 :] += 1e-6  # from the middle on
+        return replace(rows, v=v)
+
+    monkeypatch.setattr(by_kernels, "kernel_rows", strayed)
+    mechanism = fine(lw.example("four-bar"))
+    plain, quick = both(mechanism, certify=certify)
+    np.testing.assert_array_equal(quick.q, plain.q)
+
+
+def test_rows_without_a_proof_of_their_own_are_not_certified(
+    both: Sweep, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = by_kernels.kernel_rows
+
+    def doubtful(*arguments: object) -> by_kernels.KernelRows | None:
+        rows = own(*arguments)  # type: ignore[arg-type]
+        assert rows is not None
+        radius = rows.radius.copy()
+        radius[np.flatnonzero(~np.isin(rows.where, rows.checked))[77]] = np.nan
+        return replace(rows, radius=radius)
+
+    monkeypatch.setattr(by_kernels, "kernel_rows", doubtful)
+    plain, quick = both(fine(lw.example("four-bar")))
+    np.testing.assert_array_equal(quick.radius, plain.radius)
+
+
+def test_corrections_are_counted(both: Sweep) -> None:
+    _, quick = both(fine(lw.example("jansen-leg")), certify=False)
+    assert (quick.iterations[quick.found] >= 0).all()
+    assert 1.0 <= quick.iterations.mean() <= 4.0
+    _, certified = both(fine(lw.example("jansen-leg")))
+    assert certified.iterations.mean() == pytest.approx(quick.iterations.mean() + 1.0, abs=0.2)
+
+
+def test_uneven_tables_and_laws_are_left_to_numpy(
+    both: Sweep, used: list[by_kernels.KernelRows | None]
+) -> None:
+    assert not by_kernels.are_served(lw.example("cam-roller-follower").model)
+    assert not by_kernels.are_served(lw.example("scissor-three-bars").model)  # a redundant link
+    mechanism = fine(lw.example("four-bar"), rows=50)
+    plain, quick = both(mechanism)
+    np.testing.assert_array_equal(quick.q, plain.q)
+    assert used == [None]
+
+
+# ---------------------------------------------------------------- when it pays
+
+
+def test_a_short_table_does_not_ask_for_compiled_code(monkeypatch: pytest.MonkeyPatch) -> None:
+    code = (
+        "import sys, linkwork as lw\n"
+        "m = lw.example('four-bar')\n"
+        "m.sweep(step=0.05)\n"
+        "assert 'numba' not in sys.modules\n"
+        "from linkwork.motion import by_kernels\n"
+        "many = 10**9\n"
+        "print(by_kernels.kernels_pay(m.model, many, True), 'numba' in sys.modules)\n"
+        "import linkwork.kernels.lanes.rowwise\n"
+        "print(by_kernels.kernels_pay(m.model, 4000, True))\n"
+        "print(by_kernels.kernels_pay(m.model, 40000, True))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    first, *others = done.stdout.splitlines()
+    assert first == f"{compiled_code_is_at_hand()} False"
+    assert others == ["False", "True"]
+
+
+def test_compiled_code_counts_unless_it_is_older_than_its_source(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    assert not compiled_code_is_at_hand()
+    left = tmp_path / "lanes_0a1b" / "rowwise.by_rows-336.py311.nbi"
+    left.parent.mkdir()
+    left.write_bytes(b"")
+    assert compiled_code_is_at_hand()
+    os.utime(left, (1.0, 1.0))
+    assert not compiled_code_is_at_hand()
