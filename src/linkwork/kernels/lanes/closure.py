@@ -255,8 +255,9 @@ Row = Sequence[Value | float]
 def solved(rec: Recorder, matrix: Sequence[Row], sides: Sequence[Row]) -> Linear:
     """Solve small linear systems lane by lane.
 
-    One and two unknowns in closed form; more by elimination with the largest pivot of each
-    column, chosen by swapping rows under masks, so that all lanes do the same.
+    One and two unknowns in closed form. Of more, those with the fewest entries are eliminated first
+    until two are left; the largest pivot of a column is chosen by swapping rows under masks, so that
+    all lanes do the same.
 
     Parameters
     ----------
@@ -291,34 +292,58 @@ def _by_elimination(rec: Recorder, matrix: Sequence[Row], sides: Sequence[Row]) 
     ]
     determinant: Value = rec.constant(1.0)
     inverses: list[Value] = []
-    for k in range(n):
+    order: list[int] = []  # of the unknowns, as they are eliminated
+    left = list(range(n))
+    for k in range(n - 2):
+        column = min(left, key=lambda c: sum(not rec.is_zero(row[c]) for row in rows[k:]))
+        if left.index(column) % 2:
+            determinant = -determinant
+        left.remove(column)
+        order.append(column)
+        if _pivoted(rec, rows, k, column):
+            determinant = -determinant
         for i in range(k + 1, n):
-            if rec.is_zero(rows[i][k]):
-                continue
-            if rec.is_zero(rows[k][k]):
-                rows[k], rows[i] = rows[i], rows[k]
-                determinant = -determinant
-                continue
-            larger = rec.at_most(rec.absolute(rows[i][k]), rec.absolute(rows[k][k]))
-            upper = [rec.where(larger, x, y) for x, y in zip(rows[k], rows[i], strict=True)]
-            rows[i] = [rec.where(larger, y, x) for x, y in zip(rows[k], rows[i], strict=True)]
-            rows[k] = [*upper]
-            determinant = rec.where(larger, determinant, -determinant)
-        determinant = rec.multiply(determinant, rows[k][k])
-        inverses.append(rec.divide(1.0, rows[k][k]))
+            determinant = _larger_first(rec, rows, k, i, column, determinant)
+        determinant = rec.multiply(determinant, rows[k][column])
+        inverses.append(rec.divide(1.0, rows[k][column]))
         for i in range(k + 1, n):
-            factor = rec.multiply(rows[i][k], inverses[k])
+            factor = rec.multiply(rows[i][column], inverses[k])
             rows[i] = [
-                0.0 if j <= k else rec.subtract(x, rec.multiply(factor, rows[k][j]))
+                0.0 if j in order else rec.subtract(x, rec.multiply(factor, rows[k][j]))
                 for j, x in enumerate(rows[i])
             ]
+    last = _by_cramer(
+        rec,
+        [[row[c] for c in left] for row in rows[-2:]],
+        [[row[n + s] for row in rows[-2:]] for s in range(len(sides))],
+    )
     columns = []
-    for s in range(len(sides)):
-        x: list[Value] = [rec.constant(0.0)] * n
-        for k in range(n - 1, -1, -1):
+    for s, pair in enumerate(last.columns):
+        x = dict(zip(left, pair, strict=True))
+        for k in reversed(range(n - 2)):
             rest = rows[k][n + s]
-            for j in range(k + 1, n):
-                rest = rec.subtract(rest, rec.multiply(rows[k][j], x[j]))
-            x[k] = rec.multiply(rest, inverses[k])
-        columns.append(x)
-    return Linear(columns, determinant)
+            for c, value in x.items():
+                rest = rec.subtract(rest, rec.multiply(rows[k][c], value))
+            x[order[k]] = rec.multiply(rest, inverses[k])
+        columns.append([x[c] for c in range(n)])
+    return Linear(columns, rec.multiply(determinant, last.determinant))
+
+
+def _pivoted(rec: Recorder, rows: list[list[Value | float]], k: int, column: int) -> bool:
+    """Bring the first row with an entry to place k; whether it stood elsewhere."""
+    first = next((i for i in range(k, len(rows)) if not rec.is_zero(rows[i][column])), k)
+    rows[k], rows[first] = rows[first], rows[k]
+    return first != k
+
+
+def _larger_first(
+    rec: Recorder, rows: list[list[Value | float]], k: int, i: int, column: int, determinant: Value
+) -> Value:
+    """Swap rows k and i where i has the larger entry; the determinant with its sign then."""
+    if rec.is_zero(rows[i][column]):
+        return determinant
+    larger = rec.at_most(rec.absolute(rows[i][column]), rec.absolute(rows[k][column]))
+    above, below = rows[k], rows[i]
+    rows[k] = [rec.where(larger, x, y) for x, y in zip(above, below, strict=True)]
+    rows[i] = [rec.where(larger, y, x) for x, y in zip(above, below, strict=True)]
+    return rec.where(larger, determinant, -determinant)
