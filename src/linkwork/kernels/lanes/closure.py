@@ -256,8 +256,8 @@ def solved(rec: Recorder, matrix: Sequence[Row], sides: Sequence[Row]) -> Linear
     """Solve small linear systems lane by lane.
 
     One and two unknowns in closed form. Of more, those with the fewest entries are eliminated first
-    until two are left; the largest pivot of a column is chosen by swapping rows under masks, so that
-    all lanes do the same.
+    until two are left; the largest pivot of a column is chosen by swapping rows under masks, so
+    that all lanes do the same.
 
     Parameters
     ----------

@@ -33,6 +33,7 @@ __all__ = ["LaneKernel", "LaneRows", "RowsOfOne", "Steps"]
 
 _FEW = 16  # designs in a part of which each goes with its rows side by side
 _PART = 4096  # designs that one thread works on at a time, at most
+_ROUGHLY = 1e-6  # weighted: a correction behind which a proof corrects once more
 _SHARES = 4  # parts for each thread, at least, so that none waits long for the others
 
 
@@ -361,7 +362,7 @@ class LaneKernel:
             ready=ready,
             ahead=ahead,
             space=space,
-            own=space if scout is self else scout._space(steps),
+            own=space if scout is self else scout._space(replace(steps, tolerance=_ROUGHLY)),
             table=table,
             scale=np.ascontiguousarray(np.array(scales).T),
         )

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from linkwork.foundation.aligned import aligned
 from linkwork.foundation.arrays import Array, BoolArray, CountArray
 from linkwork.kernels.lanes.rowwise import DONE, NOT_NEAR, by_rows
 from linkwork.kernels.lanes.tasks import Found, Table
@@ -103,6 +102,6 @@ class RowsOfOne:
         How many corrections each row took is left in ``counts`` (R,).
         """
         rows, n = len(self.loaded.alone.table.rows), self.kernel.table.unknowns
-        v, radius = aligned(n, rows, 1), aligned(rows if self.kernel.certified else 0, 1)
+        v, radius = np.empty((n, rows, 1)), np.empty((rows if self.kernel.certified else 0, 1))
         done = self.loaded.run(self.guess, Found(0, v, radius, *self.room), self.counts)
         return (v, radius) if done else None

@@ -1,10 +1,10 @@
 """One mechanism through a long, even table: rows side by side in the lanes.
 
 A scout goes in one lane from the start to the first row, and on until it has left four nodes. From
-there on the lanes are as many rows that follow each other; each takes steps of that many rows, and
-is predicted from its own last nodes. All this is without proofs. Then every row is proved, and that
-it lies on the branch of the row before it; in the end that the start lies on that of the row beside
-it. What does not go well is left to :mod:`linkwork.kernels.lanes.marching`.
+there on the lanes are as many rows that follow each other, predicted from six of those before them.
+All this is without proofs. Then every row is proved, and that it lies on the branch of the row
+before it; in the end that the start lies on that of the row beside it. What does not go well is
+left to :mod:`linkwork.kernels.lanes.marching`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
-from linkwork.kernels.lanes.stepping import GROWTH, SAME, hermite
+from linkwork.kernels.lanes.stepping import GROWTH, SAME
 from linkwork.kernels.lanes.tasks import FOUND, TABLE
 from linkwork.kernels.lanes.trial import (
     GOOD,
@@ -32,9 +32,10 @@ __all__ = ["DONE", "LEFT", "NOT_NEAR", "by_rows"]
 
 DONE, LEFT, NOT_NEAR = 1, 0, -1
 
-_STRIDE = 0.6  # of the largest step: as far a lane goes from row to row
+_STRIDE = 0.6  # of the largest step: as far reach rows that are computed together
 _VECTOR = 8  # lanes that a processor computes at once
-_FEWEST = 4  # with fewer the march is as quick
+_KNOTS = 6  # rows from which the next ones are predicted
+_FEWEST = _KNOTS  # with fewer the march is as quick
 _APART = 0.2  # of a step: nodes that are closer do not tell more
 _ANY = 1 << 30  # nodes: as many as the way takes
 # of an angle, or of a length's weight:
@@ -133,42 +134,78 @@ def _all_good(topology, w, lanes):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _weigh(topology, turn, w, lanes, used, cells):  # type: ignore[no-untyped-def]
-    """The weights of some lanes' last nodes and of their derivatives, (2 (NODES - 1), LANES).
+def _weighed(times, count, t, lanes, cells):  # type: ignore[no-untyped-def]
+    """Weights at t (lanes,) of values and derivatives at ``count`` times, (2 count, lanes), in
+    Hermite's polynomial.
+    """
+    for j in range(count):
+        scale, slope = 1.0, 0.0
+        for k in range(count):
+            if k != j:
+                scale *= times[j] - times[k]
+                slope += 1.0 / (times[j] - times[k])
+        for i in range(lanes):
+            basis = 1.0 / scale
+            for k in range(count):
+                if k != j:
+                    basis *= t[i] - times[k]
+            away, square = t[i] - times[j], basis * basis
+            cells[2 * j, i], cells[2 * j + 1, i] = (
+                (1.0 - 2.0 * slope * away) * square,
+                away * square,
+            )
+
+
+@compiled
+def _from_nodes(topology, turn, w, lanes, used, unknowns, cells):  # type: ignore[no-untyped-def]
+    """Guesses for the first rows by the polynomial through the nodes behind them, which are the
+    same in all lanes, in the place of the oldest one.
 
     A node close to a later one is left out.
     """
     nodes, last = topology.nodes, topology.nodes.shape[1] - 1
-    times, places = np.zeros(NODES), np.zeros(NODES, np.int64)
-    t = nodes[-turn % ROLES, last]
-    for i in range(lanes):
-        count, step = 0, abs(w[t, i] - w[nodes[(1 - turn) % ROLES, last], i])
-        for k in range(used):
-            cells[2 * k, i] = cells[2 * k + 1, i] = 0.0
-            time, apart = w[nodes[(k + 1 - turn) % ROLES, last], i], True
-            for j in range(count):
-                apart &= abs(time - times[j]) > _APART * step
-            if apart:
-                times[count], places[count] = time, k
-                count += 1
+    times, places, count = np.zeros(NODES), np.zeros(NODES, np.int64), 0
+    t, near = nodes[-turn % ROLES, last], nodes[(1 - turn) % ROLES, last]
+    for k in range(used):
+        time, apart = w[nodes[(k + 1 - turn) % ROLES, last], 0], True
         for j in range(count):
-            k = places[j]
-            cells[2 * k, i], cells[2 * k + 1, i] = hermite(w[t, i], times, j, count)
-
-
-@compiled
-def _predicted(topology, turn, w, lanes, used, cells, unknowns):  # type: ignore[no-untyped-def]
-    """Guesses by the polynomial through the last nodes, in the place of the oldest one."""
-    nodes = topology.nodes
+            apart &= abs(time - times[j]) > _APART * abs(w[t, 0] - w[near, 0])
+        if apart:
+            times[count], places[count] = time, (k + 1 - turn) % ROLES
+            count += 1
+    _weighed(times, count, w[t], lanes, cells)
     for k in range(unknowns):
         guess = nodes[(ROLES - 1 - turn) % ROLES, k]
         for i in range(lanes):
             w[guess, i] = 0.0
-        for role in range(1, used + 1):
-            place = (role - turn) % ROLES
-            x, d = nodes[place, k], nodes[place, unknowns + k]
+        for j in range(count):
+            value, rate = w[nodes[places[j], k], 0], w[nodes[places[j], unknowns + k], 0]
             for i in range(lanes):
-                w[guess, i] += cells[2 * role - 2, i] * w[x, i] + cells[2 * role - 1, i] * w[d, i]
+                w[guess, i] += cells[2 * j, i] * value + cells[2 * j + 1, i] * rate
+
+
+@compiled
+def _knots(width):  # type: ignore[no-untyped-def]
+    """The lanes of so many rows from which the next rows are predicted, the last one first."""
+    knots = np.empty(_KNOTS, np.int64)
+    for j in range(_KNOTS):
+        knots[j] = width - 1 - j * (width // _KNOTS)
+    return knots
+
+
+@compiled
+def _predicted(topology, turn, w, lanes, knots, cells, unknowns):  # type: ignore[no-untyped-def]
+    """Guesses by the polynomial through rows before, in the place of the oldest node."""
+    nodes = topology.nodes
+    for k in range(unknowns):
+        guess, x = nodes[(ROLES - 1 - turn) % ROLES, k], nodes[(1 - turn) % ROLES, k]
+        d = nodes[(1 - turn) % ROLES, unknowns + k]
+        for i in range(lanes):
+            w[guess, i] = 0.0
+        for j in range(_KNOTS):
+            value, rate = w[x, knots[j]], w[d, knots[j]]
+            for i in range(lanes):
+                w[guess, i] += cells[2 * j, i] * value + cells[2 * j + 1, i] * rate
 
 
 @compiled
@@ -214,7 +251,7 @@ def _stretch(topology, w, first, width, before, table, scale, gap, trusting, fou
     """
     rows, n, nodes = table.rows, table.unknowns, topology.nodes
     size = nodes.shape[1]
-    standing, cells = np.ones(LANES), np.empty((2 * (NODES - 1), LANES))
+    standing, cells, knots = np.ones(LANES), np.empty((2 * _KNOTS, LANES)), _knots(width)
     turn, known = _ready(topology, w, before, first, table)
     if known == 0:
         return first
@@ -232,15 +269,12 @@ def _stretch(topology, w, first, width, before, table, scale, gap, trusting, fou
         lanes, t = min(width, len(rows) - first), nodes[-turn % ROLES, size - 1]
         for i in range(lanes):
             w[t, i] = rows[first + i]
-        used = min(known + block, NODES - 1)
-        if block < NODES - 1:
-            _weigh(topology, turn, w, lanes, used, cells)
-        elif block == NODES - 1:  # now all lanes have rows behind them, in the same distances
-            _weigh(topology, turn, w, 1, used, cells)
-            for k in range(2 * used):
-                for i in range(1, width):
-                    cells[k, i] = cells[k, 0]
-        _predicted(topology, turn, w, lanes, used, cells, n)
+        if block == 0:
+            _from_nodes(topology, turn, w, lanes, min(known, NODES - 1), n, cells)
+        else:
+            if block == 1:
+                _weighed((knots - width) * gap, _KNOTS, np.arange(width) * gap, width, cells)
+            _predicted(topology, turn, w, lanes, knots, cells, n)
         count = met(topology, turn, w, standing, lanes, n)
         if count == 0:
             return first
