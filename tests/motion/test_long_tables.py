@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.kernels.lanes.at_hand import compiled_code_is_at_hand
+from linkwork.kernels.lanes.at_hand import compiled_code_is_at_hand, say_that_it_compiles
 from linkwork.motion import by_kernels
 from tests.thinned import thinned
 
@@ -221,10 +221,25 @@ def test_a_short_table_does_not_ask_for_compiled_code(monkeypatch: pytest.Monkey
         "print(by_kernels.kernels_pay(m.model, 4000, True))\n"
         "print(by_kernels.kernels_pay(m.model, 40000, True))\n"
     )
+    at_hand = compiled_code_is_at_hand()
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     first, *others = done.stdout.splitlines()
-    assert first == f"{compiled_code_is_at_hand()} False"
+    assert first == f"{at_hand} False"
     assert others == ["False", "True"]
+
+
+def test_who_waits_for_a_compiler_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    say_that_it_compiles()
+    (told,) = caplog.records
+    assert "once after an installation" in told.getMessage()
+    left = tmp_path / "lanes_0a1b" / "rowwise.by_rows-336.py311.nbi"
+    left.parent.mkdir()
+    left.write_bytes(b"")
+    say_that_it_compiles()
+    assert len(caplog.records) == 1
 
 
 def test_compiled_code_counts_unless_it_is_older_than_its_source(

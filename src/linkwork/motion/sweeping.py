@@ -59,7 +59,8 @@ def sweep(
     The branch is followed from the guess's own input value both ways with steps as small as
     safety asks, whatever the table's step. A row outside its reach is tried a whole turn away,
     and kept with its status if it is not there either. Every dead point and change point that is
-    met adds a row of its own with the exact value.
+    met adds a row of its own with the exact value. Long tables are computed by compiled kernels
+    where that is quicker: the same to rounding.
 
     Parameters
     ----------

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import sys
 from pathlib import Path
 
-__all__ = ["compiled_code_is_at_hand", "compiled_code_is_loaded"]
+from platformdirs import user_cache_path
+
+__all__ = ["compiled_code_is_at_hand", "compiled_code_is_loaded", "say_that_it_compiles"]
 
 _LAST = "rowwise"  # of the modules that take long to compile
 
@@ -17,14 +20,23 @@ def compiled_code_is_loaded() -> bool:
 
 
 def compiled_code_is_at_hand() -> bool:
-    """Whether an earlier process has left the kernels compiled, beside their sources or in the
-    folder that ``NUMBA_CACHE_DIR`` names.
+    """Whether an earlier process has left the kernels compiled: beside their sources, in the user's
+    cache where that cannot be written to, or in the folder that ``NUMBA_CACHE_DIR`` names.
     """
     here = Path(__file__).parent
     source = (here / f"{_LAST}.py").stat().st_mtime
-    folders = [here / "__pycache__"]
     given = os.environ.get("NUMBA_CACHE_DIR")
-    if given:
-        folders = [folder for folder in Path(given).glob(f"{here.name}_*") if folder.is_dir()]
+    shared = Path(given) if given else user_cache_path("numba", appauthor=False)
+    folders = list(shared.glob(f"{here.name}_*"))
+    if not given:
+        folders.append(here / "__pycache__")
     left = (entry for folder in folders for entry in folder.glob(f"{_LAST}.by_rows-*.nbi"))
     return any(entry.stat().st_mtime >= source for entry in left)
+
+
+def say_that_it_compiles() -> None:
+    """Tell users why they wait, if they will: a warning in the log ``linkwork``."""
+    if not compiled_code_is_at_hand():
+        logging.getLogger("linkwork").warning(
+            "compiling Linkwork's kernels, once after an installation: one or two minutes"
+        )

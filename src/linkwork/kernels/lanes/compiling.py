@@ -10,6 +10,8 @@ from numba import types  # noqa: TID253
 from numba.core import cgutils  # noqa: TID253
 from numba.extending import intrinsic  # noqa: TID253
 
+from linkwork.kernels.lanes.at_hand import say_that_it_compiles
+
 __all__ = [
     "call_at",
     "compiled",
@@ -30,6 +32,7 @@ def compiled_for(signature: object):  # type: ignore[no-untyped-def]
 
 
 compiled = compiled_for(None)
+say_that_it_compiles()
 
 
 def named_tuple(fields: list[object], kind: type) -> Any:
