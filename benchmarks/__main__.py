@@ -13,6 +13,7 @@ from benchmarks import (
     configuration_time,
     cycle_time,
     design_time,
+    family_time,
     live_time,
     page_time,
     process_start,
@@ -25,6 +26,7 @@ MEASUREMENTS = {
     "configurations": configuration_time.measure,
     "chain": chain_growth.measure,
     "designs": design_time.measure,
+    "families": family_time.measure,
     "page": page_time.measure,
     "live": live_time.measure,
 }

@@ -17,6 +17,7 @@ from linkwork.kernels.lanes.compiling import (
     copied_to,
     soon_written,
     types,
+    uncounted,
 )
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
@@ -37,7 +38,7 @@ _LARGEST = 0.5  # of the largest step: further apart, rows have nodes between th
 _WORTH = LANES // 2  # with fewer lanes left each goes on by itself
 
 
-@compiled
+@uncounted
 def _left(lane, member, way, topology, turn, w, tasks, count):  # type: ignore[no-untyped-def]
     """A lane goes on by itself from its last node; how many tasks there are now."""
     tasks.member[count], tasks.way[count] = member, way
@@ -47,7 +48,7 @@ def _left(lane, member, way, topology, turn, w, tasks, count):  # type: ignore[n
     return count + 1
 
 
-@compiled
+@uncounted
 def _weighted(w, topology, turn, steps, together, spacing, times):  # type: ignore[no-untyped-def]
     """The weights of the prediction: for each lane by itself until all have the same nodes behind.
 
@@ -69,13 +70,13 @@ def _weighted(w, topology, turn, steps, together, spacing, times):  # type: igno
                 w[weights[j], 1:] = w[weights[j], 0]
 
 
-@compiled
+@uncounted
 def _address(array, j, row, first):  # type: ignore[no-untyped-def]
     strides = array.strides
     return array.ctypes.data + j * strides[0] + row * strides[1] + first * strides[2]
 
 
-@compiled
+@uncounted
 def _fetched(first, width, row, table, found):  # type: ignore[no-untyped-def]
     """The places of a row are brought near while the row is computed."""
     target = found.unknowns
@@ -85,7 +86,7 @@ def _fetched(first, width, row, table, found):  # type: ignore[no-untyped-def]
             soon_written(place + line)
 
 
-@compiled
+@uncounted
 def _kept(first, width, row, topology, turn, w, standing, all_stand, table, found):  # type: ignore[no-untyped-def]
     """A row is reached by the lanes that stand."""
     target, radius, reached = found.unknowns, found.radius, found.reached
@@ -114,7 +115,7 @@ def _kept(first, width, row, topology, turn, w, standing, all_stand, table, foun
             reached[row, first + i] = True
 
 
-@compiled
+@uncounted
 def _set_out(base, way, topology, w, begun, node, rows, standing, tasks, count):  # type: ignore[no-untyped-def]
     """Who goes in this direction, and who has to go alone.
 
@@ -147,7 +148,7 @@ def _set_out(base, way, topology, w, begun, node, rows, standing, tasks, count):
     return ahead, together, count
 
 
-@compiled
+@uncounted
 def _aimed(base, width, row, topology, turn, w, standing, table, found):  # type: ignore[no-untyped-def]
     """The trial's t: of the row, or on the way to it. How far the row is; in how many steps, -1
     where a step would be lost in rounding.

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from linkwork.kernels.lanes.compiling import compiled
+from linkwork.kernels.lanes.compiling import uncounted
 from linkwork.kernels.lanes.sine import sin_cos
 
 __all__ = ["LANES", "run", "run_part"]
@@ -17,7 +17,7 @@ __all__ = ["LANES", "run", "run_part"]
 LANES = 64
 
 
-@compiled
+@uncounted
 def run_part(code, first, end, w, lanes):  # type: ignore[no-untyped-def]
     """Run some instructions of a program in the first lanes."""
     for k in range(first, end):
@@ -86,7 +86,7 @@ def run_part(code, first, end, w, lanes):  # type: ignore[no-untyped-def]
                 w[d, i] = math.sqrt(w[a, i])
 
 
-@compiled
+@uncounted
 def run(code, w):  # type: ignore[no-untyped-def]
     """Run a program (K, 5) over a workspace (R, LANES)."""
     run_part(code, 0, code.shape[0], w, LANES)

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
+from linkwork.kernels.lanes.compiling import compiled_for, types, uncounted
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
 from linkwork.kernels.lanes.stepping import GROWTH
@@ -31,7 +31,7 @@ from linkwork.kernels.lanes.trial import (
 __all__ = ["march"]
 
 
-@compiled
+@uncounted
 def _noted(w, lane, topology, turn, row, member, unknowns, found):  # type: ignore[no-untyped-def]
     """A row is reached."""
     place = found.first + member
@@ -42,7 +42,7 @@ def _noted(w, lane, topology, turn, row, member, unknowns, found):  # type: igno
         found.radius[row, place] = w[topology.noted[RADIUS], lane]
 
 
-@compiled
+@uncounted
 def _stopped(w, lane, topology, turn, way, member, found):  # type: ignore[no-untyped-def]
     """A mechanism goes no further."""
     nodes = topology.nodes

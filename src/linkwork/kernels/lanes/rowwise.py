@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
+from linkwork.kernels.lanes.compiling import compiled, compiled_for, types, uncounted
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
 from linkwork.kernels.lanes.stepping import GROWTH, SAME
@@ -34,8 +34,8 @@ DONE, LEFT, NOT_NEAR = 1, 0, -1
 
 _STRIDE = 0.6  # of the largest step: as far reach rows that are computed together
 _VECTOR = 8  # lanes that a processor computes at once
-_KNOTS = 6  # rows from which the next ones are predicted
-_FEWEST = _KNOTS  # with fewer the march is as quick
+_KNOTS = 6  # rows from which the next ones are predicted, at most
+_FEWEST = 4  # with fewer the march is as quick
 _APART = 0.2  # of a step: nodes that are closer do not tell more
 _ANY = 1 << 30  # nodes: as many as the way takes
 # of an angle, or of a length's weight:
@@ -45,7 +45,7 @@ _BEND = 0.1  # without proofs, from row to row: a change of rates times the dist
 _ROUGH = 0.03  # and what rates do not explain, of the way and of as much for a largest step
 
 
-@compiled
+@uncounted
 def _gap(rows):  # type: ignore[no-untyped-def]
     """From row to row; 0 where it is not the same everywhere."""
     gap = (rows[-1] - rows[0]) / (len(rows) - 1)
@@ -55,7 +55,7 @@ def _gap(rows):  # type: ignore[no-untyped-def]
     return gap
 
 
-@compiled
+@uncounted
 def _set_out(topology, w, node):  # type: ignore[no-untyped-def]
     """A node (S,) into the first lane, as the only one."""
     for role in range(1, ROLES):
@@ -63,7 +63,7 @@ def _set_out(topology, w, node):  # type: ignore[no-untyped-def]
             w[topology.nodes[role, j], 0] = node[j]
 
 
-@compiled
+@uncounted
 def _noted(topology, turn, w, lane, node):  # type: ignore[no-untyped-def]
     """The trial of a lane as a node (S,)."""
     for j in range(len(node)):
@@ -125,7 +125,7 @@ def _ready(topology, w, node, row, table):  # type: ignore[no-untyped-def]
     return turn, known
 
 
-@compiled
+@uncounted
 def _all_good(topology, w, lanes):  # type: ignore[no-untyped-def]
     good, bad = topology.noted[GOOD], 0
     for i in range(lanes):
@@ -133,7 +133,7 @@ def _all_good(topology, w, lanes):  # type: ignore[no-untyped-def]
     return bad == 0
 
 
-@compiled
+@uncounted
 def _weighed(times, count, t, lanes, cells):  # type: ignore[no-untyped-def]
     """Weights at t (lanes,) of values and derivatives at ``count`` times, (2 count, lanes), in
     Hermite's polynomial.
@@ -187,13 +187,14 @@ def _from_nodes(topology, turn, w, lanes, used, unknowns, cells):  # type: ignor
 @compiled
 def _knots(width):  # type: ignore[no-untyped-def]
     """The lanes of so many rows from which the next rows are predicted, the last one first."""
-    knots = np.empty(_KNOTS, np.int64)
-    for j in range(_KNOTS):
-        knots[j] = width - 1 - j * (width // _KNOTS)
+    count = min(_KNOTS, width)
+    knots = np.empty(count, np.int64)
+    for j in range(count):
+        knots[j] = width - 1 - j * (width // count)
     return knots
 
 
-@compiled
+@uncounted
 def _predicted(topology, turn, w, lanes, knots, cells, unknowns):  # type: ignore[no-untyped-def]
     """Guesses by the polynomial through rows before, in the place of the oldest node."""
     nodes = topology.nodes
@@ -202,13 +203,13 @@ def _predicted(topology, turn, w, lanes, knots, cells, unknowns):  # type: ignor
         d = nodes[(1 - turn) % ROLES, unknowns + k]
         for i in range(lanes):
             w[guess, i] = 0.0
-        for j in range(_KNOTS):
+        for j in range(len(knots)):
             value, rate = w[x, knots[j]], w[d, knots[j]]
             for i in range(lanes):
                 w[guess, i] += cells[2 * j, i] * value + cells[2 * j + 1, i] * rate
 
 
-@compiled
+@uncounted
 def _smooth(topology, turn, w, lanes, before, is_first, scale, gap, largest):  # type: ignore[no-untyped-def]
     """Whether rows follow from the rates of the rows before them, and det J keeps its sign.
 
@@ -232,7 +233,7 @@ def _smooth(topology, turn, w, lanes, before, is_first, scale, gap, largest):  #
     return rough == 0
 
 
-@compiled
+@uncounted
 def _kept(topology, turn, w, lanes, row, unknowns, found):  # type: ignore[no-untyped-def]
     """The lanes are rows, from that one on."""
     m, trial = found.first, -turn % ROLES
@@ -273,7 +274,7 @@ def _stretch(topology, w, first, width, before, table, scale, gap, trusting, fou
             _from_nodes(topology, turn, w, lanes, min(known, NODES - 1), n, cells)
         else:
             if block == 1:
-                _weighed((knots - width) * gap, _KNOTS, np.arange(width) * gap, width, cells)
+                _weighed((knots - width) * gap, len(knots), np.arange(width) * gap, width, cells)
             _predicted(topology, turn, w, lanes, knots, cells, n)
         count = met(topology, turn, w, standing, lanes, n)
         if count == 0:
@@ -291,7 +292,7 @@ def _stretch(topology, w, first, width, before, table, scale, gap, trusting, fou
     return first
 
 
-@compiled
+@uncounted
 def _linked(topology, w, first, table, scale, standing, found, counts):  # type: ignore[no-untyped-def]
     """Prove rows from one on, each from the one before it; whether that is done.
 
@@ -326,7 +327,7 @@ def _linked(topology, w, first, table, scale, standing, found, counts):  # type:
     return outside == 0
 
 
-@compiled
+@uncounted
 def _joined(topology, w, start, rows, scale, found, standing):  # type: ignore[no-untyped-def]
     """Whether the start (S,) is proved to lie on the branch of the row next to it."""
     nodes, n = topology.nodes, len(scale)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwork.kernels.lanes.compiling import compiled
+from linkwork.kernels.lanes.compiling import uncounted
 
 __all__ = ["GROWTH", "SAME", "START_STEPS", "STEPS", "hermite", "trusted"]
 
@@ -13,7 +13,7 @@ SAME = 1e-9  # relative: steps so nearly equal share the weights of their predic
 _FAR = 2.5  # times the step before: further ahead fewer nodes are trusted
 
 
-@compiled
+@uncounted
 def trusted(t, times, known):  # type: ignore[no-untyped-def]
     """How many of the ``known`` last nodes, at ``times`` (4,), predict well at t."""
     step, used = abs(t - times[0]), min(known, len(times))
@@ -23,7 +23,7 @@ def trusted(t, times, known):  # type: ignore[no-untyped-def]
     return used
 
 
-@compiled
+@uncounted
 def hermite(t, times, i, count):  # type: ignore[no-untyped-def]
     """Weights at t of the i-th of ``count`` nodes' value and derivative in Hermite's polynomial."""
     basis, slope = 1.0, 0.0

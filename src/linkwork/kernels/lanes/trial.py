@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linkwork.foundation.arrays import IndexArray
-from linkwork.kernels.lanes.compiling import call_at, compiled, named_tuple, types
+from linkwork.kernels.lanes.compiling import call_at, compiled, named_tuple, types, uncounted
 from linkwork.kernels.lanes.machine import LANES, run_part
 from linkwork.kernels.lanes.march_programs import ROLES
 from linkwork.kernels.lanes.stepping import SAME, START_STEPS, STEPS, hermite, trusted
@@ -89,24 +89,24 @@ TOPOLOGY = named_tuple(
 )
 
 
-@compiled
+@uncounted
 def _one(topology, turn, w, number, lanes):  # type: ignore[no-untyped-def]
     first, spans = turn * topology.length, topology.spans
     run_part(topology.code, first + spans[number, 0], first + spans[number, 1], w, lanes)
 
 
-@compiled
+@uncounted
 def _blocks(topology):  # type: ignore[no-untyped-def]
     return len(topology.noted) - LIVE
 
 
-@compiled
+@uncounted
 def proved(topology):  # type: ignore[no-untyped-def]
     """Whether its trials are proved."""
     return len(topology.spans) > BLOCKS + 3 * _blocks(topology)
 
 
-@compiled
+@uncounted
 def _any(w, row, standing, lanes):  # type: ignore[no-untyped-def]
     """Whether a mask holds in a lane that counts."""
     found = 0
@@ -115,7 +115,7 @@ def _any(w, row, standing, lanes):  # type: ignore[no-untyped-def]
     return found > 0
 
 
-@compiled
+@uncounted
 def _any_live(topology, w, standing, lanes):  # type: ignore[no-untyped-def]
     """Whether a lane that counts has not converged."""
     found = False
@@ -124,7 +124,7 @@ def _any_live(topology, w, standing, lanes):  # type: ignore[no-untyped-def]
     return found
 
 
-@compiled
+@uncounted
 def _iterate(topology, turn, w, program, live, most, standing, lanes):  # type: ignore[no-untyped-def]
     """Newton-Raphson of one block until no lane iterates; how many corrections that took."""
     for k in range(most):
@@ -134,7 +134,7 @@ def _iterate(topology, turn, w, program, live, most, standing, lanes):  # type: 
     return most
 
 
-@compiled
+@uncounted
 def judged(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
     """Proofs, if there are any, and the judgement."""
     for program in range(BLOCKS + 3 * _blocks(topology), len(topology.spans)):
@@ -142,7 +142,7 @@ def judged(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
     _one(topology, turn, w, JUDGE, lanes)
 
 
-@compiled
+@uncounted
 def _by_written(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
     place, first = 8 * LANES * topology.nodes.shape[1], w.ctypes.data
     call_at(
@@ -157,7 +157,7 @@ def _by_written(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
     )
 
 
-@compiled
+@uncounted
 def _given(topology, turn, w, together, lanes):  # type: ignore[no-untyped-def]
     """What is given at the trial."""
     shared = topology.shared
@@ -169,7 +169,7 @@ def _given(topology, turn, w, together, lanes):  # type: ignore[no-untyped-def]
         _one(topology, turn, w, GIVEN, lanes)
 
 
-@compiled
+@uncounted
 def settled(topology, turn, w, standing, together, lanes):  # type: ignore[no-untyped-def]
     """From the prediction to the judgement; how many corrections the block with most of them took.
 
@@ -205,7 +205,7 @@ def settled(topology, turn, w, standing, together, lanes):  # type: ignore[no-un
     return 1 + most
 
 
-@compiled
+@uncounted
 def met(topology, turn, w, standing, lanes, unknowns):  # type: ignore[no-untyped-def]
     """From a guess in the place of the oldest node, the only one that has weight, to a position:
     how many corrections that took, 0 if not all lanes have converged. The judgement is made, but
@@ -248,7 +248,7 @@ def solved_slowly(topology, w, lanes):  # type: ignore[no-untyped-def]
             judged(topology, 0, w, lanes)
 
 
-@compiled
+@uncounted
 def all_loaded(w, registers, data, base, count):  # type: ignore[no-untyped-def]
     """Columns of data from ``base`` on into the lanes; behind the last one it stands again."""
     for j in range(len(registers)):
@@ -258,21 +258,21 @@ def all_loaded(w, registers, data, base, count):  # type: ignore[no-untyped-def]
         w[register, count:] = data[j, base + count - 1]
 
 
-@compiled
+@uncounted
 def loaded(w, lane, registers, data, member):  # type: ignore[no-untyped-def]
     """One column of data into a lane."""
     for j in range(len(registers)):
         w[registers[j], lane] = data[j, member]
 
 
-@compiled
+@uncounted
 def copied(w, lane, to, source):  # type: ignore[no-untyped-def]
     """Registers of one lane into others."""
     for j in range(len(to)):
         w[to[j], lane] = w[source[j], lane]
 
 
-@compiled
+@uncounted
 def tangent(w, lane, weights, h):  # type: ignore[no-untyped-def]
     """Predict from the last node alone."""
     for j in range(len(weights)):
@@ -281,7 +281,7 @@ def tangent(w, lane, weights, h):  # type: ignore[no-untyped-def]
     w[weights[1], lane] = h
 
 
-@compiled
+@uncounted
 def extrapolated(w, lane, weights, t, times, known):  # type: ignore[no-untyped-def]
     """Predict at t by the polynomial through the last nodes with their derivatives.
 
@@ -298,7 +298,7 @@ def extrapolated(w, lane, weights, t, times, known):  # type: ignore[no-untyped-
         w[weights[2 * i], lane], w[weights[2 * i + 1], lane] = a, b
 
 
-@compiled
+@uncounted
 def chosen(w, lane, weights, times, step, known, spacing):  # type: ignore[no-untyped-def]
     """The weights of a lane's prediction, computed anew where its spacing has changed; whether it
     has.

@@ -1,0 +1,93 @@
+"""Families on one core: against pylinkage's Ensemble, a harder mechanism, and a second core."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from itertools import product
+
+import numpy as np
+
+import linkwork as lw
+from benchmarks.peers.linkwork_sweep import family_of
+from benchmarks.peers.pylinkage_numba import PylinkageEnsemble
+from benchmarks.peers.work import Work, four_bar_family
+from benchmarks.timing import bar, interleaved
+from linkwork.batch import Family
+
+__all__ = ["measure", "rapier_family"]
+
+_DESIGNS, _ROWS = 10_000, 200
+_ALL = 1e9  # no bar
+
+#: Certified, compiled: and the bar of ours / Ensemble.
+_GEARS = {
+    (False, False): 1 / 4,
+    (True, False): 1 / 1.5,
+    (False, True): 1 / 8,
+    (True, True): _ALL,
+}
+_RAPIER = 3.0
+_SECOND_CORE = 1 / 1.8
+
+
+def measure(repeats: int = 9) -> bool:
+    """Bars: time per position, warm, designs built beforehand."""
+    print(f"families of {_DESIGNS:,} designs × {_ROWS} inputs, one thread, ratios of time")
+    work = four_bar_family(_DESIGNS, _ROWS)
+    four_bars, rapiers = family_of(work), rapier_family(_DESIGNS, _ROWS)
+    held = True
+    for (certify, compiled), limit in _GEARS.items():
+        swept = [_sweep(family, certify, compiled) for family in (four_bars, rapiers)]
+        what = ("compiled" if compiled else "general") + (", certified" if certify else "")
+        ours, harder, *others = interleaved([*swept, *_ensemble(work)], repeats, time.process_time)
+        for theirs in others:
+            ratios = [a / b for a, b in zip(ours, theirs, strict=True)]
+            held = bar(f"four-bars, {what} / pylinkage Ensemble", ratios, limit) and held
+        ratios = [b / a for a, b in zip(ours, harder, strict=True)]
+        held = bar(f"rapier drives / four-bars, {what}", ratios, _RAPIER) and held
+    if len(os.sched_getaffinity(0)) > 1:
+        held = _two_cores(four_bars, repeats) and held
+    return held
+
+
+def rapier_family(designs: int, rows: int) -> Family:
+    """Rapier drives with every length within half a per cent, over a full turn."""
+    drive = lw.example("rapier-drive")
+    (own,) = drive.description.inputs
+    turn = replace(own, start=0.0, stop=360.0 - 360.0 / rows, step=360.0 / rows)
+    rng = np.random.default_rng(1)
+    return drive.changed(inputs=(turn,)).family(
+        {
+            name: float(value) * rng.uniform(0.995, 1.005, designs)
+            for name, value in drive.description.dimensions.items()
+            if value
+        }
+    )
+
+
+def _sweep(family: Family, certify: bool, compiled: bool, threads: int = 1) -> Callable[[], object]:
+    run = partial(family.sweep, certify=certify, specialised=compiled, threads=threads)
+    found = run().found
+    assert found.all(), f"{(~found).sum()} rows of {family} were not found"
+    return run
+
+
+def _ensemble(work: Work) -> list[Callable[[], object]]:
+    peer = PylinkageEnsemble()
+    return [] if peer.missing() else [peer.prepare(work).run]
+
+
+def _two_cores(family: Family, repeats: int) -> bool:
+    """Wall time of two threads against one."""
+    held = True
+    for certify, compiled in product((False, True), repeat=2):
+        runs = [_sweep(family, certify, compiled, threads) for threads in (1, 2)]
+        one, two = interleaved(runs, repeats)
+        what = ("compiled" if compiled else "general") + (", certified" if certify else "")
+        ratios = [b / a for a, b in zip(one, two, strict=True)]
+        held = bar(f"four-bars, two threads / one, {what}", ratios, _SECOND_CORE) and held
+    return held
