@@ -6,7 +6,7 @@ import statistics
 import time
 from collections.abc import Callable, Sequence
 
-__all__ = ["bar", "interleaved", "seconds"]
+__all__ = ["Clock", "bar", "interleaved", "seconds"]
 
 
 Clock = Callable[[], float]

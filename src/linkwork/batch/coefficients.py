@@ -27,5 +27,6 @@ def loop_coefficients(designs: Designs) -> dict[str, Array]:
 
 def zero_coefficients(designs: Designs, coefficients: dict[str, Array]) -> set[str]:
     """Those that are 0 in every design without a problem."""
-    fine = designs.problem == 0
-    return {name for name, values in coefficients.items() if not values[fine].any()}
+    fine = np.flatnonzero(designs.problem == 0)
+    which = slice(None) if len(fine) == len(designs) else fine
+    return {name for name, values in coefficients.items() if not values[which].any()}

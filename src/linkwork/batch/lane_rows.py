@@ -226,7 +226,12 @@ class March:
 
     def note_limits(self, found: DesignRows, which: BoolArray) -> None:
         """Enter where some designs can move; what the march has located are dead points."""
-        found.limits[:, which] = self.limits[:, which]
+        if which.all():
+            found.limits[:] = self.limits
+        else:
+            found.limits[:, which] = self.limits[:, which]
+        if not np.isfinite(self.limits).any():
+            return
         dead = LIMIT_KINDS.index(LimitKind.DEAD_POINT)
         found.limit_kinds[:, which] = np.where(np.isfinite(self.limits[:, which]), dead, 0)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
@@ -13,6 +12,7 @@ import numpy as np
 from linkwork.foundation.aligned import aligned
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.sharing import shared_out
 from linkwork.kernels.lanes.beginning import begin
 from linkwork.kernels.lanes.closure import BlockPart
 from linkwork.kernels.lanes.folding import LastNodes
@@ -34,7 +34,7 @@ __all__ = ["LaneKernel", "LaneRows", "RowsOfOne", "Steps"]
 _FEW = 16  # designs in a part of which each goes with its rows side by side
 _PART = 4096  # designs that one thread works on at a time, at most
 _ROUGHLY = 1e-6  # weighted: a correction behind which a proof corrects once more
-_SHARES = 4  # parts for each thread, at least, so that none waits long for the others
+_SHARES = 8  # parts for each thread, at least, so that none waits long for the others
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -220,12 +220,7 @@ class LaneKernel:
             self._few(ready, coefficients, given, table, steps, found)
             return
         firsts = range(0, count, size)
-        if threads > 1 and len(firsts) > 1:
-            with ThreadPoolExecutor(threads) as pool:
-                list(pool.map(one, firsts))
-        else:
-            for first in firsts:
-                one(first)
+        shared_out(one, firsts, min(threads, len(firsts)))
 
     def given(self, guess: Array, start: Array) -> Array:
         """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray, TurnArray
+from linkwork.foundation.sharing import shared_out
 from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
 from linkwork.kernels.lanes.machine import LANES, run
 from linkwork.kernels.lanes.rate_programs import PlaceProgram
@@ -57,8 +57,7 @@ def at_places(
         )  # fmt: skip
 
     firsts = range(0, count, _PART)
-    with ThreadPoolExecutor(max(threads, 1)) as pool:
-        list(pool.map(one, firsts))
+    shared_out(one, firsts, min(threads, len(firsts)))
     return found
 
 

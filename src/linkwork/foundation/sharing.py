@@ -1,0 +1,45 @@
+"""Work shared out among threads, of which the one that asks is the first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from threading import Lock
+from typing import TypeVar
+
+__all__ = ["shared_out"]
+
+Item = TypeVar("Item")
+
+
+def shared_out(work: Callable[[Item], object], items: Iterable[Item], threads: int) -> None:
+    """Do something to every item; whoever is free takes the next one.
+
+    The thread that asks works too: waiting, it would keep a core for nothing while new threads look
+    for theirs. What is raised first is raised here, and no further item is begun.
+    """
+    left, lock = iter(items), Lock()
+
+    def take_turns() -> None:
+        nonlocal left
+        while True:
+            with lock:
+                try:
+                    item = next(left)
+                except StopIteration:
+                    return
+            try:
+                work(item)
+            except BaseException:
+                with lock:
+                    left = iter(())
+                raise
+
+    if threads <= 1:
+        take_turns()
+        return
+    with ThreadPoolExecutor(threads - 1) as pool:
+        helpers = [pool.submit(take_turns) for _ in range(threads - 1)]
+        take_turns()
+    for helper in helpers:
+        helper.result()
