@@ -11,6 +11,7 @@ from pathlib import Path
 
 from benchmarks.machine import machine
 from benchmarks.scaling.cold_start import cold_start
+from benchmarks.scaling.families import cores, family_sizes
 from benchmarks.scaling.loops import chain_of_dyads, coupled
 from benchmarks.scaling.part import Part
 from benchmarks.scaling.rows import four_bar_rows, jansen_rows
@@ -22,6 +23,8 @@ PARTS = (
     Part(name="jansen", measure=jansen_rows),
     Part(name="dyads", measure=chain_of_dyads),
     Part(name="coupled", measure=coupled),
+    Part(name="families", measure=family_sizes),
+    Part(name="threads", measure=cores),
 )
 
 

@@ -17,8 +17,8 @@ __all__ = ["Growth", "Part", "grown"]
 class Part:
     """A question of growth.
 
-    To ask a further one (size of a family, threads), write a function that returns a
-    :class:`Growth` and add a part to ``PARTS``.
+    To ask a further one, write a function that returns a :class:`Growth` and add a part to
+    ``PARTS``.
 
     Parameters
     ----------
