@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from benchmarks.peers.dyad_linkage import ComplexArray
 from benchmarks.peers.linkwork_sweep import family_of
 from benchmarks.peers.peer import Peer, Prepared
 from benchmarks.peers.work import Work
-from linkwork.batch import FamilyMotion
+
+if TYPE_CHECKING:
+    from linkwork.batch import FamilyMotion
 
 __all__ = ["LinkworkFamily"]
 

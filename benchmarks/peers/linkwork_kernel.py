@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 
@@ -10,9 +11,7 @@ from benchmarks.peers.dyad_linkage import ComplexArray
 from benchmarks.peers.linkwork_sweep import family_of
 from benchmarks.peers.peer import Peer, Prepared
 from benchmarks.peers.work import Work
-from linkwork.batch.lane_rows import Path
 from linkwork.foundation.arrays import Array
-from linkwork.kernels.lanes.gear import Gear
 
 __all__ = ["LinkworkKernel"]
 
@@ -37,9 +36,11 @@ class LinkworkKernel(Peer):
         family = family_of(work)
         motion = family.sweep(certify=self.certify, threads=1, specialised=self.compiled)
         model = family.designs.base
-        path = Path.of(model)
+        # compiled code is loaded by those who use it
+        path = import_module("linkwork.batch.lane_rows").Path.of(model)
         assert path is not None
-        march = path.march(family.designs, self.certify, 1, Gear(specialised=self.compiled))
+        gear = import_module("linkwork.kernels.lanes.gear").Gear
+        march = path.march(family.designs, self.certify, 1, gear(specialised=self.compiled))
         t = model.rows[:, path.lead]
         t = np.ascontiguousarray(t[::-1] if path.falling else t)
 

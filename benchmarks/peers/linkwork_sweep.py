@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,7 +12,9 @@ from benchmarks.peers.dyad_linkage import Array, ComplexArray
 from benchmarks.peers.loop_system import LoopSystem
 from benchmarks.peers.peer import Peer, Prepared
 from benchmarks.peers.work import Work
-from linkwork.batch import Family
+
+if TYPE_CHECKING:
+    from linkwork.batch import Family
 
 __all__ = ["LinkworkSweep", "mechanism_of"]
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -202,3 +204,10 @@ def test_peers_that_place_dyads_say_so():
     placing = [peer.name for peer in PEERS if isinstance(peer, DyadPeer)]
     assert "NumPy dyads" in placing
     assert "scipy fsolve" not in placing
+
+
+def test_solvers_are_listed_without_loading_compiled_code() -> None:
+    # or every fresh process that is measured would pay for it
+    code = "import sys, benchmarks.peers.registry; print('numba' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
