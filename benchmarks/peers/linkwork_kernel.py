@@ -49,7 +49,8 @@ class LinkworkKernel(Peer):
         def run() -> Array:
             found = one.run()
             assert found is not None
-            return found[0]
+            v: Array = found[0]
+            return v
 
         def read(v: Array) -> ComplexArray:
             way = slice(None, None, -1 if path.falling else 1)
