@@ -156,8 +156,8 @@ def test_draw_takes_the_name_of_a_branch(run: Run, folder: Path) -> None:
         (
             ("five-bar.toml", "--configuration", "open", "--at", "left=90"),
             2,
-            "Error: no value for the input right: this mechanism has 2 inputs (left, right),\n"
-            "  give each of them\n",
+            "Error: no value for the input right: give a value to each input of this\n"
+            "  mechanism (left, right)\n",
         ),
         (
             ("cubic.toml", "--configuration", "open"),

@@ -22,6 +22,13 @@ def test_every_public_name_exists_and_has_a_docstring() -> None:
         assert getattr(lw, name).__doc__, name
 
 
+def test_dir_tells_every_public_name_and_no_other_before_one_is_used() -> None:
+    listed = "[name for name in dir(lw) if not name.startswith('__')]"
+    code = f"import linkwork as lw; print({listed} == lw.__all__)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "True"
+
+
 def test_an_unknown_name_is_an_attribute_error() -> None:
     code = "import linkwork; linkwork.solver"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)

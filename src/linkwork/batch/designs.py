@@ -12,6 +12,7 @@ from linkwork.batch.building import Builder, built, family_base
 from linkwork.foundation.arrays import AnyArray, Array, ComplexArray, IndexArray
 from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.plain_numbers import as_told
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.quantities import Quantity, quantity_named, with_numbers
 from linkwork.motion.model import Model
@@ -210,11 +211,7 @@ def _numeric(name: str, values: object) -> Array:
     except ValueError:
         raise InputError(f'"{name}" needs a number or an array of numbers, got rows') from None
     if array.dtype.kind not in "iuf":
-        shown = repr(values)
-        raise InputError(
-            f'"{name}" needs a number or an array of numbers, got '
-            f"{shown if len(shown) <= 40 else f'an array of {array.dtype}'}"
-        )
+        raise InputError(f'"{name}" needs a number or an array of numbers, got {as_told(values)}')
     if array.ndim > 1:
         shape = " × ".join(map(str, array.shape))
         raise InputError(f'"{name}" needs a number or an array of one axis, got {shape} numbers')

@@ -30,6 +30,7 @@ import numpy as np
 from linkwork.foundation.arrays import AnyArray, Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.frozen import read_only
+from linkwork.foundation.plain_numbers import as_told
 
 __all__ = [
     "CHUNK",
@@ -330,14 +331,14 @@ def _some(given: Mapping[str, Any]) -> Mapping[str, Any]:
 
 def _whole(what: str, number: int) -> int:
     if np.asarray(number).dtype.kind not in "iu" or number < 0:
-        raise InputError(f"{what} must be a whole number, 0 or more, got {number!r}")
+        raise InputError(f"{what} must be a whole number, 0 or more, got {as_told(number)}")
     return int(number)
 
 
 def _range(name: str, given: object) -> Range:
     ends = np.asarray(given)
     if ends.shape != (2,) or ends.dtype.kind not in "iuf":
-        raise InputError(f'"{name}" needs a range (low, high), got {given!r}')
+        raise InputError(f'"{name}" needs a range (low, high), got {as_told(given)}')
     low, high = map(float, ends)
     if not (math.isfinite(low) and math.isfinite(high) and low <= high):
         raise InputError(f'"{name}" needs a range from low to high, got {low:g} to {high:g}')
@@ -347,7 +348,7 @@ def _range(name: str, given: object) -> Range:
 def _level(name: str, values: object) -> Array:
     levels = np.atleast_1d(_numbers(name, values))
     if levels.ndim != 1 or not levels.size:
-        raise InputError(f'"{name}" needs at least one value in a row, got {values!r}')
+        raise InputError(f'"{name}" needs at least one value in a row, got {as_told(values)}')
     return levels
 
 

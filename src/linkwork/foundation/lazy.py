@@ -10,7 +10,7 @@ __all__ = ["loader"]
 
 
 def loader(package: str, homes: Mapping[str, tuple[str, ...]]) -> Callable[[str], object]:
-    """The module-level ``__getattr__`` (PEP 562) of a package.
+    """The module-level ``__getattr__`` (PEP 562) of a package, whose ``dir`` is told the names too.
 
     Parameters
     ----------
@@ -20,6 +20,10 @@ def loader(package: str, homes: Mapping[str, tuple[str, ...]]) -> Callable[[str]
         For each module of the package the names that it provides.
     """
     home = {name: module for module, names in homes.items() for name in names}
+
+    def own_names() -> set[str]:
+        module = vars(sys.modules[package])
+        return {name for name in module if name.startswith("__")}
 
     def load(name: str) -> object:
         if name not in home:
@@ -33,4 +37,6 @@ def loader(package: str, homes: Mapping[str, tuple[str, ...]]) -> Callable[[str]
                     setattr(sys.modules[package], own, getattr(loaded, own))
         return value
 
+    # with no __dir__ of its own, a package would list only what somebody has used already
+    vars(sys.modules[package])["__dir__"] = lambda: sorted({*own_names(), *home})
     return load

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
+from typing import cast
 
 from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.tree import Name, names_in
 from linkwork.expression.values import value
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import ExpressionError, choices
-from linkwork.foundation.lanes import as_float, finite
+from linkwork.foundation.lanes import finite, many
 from linkwork.foundation.names import canonical
+from linkwork.foundation.plain_numbers import as_told, plain_number
 
 __all__ = ["Numbers"]
 
@@ -49,12 +51,9 @@ class Numbers:
         """
         if isinstance(number, str):
             return value(parse(number), self.known, self.unit, number)
-        try:
-            plain = as_float(number)
-        except OverflowError:  # a whole number beyond every float
-            plain = math.inf
-        if not finite(plain) or isinstance(number, bool):
-            shown = str(number if isinstance(number, bool) else plain)
+        plain = cast(float, number) if many(number) else plain_number(number)
+        if plain is None or not finite(plain):
+            shown = as_told(number if plain is None else plain)
             raise ExpressionError(f"must be a finite number, got {shown}", shown, 1)
         return plain
 

@@ -15,6 +15,7 @@ from linkwork.equations.model import LoopEquations, Variable
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import canonical
+from linkwork.foundation.plain_numbers import finite_number
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
@@ -71,10 +72,10 @@ class Model:
                     f'"{name}" is not an unknown of {self.description.name} '
                     f"{choices('unknowns', [u.name for u in unknowns], name)}"
                 )
-            if not np.isfinite(value):
-                raise InputError(f"the guess of {name} must be a finite number, got {value}")
             k = number[canonical(name)]
-            start[k] = value * self.units.scale(Kind(unknowns[k].kind))
+            start[k] = finite_number(f"the guess of {name}", value) * self.units.scale(
+                Kind(unknowns[k].kind)
+            )
         return replace(self, equations=replace(self.equations, start=start))
 
     @property
@@ -170,14 +171,12 @@ class Model:
                     f'"{name}" is not an input of {self.description.name} '
                     f"{choices('inputs', names, name)}"
                 )
-            if not np.isfinite(value):
-                raise InputError(f"{name} must be a finite number, got {value}")
-            values[known[canonical(name)]] = value
+            values[known[canonical(name)]] = finite_number(name, value)
         missing = [name for name, value in zip(names, values, strict=True) if np.isnan(value)]
         if missing:
             raise InputError(
-                f"no value for the input {', '.join(missing)}: this mechanism has "
-                f"{len(names)} inputs ({', '.join(names)}), give each of them"
+                f"no value for the input {', '.join(missing)}: "
+                f"give a value to each input of this mechanism ({', '.join(names)})"
             )
         return values
 

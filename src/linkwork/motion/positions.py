@@ -75,7 +75,7 @@ def target_values(model: Model, at: float | Mapping[str, float] | None) -> Array
         return model.everyday_start
     if not isinstance(at, Mapping):
         inputs = model.equations.inputs
-        at = {inputs[0].name: float(at)} if len(inputs) == 1 else {"": float(at)}
+        at = {inputs[0].name if len(inputs) == 1 else "": at}
     return model.input_values(dict(at))
 
 

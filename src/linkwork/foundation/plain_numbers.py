@@ -1,0 +1,60 @@
+"""Numbers from a caller: a float of whatever is a plain number, and a refusal of the rest."""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+from numbers import Real
+from typing import Any, cast
+
+import numpy as np
+
+from linkwork.foundation.errors import InputError
+
+__all__ = ["as_told", "finite_number", "plain_number"]
+
+_LONGEST_TOLD = 40
+
+
+def plain_number(given: object) -> float | None:
+    """The float of a real number or of an array of no axes; ``None`` for anything else.
+
+    Truth values, texts and rows are no numbers; one beyond every float is infinite.
+    """
+    if isinstance(given, np.ndarray) and given.ndim == 0:
+        given = given[()]
+    if isinstance(given, bool) or not isinstance(given, Real | Decimal):
+        return None
+    try:
+        return float(given)
+    except OverflowError:
+        return math.inf if cast(Any, given) > 0 else -math.inf
+
+
+def finite_number(what: str, given: object) -> float:
+    """The float of a number.
+
+    Raises
+    ------
+    InputError
+        If it is none, or not finite; ``what`` names it in the message.
+    """
+    number = plain_number(given)
+    if number is None or not math.isfinite(number):
+        told = as_told(given if number is None else number)
+        raise InputError(f"{what} must be a finite number, got {told}")
+    return number
+
+
+def as_told(given: object) -> str:
+    """What was given, in a message: as Python shows it, NumPy's numbers plain, cut short."""
+    told = repr(_plain(given))
+    return told if len(told) <= _LONGEST_TOLD else f"{told[:_LONGEST_TOLD]}…"
+
+
+def _plain(given: Any) -> object:
+    if isinstance(given, np.generic | np.ndarray):
+        return given.tolist()
+    if isinstance(given, list | tuple):
+        return type(given)([_plain(part) for part in given])
+    return given
