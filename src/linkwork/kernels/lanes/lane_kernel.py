@@ -337,7 +337,7 @@ class LaneKernel:
             guess=np.append(guess, start),
             room=room,
             counts=np.zeros(len(rows), dtype=np.int64),
-            kernel=self,
+            certified=self.certified,
         )
 
     def _alone(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
@@ -11,9 +11,6 @@ from linkwork.foundation.arrays import Array, BoolArray, CountArray
 from linkwork.kernels.lanes.rowwise import DONE, NOT_NEAR, by_rows
 from linkwork.kernels.lanes.tasks import Found, Table
 from linkwork.kernels.lanes.trial import Topology
-
-if TYPE_CHECKING:
-    from linkwork.kernels.lanes.lane_kernel import LaneKernel
 
 __all__ = ["Alone", "Ready", "RowsOfOne"]
 
@@ -38,6 +35,16 @@ class Ready:
         space[self.topology.coefficients] = self.design[:, k, None]
 
 
+class Scout(Protocol):
+    """What finds starts from guesses that are not near; see :class:`LaneKernel`."""
+
+    def given(self, guess: Array, start: Array) -> Array:
+        """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""
+
+    def begun(self, ready: Ready, space: Array, given: Array) -> tuple[Array, BoolArray]:
+        """Nodes (S, D) where designs start, and whether they do, (D,)."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Alone:
     """What computes the rows of one design side by side, with room for one of them at a time.
@@ -45,7 +52,7 @@ class Alone:
     ``scale`` (D, n): weights of the unknowns.
     """
 
-    scout: LaneKernel
+    scout: Scout
     ready: Ready
     ahead: Ready
     space: Array
@@ -94,14 +101,16 @@ class RowsOfOne:
     guess: Array
     room: tuple[BoolArray, Array, Array]
     counts: CountArray
-    kernel: LaneKernel
+    certified: bool
 
     def run(self) -> tuple[Array, Array] | None:
         """Unknowns (n, R, 1) and radii of their proofs (R, 1); ``None`` if this is not the way.
 
         How many corrections each row took is left in ``counts`` (R,).
         """
-        rows, n = len(self.loaded.alone.table.rows), self.kernel.table.unknowns
-        v, radius = np.empty((n, rows, 1)), np.empty((rows if self.kernel.certified else 0, 1))
+        table = self.loaded.alone.table
+        rows = len(table.rows)
+        v = np.empty((table.unknowns, rows, 1))
+        radius = np.empty((rows if self.certified else 0, 1))
         done = self.loaded.run(self.guess, Found(0, v, radius, *self.room), self.counts)
         return (v, radius) if done else None
