@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+
 import numpy as np
 import pytest
 
@@ -41,3 +43,37 @@ def test_a_table_shows_its_size_and_first_columns() -> None:
     assert repr(table).endswith(
         " columns: θ12 [deg], θ13 [deg], θ14 [deg], θ15 [deg], s16 [mm], A0.x [mm], …>"
     )
+
+
+def _numpy_numbers(value: object, path: str) -> Iterator[str]:
+    """Where a value holds a number of NumPy outside of an array."""
+    if isinstance(value, np.generic):
+        yield path
+    elif isinstance(value, Mapping):
+        for name, part in value.items():
+            yield from _numpy_numbers(part, f"{path}[{name!r}]")
+    elif isinstance(value, tuple | list):
+        for k, part in enumerate(value):
+            yield from _numpy_numbers(part, f"{path}[{k}]")
+    elif type(value).__module__.startswith("linkwork.results"):
+        own = [name for name in dir(type(value)) if not name.startswith("_")]
+        for name in own:
+            part = getattr(value, name, None)
+            if not callable(part):
+                yield from _numpy_numbers(part, f"{path}.{name}")
+
+
+@pytest.mark.parametrize("name", ["slider-crank-engine", "four-bar", "rapier-drive"])
+def test_numbers_of_results_are_those_of_python(name: str) -> None:
+    """So that ``position.velocity`` is shown as ``{'s': 0.5}``, not with NumPy's types."""
+    mechanism = lw.example(name)
+    results = {
+        "position": mechanism.solve(),
+        "motion": mechanism.sweep(step=30),
+        "around": mechanism.sweep(step=30, through=True),
+        "configurations": mechanism.configurations(),
+        "circuits": mechanism.circuits(),
+        "check": mechanism.check(),
+        "iterates": mechanism.iterates(),
+    }
+    assert [where for of, found in results.items() for where in _numpy_numbers(found, of)] == []

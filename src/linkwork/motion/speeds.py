@@ -46,7 +46,7 @@ def leading_speeds(
     """
     _, rate = lock_step(rows)
     return {
-        k: _speed(description, k, inputs[k].kind) / rate[k] if rate[k] else math.nan
+        k: _speed(description, k, inputs[k].kind) / float(rate[k]) if rate[k] else math.nan
         for k, which in enumerate(description.inputs)
         if which.speed is not None
     }
