@@ -6,15 +6,18 @@ import ctypes
 import os
 import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.kernels.lanes import gear
+from linkwork.foundation.aligned import aligned
+from linkwork.foundation.arrays import Array
+from linkwork.kernels.lanes import gear, lane_kernel
 from linkwork.kernels.lanes.gear import Gear
-from linkwork.kernels.lanes.lane_kernel import LaneKernel
+from linkwork.kernels.lanes.lane_kernel import LaneKernel, Steps
 from linkwork.kernels.lanes.machine import LANES, run
 from linkwork.kernels.lanes.printing import trial_source
 from linkwork.kernels.lanes.program import SOURCES, Op
@@ -124,6 +127,30 @@ def test_a_changed_file_is_written_anew(tmp_path: Path) -> None:
     written(source, "trial")
     assert file.read_text() == source
     assert not list((tmp_path / "kernels").glob("*.part"))
+
+
+def test_threads_that_want_the_same_module_wait_until_it_is_whole() -> None:
+    source = "import time\n\ntime.sleep(0.2)\n\n\ndef trial():\n    return 7\n"
+    with ThreadPoolExecutor(4) as pool:
+        functions = list(pool.map(lambda _: written(source, "trial"), range(4)))
+    assert [function() for function in functions] == [7] * 4
+    assert len(set(functions)) == 1
+
+
+def test_threads_share_a_kernel_and_its_workspaces(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another thread asks for a workspace of other steps while one is being made."""
+    shared, mine, other = kernel(), Steps(tolerance=1e-3), Steps(tolerance=1e-4)
+    tolerance = shared.registers.named["tolerance"]
+    others = []
+
+    def meanwhile(*size: int) -> Array:
+        monkeypatch.undo()
+        others.append(shared._space(other))
+        return aligned(*size)
+
+    monkeypatch.setattr(lane_kernel, "aligned", meanwhile)
+    assert shared._space(mine)[tolerance, 0] == 1e-3
+    assert others[0][tolerance, 0] == 1e-4
 
 
 def test_without_a_folder_to_write_to_the_machine_serves(

@@ -145,13 +145,15 @@ class LaneKernel:
         self._sections = programs
         #: The same without proofs, which goes ahead where rows are side by side.
         self.scout = LaneKernel(table, parts, zeros, certified=False) if certified else None
-        self._blank: dict[Steps, Array] = {}  # the workspace of the steps asked for last
+        #: The workspace of the steps asked for last; replaced whole, for threads share a kernel.
+        self._blank: tuple[Steps, Array] | None = None
         self._trial: Any = None  # written out; kept, for its address is used
 
     @property
     def trial(self) -> int:
         """Address of the trial written out, 0 where the machine does it."""
-        return 0 if self._trial is None else int(self._trial.address)
+        written_out = self._trial  # read once: another thread may shift
+        return 0 if written_out is None else int(written_out.address)
 
     def shift(self, gear: Gear) -> None:
         """Write the trial out, if that is asked for or saves time.
@@ -251,15 +253,15 @@ class LaneKernel:
 
     def _space(self, steps: Steps) -> Array:
         """A workspace with constants and options in place."""
-        if steps not in self._blank:
-            self._blank.clear()
+        blank = self._blank
+        if blank is None or blank[0] != steps:
             space = self.registers.filled(self.height, LANES)
             for name in ("tolerance", "most_turn", "most_correction", "most_drift"):
                 if name in self.registers.named:
                     space[self.registers.named[name]] = getattr(steps, name)
-            self._blank[steps] = space
+            blank = self._blank = steps, space
         own = aligned(self.height, LANES)
-        own[:] = self._blank[steps]
+        own[:] = blank[1]
         return own
 
     def begun(self, ready: Ready, space: Array, given: Array) -> tuple[Array, BoolArray]:

@@ -8,6 +8,7 @@ import os
 import sys
 import tempfile
 from pathlib import Path
+from threading import RLock
 from typing import Any
 
 from platformdirs import user_cache_path
@@ -20,6 +21,7 @@ __all__ = ["is_written", "written"]
 FOLDER = "LINKWORK_CACHE"
 #: Modules of this package that written ones are compiled with.
 _WITH = ("compiling", "device_compiling", "device_march", "sine", "stepping", "tasks", "trial")
+_ONE_AT_A_TIME = RLock()  # a module is among the known ones before it is whole
 
 
 def written(source: str, function: str) -> Any:
@@ -31,12 +33,13 @@ def written(source: str, function: str) -> Any:
         If nothing can be written to the folder of the cache.
     """
     name = _name(source)
-    known = sys.modules.get(name)
-    if known is None:
-        path = _path(name)
-        if not path.exists() or path.read_text(encoding="utf-8") != source:
-            _write(path, source)
-        known = _loaded(name, path)
+    with _ONE_AT_A_TIME:
+        known = sys.modules.get(name)
+        if known is None:
+            path = _path(name)
+            if not path.exists() or path.read_text(encoding="utf-8") != source:
+                _write(path, source)
+            known = _loaded(name, path)
     return getattr(known, function)
 
 
