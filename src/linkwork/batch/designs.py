@@ -159,6 +159,11 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
     to all designs: looking for the configuration of that name in each would take long.
     """
     model = mechanism if isinstance(mechanism, Model) else mechanism.model
+    if not isinstance(dimensions, Mapping):
+        raise InputError(
+            "a family needs a mapping of names and their values, as in "
+            f'{{"a2": [40, 50]}}, got {as_told(dimensions)}'
+        )
     quantities = tuple(quantity_named(model.description, name) for name in dimensions)
     _check_different(dict(zip(dimensions, quantities, strict=True)))
     columns = _columns(dimensions)
@@ -206,6 +211,11 @@ def _columns(dimensions: Mapping[str, object]) -> dict[str, Array]:
 
 
 def _numeric(name: str, values: object) -> Array:
+    if np.ma.is_masked(values):
+        raise InputError(
+            f'"{name}" holds masked values: fill them (with NaN those designs are not found), '
+            "or leave these designs out"
+        )
     try:
         array = np.asarray(values)
     except ValueError:

@@ -13,6 +13,7 @@ from linkwork.batch.lane_rows import design_rows
 from linkwork.batch.reductions import REDUCTIONS
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.plain_numbers import whole_number
 from linkwork.kernels.lanes.device_compiling import graphics_card
 from linkwork.kernels.lanes.gear import Gear
 from linkwork.motion.model import Model
@@ -89,7 +90,7 @@ class Family:
             If ``gpu`` is not installed.
         """
         gear = self._gear(specialised, device)
-        return self._swept(certify, threads or _cores(), gear)
+        return self._swept(certify, _workers(threads), gear)
 
     def _gear(self, specialised: bool | None, device: str) -> Gear:
         positions = len(self) * len(self.designs.base.rows)
@@ -121,11 +122,10 @@ class Family:
         device: str = "cpu",
     ) -> Iterator[FamilyMotion]:
         """The motions of so many designs at a time, in order; memory stays bounded."""
-        if designs < 1:
-            raise InputError(f"a part needs at least one design, got {designs}")
+        designs, workers = whole_number("designs", designs, least=1), _workers(threads)
         parts = (self.take(slice(k, k + designs)) for k in range(0, len(self), designs))
         gear = self._gear(specialised, device)
-        return (part._swept(certify, threads or _cores(), gear) for part in parts)
+        return (part._swept(certify, workers, gear) for part in parts)
 
     def _part(self) -> int:
         """How many designs are reduced at a time, rates included."""
@@ -195,7 +195,10 @@ def family_of(model: Model, dimensions: Mapping[str, object]) -> Family:
     return Family(designs_of(model, dimensions))
 
 
-def _cores() -> int:
+def _workers(threads: int | None) -> int:
+    """How many threads are asked for; as many as there are cores by default."""
+    if threads is not None:
+        return whole_number("threads", threads, least=1)
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

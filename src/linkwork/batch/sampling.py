@@ -30,7 +30,7 @@ import numpy as np
 from linkwork.foundation.arrays import AnyArray, Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.frozen import read_only
-from linkwork.foundation.plain_numbers import as_told
+from linkwork.foundation.plain_numbers import as_told, whole_number
 
 __all__ = [
     "CHUNK",
@@ -233,7 +233,7 @@ def random(count: int, of: Mapping[str, Range | Distribution], seed: int) -> Pla
         name: given if callable(given) else Uniform(*_range(name, given))
         for name, given in _some(of).items()
     }
-    return _Random(_whole("count", count), drawn, _whole("seed", seed))
+    return _Random(whole_number("count", count), drawn, whole_number("seed", seed))
 
 
 def latin_hypercube(count: int, ranges: Mapping[str, Range], seed: int) -> Plan:
@@ -254,7 +254,7 @@ def latin_hypercube(count: int, ranges: Mapping[str, Range], seed: int) -> Plan:
     a chunk of a plan of 10^9 designs takes no longer than one of 10^6.
     """
     found = {name: _range(name, given) for name, given in _some(ranges).items()}
-    return _LatinHypercube(_whole("count", count), found, _whole("seed", seed))
+    return _LatinHypercube(whole_number("count", count), found, whole_number("seed", seed))
 
 
 def from_table(table: object, columns: Sequence[str] | None = None) -> Plan:
@@ -324,15 +324,11 @@ def _mixed(x: AnyArray) -> AnyArray:
 
 
 def _some(given: Mapping[str, Any]) -> Mapping[str, Any]:
+    if not isinstance(given, Mapping):
+        raise InputError(f"a plan needs a mapping of names and values, got {as_told(given)}")
     if not given:
         raise InputError("a plan needs something that varies: name a dimension and its values")
     return given
-
-
-def _whole(what: str, number: int) -> int:
-    if np.asarray(number).dtype.kind not in "iu" or number < 0:
-        raise InputError(f"{what} must be a whole number, 0 or more, got {as_told(number)}")
-    return int(number)
 
 
 def _range(name: str, given: object) -> Range:

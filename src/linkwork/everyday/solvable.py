@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self
 
@@ -158,7 +158,7 @@ class SolvableMechanism:
         configuration: str | None = None,
         through: bool = False,
         change_points: str = "stop",
-        limits_of: Sequence[str] = (),
+        limits_of: str | Iterable[str] = (),
         certify: bool = True,
         options: NewtonOptions | None = None,
         progress: Callable[[float], None] | None = None,
@@ -176,7 +176,7 @@ class SolvableMechanism:
             Go on through dead points, the input turning back, around the whole circuit.
         change_points : str
             ``stop`` at a change point, go ``straight`` on, or ``turn`` into the other branch.
-        limits_of : sequence of str
+        limits_of : str, or several
             Quantities whose largest and smallest values are located.
         certify : bool
             Prove every position and the motion between them; without, a sweep is faster.

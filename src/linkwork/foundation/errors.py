@@ -141,12 +141,12 @@ def key_text(key: Sequence[str | int]) -> str:
     return ".".join(parts)
 
 
-def choices(kind: str, names: Iterable[str], wanted: str = "") -> str:
+def choices(kind: str, names: Iterable[str], wanted: object = "") -> str:
     """What exists, for the end of a message: ``(joints: A, C, D)``, nearest names first."""
     known = list(names)
     if not known:
         return f"(there are no {kind})"
-    near = get_close_matches(wanted, known, n=3) if wanted else []
+    near = get_close_matches(wanted, known, n=3) if wanted and isinstance(wanted, str) else []
     ordered = near + [name for name in known if name not in near]
     shown = ", ".join(ordered[:8]) + (f", … {len(ordered) - 8} more" if len(ordered) > 8 else "")
     return f"({kind}: {shown})"

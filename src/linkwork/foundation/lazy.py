@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from types import ModuleType
 
 __all__ = ["loader"]
 
@@ -20,10 +21,7 @@ def loader(package: str, homes: Mapping[str, tuple[str, ...]]) -> Callable[[str]
         For each module of the package the names that it provides.
     """
     home = {name: module for module, names in homes.items() for name in names}
-
-    def own_names() -> set[str]:
-        module = vars(sys.modules[package])
-        return {name for name in module if name.startswith("__")}
+    there = vars(sys.modules[package])
 
     def load(name: str) -> object:
         if name not in home:
@@ -33,10 +31,10 @@ def loader(package: str, homes: Mapping[str, tuple[str, ...]]) -> Callable[[str]
         for module, names in homes.items():
             loaded = sys.modules.get(f"{package}.{module}")
             for own in names:
-                if hasattr(loaded, own):
-                    setattr(sys.modules[package], own, getattr(loaded, own))
+                if hasattr(loaded, own) and isinstance(there.get(own, loaded), ModuleType):
+                    there[own] = getattr(loaded, own)
         return value
 
     # with no __dir__ of its own, a package would list only what somebody has used already
-    vars(sys.modules[package])["__dir__"] = lambda: sorted({*own_names(), *home})
+    there["__dir__"] = lambda: sorted({*home, *(n for n in there if n.startswith("__"))})
     return load

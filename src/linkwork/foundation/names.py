@@ -6,7 +6,10 @@ import unicodedata
 from collections.abc import Iterable
 from functools import lru_cache
 
-__all__ = ["GREEK", "canonical", "is_name", "latex_name", "pretty", "spelled"]
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.plain_numbers import as_told
+
+__all__ = ["GREEK", "as_name", "canonical", "is_name", "latex_name", "pretty", "spelled"]
 
 GREEK = {
     "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta",
@@ -19,9 +22,32 @@ GREEK = {
 _LETTER = {spelled: letter for letter, spelled in GREEK.items() if letter != "ς"}
 
 
-@lru_cache(maxsize=4096)  # asked for again and again while a dimension is dragged
+def as_name(name: object) -> str:
+    """The name itself.
+
+    Raises
+    ------
+    InputError
+        For what is no text.
+    """
+    if not isinstance(name, str):
+        raise InputError(f"a name must be a text, got {as_told(name)}")
+    return name
+
+
 def canonical(name: str) -> str:
-    """The one form under which a name is looked up: NFKC, Greek letters spelled out."""
+    """The one form under which a name is looked up: NFKC, Greek letters spelled out.
+
+    Raises
+    ------
+    InputError
+        For what is no text.
+    """
+    return _canonical(as_name(name))
+
+
+@lru_cache(maxsize=4096)  # asked for again and again while a dimension is dragged
+def _canonical(name: str) -> str:
     folded = unicodedata.normalize("NFKC", name)
     return "".join(GREEK.get(letter, letter) for letter in folded)
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from decimal import Decimal
-from numbers import Real
+from numbers import Integral, Real
 from typing import Any, cast
 
 import numpy as np
 
 from linkwork.foundation.errors import InputError
 
-__all__ = ["as_told", "finite_number", "plain_number"]
+__all__ = ["as_told", "finite_number", "plain_number", "whole_number"]
 
 _LONGEST_TOLD = 40
 
@@ -44,6 +44,20 @@ def finite_number(what: str, given: object) -> float:
         told = as_told(given if number is None else number)
         raise InputError(f"{what} must be a finite number, got {told}")
     return number
+
+
+def whole_number(what: str, given: object, *, least: int = 0) -> int:
+    """An integer that was given.
+
+    Raises
+    ------
+    InputError
+        If it is none, or too small; ``what`` names it in the message.
+    """
+    if isinstance(given, bool) or not isinstance(given, Integral) or given < least:
+        told = as_told(given)
+        raise InputError(f"{what} must be a whole number, {least} or more, got {told}")
+    return int(given)
 
 
 def as_told(given: object) -> str:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import UnknownNameError, choices
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import canonical, spelled
+from linkwork.foundation.plain_numbers import as_told
 from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
@@ -23,20 +24,26 @@ _UNIT = np.finfo(float).eps
 _AT_ONCE = 1e-12  # of the leader: a quantity and the input that turn back so near turn back at once
 
 
-def check_quantities(model: Model, names: Sequence[str]) -> None:
-    """Whether all names can be read from a position.
+def check_quantities(model: Model, names: str | Iterable[str]) -> tuple[str, ...]:
+    """One name or several, all of which can be read from a position.
 
     Raises
     ------
     UnknownNameError
         With the names that exist.
+    InputError
+        For what is no name.
     """
+    if not isinstance(names, Iterable):
+        raise InputError(f"quantities must be a name or several, got {as_told(names)}")
+    names = (names,) if isinstance(names, str) else tuple(names)
     if names:
         blank = np.full((1, model.compiled.solver.variables), np.nan)
         inputs = np.full((1, len(model.equations.inputs)), np.nan)
         named = named_series(model, blank, blank, blank, inputs, np.zeros(1, dtype=bool))
         for name in names:
             _series(named, name)
+    return names
 
 
 def _series(named: Named, name: str) -> Series:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -49,7 +49,7 @@ def sweep(
     certify: bool = True,
     through: bool = False,
     change_points: str | ChangePointPolicy = ChangePointPolicy.STOP,
-    limits_of: Sequence[str] = (),
+    limits_of: str | Iterable[str] = (),
     options: NewtonOptions | None = None,
     progress: Callable[[float], None] | None = None,
     explained: bool = True,
@@ -72,7 +72,7 @@ def sweep(
     change_points : str
         ``stop`` at a change point, go ``straight`` on (keep the tangent) or ``turn`` (take the
         branch that crosses).
-    limits_of : sequence of str
+    limits_of : str, or several
         Quantities whose largest and smallest values are located, a row for each.
     progress : callable, optional
         Called with the finished fraction, 0 to 1.
@@ -87,14 +87,14 @@ def sweep(
     """
     policy = ChangePointPolicy.of(change_points)
     _ = model.rows  # without an input there is nothing to sweep: an error
-    check_quantities(model, limits_of)
+    quantities = check_quantities(model, limits_of)
     opt = options or NewtonOptions()
     work = _begun(model, certify, opt, policy, progress, explained=explained)
     if isinstance(work, Start):
         return _without_start(model, work)
     if through:
         work.go_around(work.tables[0].asked)
-    for name in limits_of:
+    for name in quantities:
         work.locate_extremes(name)
     return work.motion()
 

@@ -10,6 +10,7 @@ import numpy as np
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import UnknownNameError
+from linkwork.foundation.names import as_name
 
 __all__ = ["Kind", "Quantity", "Rate", "Units"]
 
@@ -65,7 +66,7 @@ class Rate(Enum):
     @classmethod
     def split(cls, name: str) -> tuple[str, Rate | None]:
         """What is named, and which of its rates; ``None`` for a quantity itself."""
-        own, _, last = name.rpartition(".")
+        own, _, last = as_name(name).rpartition(".")
         rate = next((rate for rate in cls if own and rate.value == last), None)
         return (name, None) if rate is None else (own, rate)
 

@@ -13,6 +13,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.names import canonical
 from linkwork.foundation.short_number import short_number
 from linkwork.foundation.status import Status
 from linkwork.motion import failure as why
@@ -265,7 +266,7 @@ def _end_of(group: _Group) -> CircuitEnd:
 
 def is_branch_name(name: str) -> bool:
     """Whether a name is one of a circuit or of a branch."""
-    return re.fullmatch(r"circuit \d+( branch \d+)?", name) is not None
+    return re.fullmatch(r"circuit \d+( branch \d+)?", canonical(name)) is not None
 
 
 def branch_start(model: Model, name: str) -> Model:
