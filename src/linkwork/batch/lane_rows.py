@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -45,9 +47,8 @@ class DesignRows:
 
     ``v`` (n, R, D): unknowns, NaN where there is no position. ``status``, ``certification``
     (R, D): codes. ``radius`` (R, D): of the proof, weighted, NaN without one; (0, D) if none is
-    asked for. ``turns`` (R, D): how many whole turns further the position of a row was found.
-    ``limits`` (2, D): where the branch ends below and above, and ``limit_kinds`` (2, D) what ends
-    it, see :func:`linkwork.batch.own_rows.ends_as_limits`; NaN without a position.
+    asked for. ``limits`` (2, D): where the branch ends below and above, and ``limit_kinds`` (2, D)
+    what ends it, see :func:`linkwork.batch.own_rows.ends_as_limits`; NaN without a position.
     ``alone`` (D,): designs that were computed one at a time; ``own``: what they say themselves.
     """
 
@@ -55,7 +56,6 @@ class DesignRows:
     status: StatusArray
     certification: StatusArray
     radius: Array
-    turns: TurnArray
     limits: Array
     limit_kinds: StatusArray
     alone: BoolArray
@@ -65,23 +65,35 @@ class DesignRows:
     def blank(
         cls, unknowns: int, rows: int, designs: int, certify: bool, falling: bool
     ) -> DesignRows:
-        """No positions yet; unknowns are left as they come.
+        """No positions yet; rows are left as they come until they are filled or cleared.
 
         Where inputs fall, unknowns and radii stand in memory by rising inputs: so does the march
         write them.
         """
         way = slice(None, None, -1 if falling else 1)
-        none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
         return cls(
             v=aligned(unknowns, rows, designs)[:, way],
-            status=np.full((rows, designs), Status.NO_START.code, dtype=np.int8),
-            certification=np.full((rows, designs), none.code, dtype=np.int8),
+            status=np.empty((rows, designs), dtype=np.int8),
+            certification=np.empty((rows, designs), dtype=np.int8),
             radius=aligned(rows if certify else 0, designs)[way],
-            turns=np.zeros((rows, designs), dtype=np.int32),
             limits=np.full((2, designs), np.nan),
             limit_kinds=np.zeros((2, designs), dtype=np.int8),
             alone=np.zeros(designs, dtype=bool),
         )
+
+    @cached_property
+    def turns(self) -> TurnArray:
+        """How many whole turns further the position of a row was found, (R, D)."""
+        return np.zeros(self.status.shape, dtype=np.int32)
+
+    def clear(self, where: BoolArray, certify: bool) -> None:
+        """No position in some rows (R, D); no status in any of them."""
+        self.v[:, where] = np.nan
+        self.status[:] = Status.NO_START.code
+        none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
+        self.certification[:] = none.code
+        if certify:
+            self.radius[where] = np.nan
 
 
 def design_rows(
@@ -104,8 +116,7 @@ def design_rows(
         falling=march is not None and march.falling,
     )
     if march is None:
-        found.v[:] = np.nan
-        found.radius[:] = np.nan
+        found.clear(np.ones(found.status.shape, dtype=bool), certify)
     else:
         left &= ~march.fill(designs, found, certify, threads, gear or Gear())
     for k in np.flatnonzero(left):
@@ -156,7 +167,7 @@ class Path:
         march = self.march(designs, certify, threads, gear)
         t = self.model.rows[:, self.lead]
         way = slice(None, None, -1 if self.falling else 1)
-        march.turns = found.turns[way]
+        march.turns = lambda: found.turns[way]
         whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
         self._note(found, reached[way], whole, certify)
         march.note_limits(found, whole)
@@ -172,18 +183,14 @@ class Path:
 
     def _note(self, found: DesignRows, reached: BoolArray, whole: BoolArray, certify: bool) -> None:
         """Statuses of rows that were reached, and of the others of designs that are done."""
+        proof = Certification.CERTIFIED if certify else Certification.NOT_ASKED
         if reached.all():
-            found.status[:] = Status.CONVERGED.code
-            if certify:
-                found.certification[:] = Certification.CERTIFIED.code
+            found.status[:], found.certification[:] = Status.CONVERGED.code, proof.code
             return
-        found.v[:, ~reached] = np.nan
+        found.clear(~reached, certify)
         found.status[:, whole] = Status.OUT_OF_REACH.code
         np.copyto(found.status, Status.CONVERGED.code, where=reached)
-        if certify:
-            found.radius[~reached] = np.nan
-            found.certification[~reached] = Certification.NO_POSITION.code
-            np.copyto(found.certification, Certification.CERTIFIED.code, where=reached)
+        np.copyto(found.certification, proof.code, where=reached)
 
 
 class March:
@@ -210,7 +217,8 @@ class March:
         self.start = designs.start[:, n + path.lead].copy()
         self._enter(designs, np.flatnonzero(fine & ~served))
         self.free = turns_freely(model)
-        self.turns: TurnArray | None = None  # of each row, where a design goes around for it
+        #: Those of each row, where a design goes around for it.
+        self.turns: Callable[[], TurnArray] | None = None
         self.limits = np.repeat([[-np.inf], [np.inf]], len(designs), axis=1)
 
     def _enter(self, designs: Designs, beside: IndexArray) -> None:
@@ -346,8 +354,8 @@ class March:
         if self.certify:
             radius[row, mine[column]] = radii[row, column]
         reached[row, mine[column]] = True
-        if self.turns is not None:
-            self.turns[row, mine[column]] = turns
+        if self.turns is not None and turns:
+            self.turns()[row, mine[column]] = turns
         known = limits[:, those]
         self._limit(known, further, mine)
         limits[:, those] = known

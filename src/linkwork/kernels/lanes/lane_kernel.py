@@ -34,7 +34,7 @@ __all__ = ["LaneKernel", "LaneRows", "RowsOfOne", "Steps"]
 _FEW = 16  # designs in a part of which each goes with its rows side by side
 _PART = 4096  # designs that one thread works on at a time, at most
 _ROUGHLY = 1e-6  # weighted: a correction behind which a proof corrects once more
-_SHARES = 8  # parts for each thread, at least, so that none waits long for the others
+_LEAST = 2  # times LANES: designs in a part where threads share them, at least
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -212,17 +212,14 @@ class LaneKernel:
         count, given = len(start), self.given(guess, start)
         ready, table = self._ready(coefficients, count), self._table(rows, steps)
 
-        size = _part_size(count, threads)
-
-        def one(first: int) -> None:
-            part = slice(first, first + size)
+        def one(part: slice) -> None:
             self._part(ready.part(part), given[:, part], table, steps, found, part)
 
         if count <= _FEW and len(rows) >= LANES:
             self._few(ready, coefficients, given, table, steps, found)
             return
-        firsts = range(0, count, size)
-        shared_out(one, firsts, min(threads, len(firsts)))
+        parts = _parts(count, threads)
+        shared_out(one, parts, min(threads, len(parts)))
 
     def given(self, guess: Array, start: Array) -> Array:
         """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""
@@ -378,12 +375,19 @@ class LaneKernel:
         )
 
 
-def _part_size(count: int, threads: int) -> int:
-    """Whole lanes, so many that every thread has several parts."""
-    if threads == 1:
-        return _PART
-    lanes = -(-count // (LANES * _SHARES * threads))
-    return min(_PART, max(1, lanes) * LANES)
+def _parts(count: int, threads: int) -> list[slice]:
+    """Whole lanes of designs. Several threads take smaller and smaller parts of what is left, so
+    that in the end none waits long for the others.
+    """
+    parts, first = list[slice](), 0
+    while first < count:
+        size = _PART
+        if threads > 1:
+            lanes = -(-(count - first) // (LANES * 2 * threads))
+            size = min(_PART, max(_LEAST, lanes) * LANES)
+        parts.append(slice(first, min(first + size, count)))
+        first += size
+    return parts
 
 
 def _marched(
