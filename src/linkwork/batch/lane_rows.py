@@ -253,6 +253,8 @@ class March:
         """
         rows = self._marched(t, v, radius, slice(None))
         reached = rows.reached
+        if reached.all():  # as a rule, and quicker to tell than of each design
+            return np.ones(len(rows.found), dtype=bool), reached
         done: BoolArray = np.logical_and.reduce(reached, axis=0)
         stopped = np.flatnonzero(rows.found & ~done)
         if not len(stopped) or len(self.path.rate) > 1:
