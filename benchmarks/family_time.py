@@ -75,10 +75,15 @@ def _sweep(family: Family, certify: bool, compiled: bool, threads: int = 1) -> C
 
 
 def _ratios(
-    one: Callable[[], object], other: Callable[[], object], repeats: int, clock: Clock
+    one: Callable[[], object],
+    other: Callable[[], object],
+    repeats: int,
+    clock: Clock,
+    *,
+    steady: bool = False,
 ) -> list[float]:
     """One's time over the other's, each after the other."""
-    pair = interleaved([one, other], repeats, clock)
+    pair = interleaved([one, other], repeats, clock, steady=steady)
     return [a / b for a, b in zip(*pair, strict=True)]
 
 
@@ -88,11 +93,11 @@ def _ensemble(work: Work) -> list[Callable[[], object]]:
 
 
 def _two_cores(family: Family, repeats: int) -> bool:
-    """Wall time of two threads against one."""
+    """Wall time of two threads against one, in work that goes on with as many."""
     held = True
     for certify, compiled in product((False, True), repeat=2):
         one, two = (_sweep(family, certify, compiled, threads) for threads in (1, 2))
         what = ("compiled" if compiled else "general") + (", certified" if certify else "")
-        ratios = _ratios(two, one, repeats, time.perf_counter)
+        ratios = _ratios(two, one, repeats, time.perf_counter, steady=True)
         held = bar(f"four-bars, two threads / one, {what}", ratios, _SECOND_CORE) and held
     return held

@@ -20,14 +20,24 @@ def seconds(run: Callable[[], object], clock: Clock = time.perf_counter) -> floa
 
 
 def interleaved(
-    runs: Sequence[Callable[[], object]], repeats: int, clock: Clock = time.perf_counter
+    runs: Sequence[Callable[[], object]],
+    repeats: int,
+    clock: Clock = time.perf_counter,
+    *,
+    steady: bool = False,
 ) -> list[list[float]]:
-    """Times of several calls measured in turn, A B A B …, after one warm-up of each."""
+    """Times of several calls measured in turn, A B A B …, after one warm-up of each.
+
+    ``steady``: each measured call follows one of its own kind, as in work that goes on for long; a
+    core that has slept through the call before needs a while to wake up.
+    """
     for run in runs:
         run()
     times: list[list[float]] = [[] for _ in runs]
     for _ in range(repeats):
         for k, run in enumerate(runs):
+            if steady:
+                run()
             times[k].append(seconds(run, clock))
     return times
 

@@ -98,6 +98,13 @@ def test_calls_are_timed_in_turn():
     assert "".join(order) == "AB" + "ABABAB"
 
 
+def test_steady_work_is_measured_behind_work_of_its_own_kind() -> None:
+    order: list[str] = []
+    times = interleaved([lambda: order.append("A"), lambda: order.append("B")], 2, steady=True)
+    assert "".join(order) == "AB" + "AABB" * 2
+    assert [len(found) for found in times] == [2, 2]
+
+
 def test_tables_have_at_most_eighty_columns():
     wide = Answering("n" * 22, right)
     entries = entries_of(wide, Absent(), Raising(), work=four_bar_family(members=3, rows=5))
