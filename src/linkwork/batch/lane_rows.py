@@ -2,98 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import dataclass
 
 import numpy as np
 
 from linkwork.batch.coefficients import loop_coefficients, zero_coefficients
 from linkwork.batch.designs import Designs
 from linkwork.batch.entering import led_to_rows
+from linkwork.batch.going_alone import sweep_alone
 from linkwork.batch.limits import LIMIT_KINDS
-from linkwork.batch.own_rows import OwnRows, ends_as_limits
-from linkwork.foundation.aligned import aligned
+from linkwork.batch.rows import DesignRows
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array, BoolArray, IndexArray, StatusArray, TurnArray
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.certification import Certification
-from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.status import Status
 from linkwork.kernels.lanes.folding import dead_points
 from linkwork.kernels.lanes.gear import Gear
 from linkwork.kernels.lanes.lane_kernel import LaneRows, RowsOfOne, Steps
-from linkwork.mechanism.parts import Input
-from linkwork.motion import sweep
 from linkwork.motion.by_kernels import are_served, kernel_of
 from linkwork.motion.drive import Drive
-from linkwork.motion.limits import BranchEnd
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
-from linkwork.motion.rows import SolvedRows
-from linkwork.motion.sweeping import swept_rows
 from linkwork.motion.tracking import turns_freely
 from linkwork.results.motion import LimitKind
 
-__all__ = ["DesignRows", "March", "Path", "design_rows", "message_alone"]
+__all__ = ["March", "Path", "design_rows"]
 
 _ON_PATH = 1e-12
 _FINEST = 1e-8  # step, of a radian or a length, where a row lies right in front of a dead point
 _UNIT = float(np.finfo(float).eps) / 2.0
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class DesignRows:
-    """D designs over R rows of inputs, internal units.
-
-    ``v`` (n, R, D): unknowns, NaN where there is no position. ``status``, ``certification``
-    (R, D): codes. ``radius`` (R, D): of the proof, weighted, NaN without one; (0, D) if none is
-    asked for. ``limits`` (2, D): where the branch ends below and above, and ``limit_kinds`` (2, D)
-    what ends it, see :func:`linkwork.batch.own_rows.ends_as_limits`; NaN without a position.
-    ``alone`` (D,): designs that were computed one at a time; ``own``: what they say themselves.
-    """
-
-    v: Array
-    status: StatusArray
-    certification: StatusArray
-    radius: Array
-    limits: Array
-    limit_kinds: StatusArray
-    alone: BoolArray
-    own: dict[int, OwnRows] = field(default_factory=dict)
-
-    @classmethod
-    def blank(
-        cls, unknowns: int, rows: int, designs: int, certify: bool, falling: bool
-    ) -> DesignRows:
-        """No positions yet; rows are left as they come until they are filled or cleared.
-
-        Where inputs fall, unknowns and radii stand in memory by rising inputs: so does the march
-        write them.
-        """
-        way = slice(None, None, -1 if falling else 1)
-        return cls(
-            v=aligned(unknowns, rows, designs)[:, way],
-            status=np.empty((rows, designs), dtype=np.int8),
-            certification=np.empty((rows, designs), dtype=np.int8),
-            radius=aligned(rows if certify else 0, designs)[way],
-            limits=np.full((2, designs), np.nan),
-            limit_kinds=np.zeros((2, designs), dtype=np.int8),
-            alone=np.zeros(designs, dtype=bool),
-        )
-
-    @cached_property
-    def turns(self) -> TurnArray:
-        """How many whole turns further the position of a row was found, (R, D)."""
-        return np.zeros(self.status.shape, dtype=np.int32)
-
-    def clear(self, where: BoolArray, certify: bool) -> None:
-        """No position in some rows (R, D); no status in any of them."""
-        self.v[:, where] = np.nan
-        self.status[:] = Status.NO_START.code
-        none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
-        self.certification[:] = none.code
-        if certify:
-            self.radius[where] = np.nan
 
 
 def design_rows(
@@ -120,7 +57,7 @@ def design_rows(
     else:
         left &= ~march.fill(designs, found, certify, threads, gear or Gear())
     for k in np.flatnonzero(left):
-        _alone(designs, int(k), found, certify)
+        sweep_alone(designs, int(k), found, certify)
     return found
 
 
@@ -167,9 +104,10 @@ class Path:
         march = self.march(designs, certify, threads, gear)
         t = self.model.rows[:, self.lead]
         way = slice(None, None, -1 if self.falling else 1)
-        march.turns = lambda: found.turns[way]
         whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
         self._note(found, reached[way], whole, certify)
+        for rows, which, turns in march.wound:
+            found.turns[way][rows, which] = turns
         march.note_limits(found, whole)
         return whole
 
@@ -217,8 +155,8 @@ class March:
         self.start = designs.start[:, n + path.lead].copy()
         self._enter(designs, np.flatnonzero(fine & ~served))
         self.free = turns_freely(model)
-        #: Those of each row, where a design goes around for it.
-        self.turns: Callable[[], TurnArray] | None = None
+        #: Rows (W,) that designs (W,) have gone around for, and how many whole turns.
+        self.wound: list[tuple[IndexArray, IndexArray, int]] = []
         self.limits = np.repeat([[-np.inf], [np.inf]], len(designs), axis=1)
 
     def _enter(self, designs: Designs, beside: IndexArray) -> None:
@@ -234,14 +172,9 @@ class March:
 
     def note_limits(self, found: DesignRows, which: BoolArray) -> None:
         """Enter where some designs can move; what the march has located are dead points."""
-        if which.all():
-            found.limits[:] = self.limits
-        else:
-            found.limits[:, which] = self.limits[:, which]
-        if not np.isfinite(self.limits).any():
-            return
+        np.copyto(found.limits, self.limits, where=which)
         dead = LIMIT_KINDS.index(LimitKind.DEAD_POINT)
-        found.limit_kinds[:, which] = np.where(np.isfinite(self.limits[:, which]), dead, 0)
+        np.copyto(found.limit_kinds, np.int8(dead), where=which & np.isfinite(self.limits))
 
     def through(self, t: Array, v: Array, radius: Array) -> tuple[BoolArray, BoolArray]:
         """March through increasing values of t.
@@ -356,8 +289,8 @@ class March:
         if self.certify:
             radius[row, mine[column]] = radii[row, column]
         reached[row, mine[column]] = True
-        if self.turns is not None and turns:
-            self.turns()[row, mine[column]] = turns
+        if turns:
+            self.wound.append((row, mine[column], turns))
         known = limits[:, those]
         self._limit(known, further, mine)
         limits[:, those] = known
@@ -382,61 +315,3 @@ def _coefficients(path: Path, designs: Designs) -> dict[str, Array]:
         found[f"u{j}.rate"] = np.full(len(designs), rate)
         found[f"u{j}.spread"] = np.full(len(designs), spread[j])
     return found
-
-
-def _at_shared_inputs(designs: Designs, k: int) -> Model:
-    """A design by itself with the family's table, should its own depend on what varies."""
-    base, model = designs.base, designs.design(k)
-    if np.array_equal(model.everyday_rows, base.everyday_rows):
-        return model
-    inputs = tuple(_with_plain_range(base, which) for which in base.description.inputs)
-    description = replace(model.description, inputs=inputs)
-    return Model(description, model.equations, model.compiled, model.skeleton, model.branch)
-
-
-def _with_plain_range(base: Model, which: Input) -> Input:
-    start, stop, step = (
-        None if value is None else base.description.numbers(value)
-        for value in (which.start, which.stop, which.step)
-    )
-    return replace(which, start=start, stop=stop, step=step)
-
-
-def _alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
-    """One design by the ordinary sweep."""
-    found.alone[k] = True
-    try:
-        rows, ends = swept_rows(_at_shared_inputs(designs, k), certify=certify)
-    except LinkworkError:  # told by ``message_alone``
-        found.v[:, :, k] = found.radius[:, k] = np.nan
-        found.status[:, k] = Status.NO_START.code
-        none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
-        found.certification[:, k] = none.code
-        return
-    n = len(found.v)
-    found.v[:, :, k] = rows.v[:, :n].T
-    found.status[:, k], found.certification[:, k] = rows.status, rows.certification
-    if certify:
-        found.radius[:, k] = rows.radius
-    found.own[k] = OwnRows.of(rows, n)
-    _note_way(designs.base, k, rows, ends, found)
-
-
-def _note_way(
-    base: Model, k: int, rows: SolvedRows, ends: tuple[BranchEnd, ...], found: DesignRows
-) -> None:
-    """Whole turns to the rows of a design that went alone, and the limits it met."""
-    if not (rows.status == Status.CONVERGED.code).any():
-        return
-    found.limits[:, k], found.limit_kinds[:, k] = ends_as_limits(ends)
-    if base.equations.inputs[0].kind == "angle":
-        gap = (rows.v[:, len(found.v)] - base.rows[:, 0]) / FULL_TURN
-        found.turns[:, k] = np.round(np.where(np.isnan(gap), 0.0, gap))
-
-
-def message_alone(designs: Designs, k: int) -> str:
-    """What a design has to say of its own motion, or why it has none."""
-    try:
-        return sweep(_at_shared_inputs(designs, k), certify=False).message
-    except LinkworkError as error:
-        return str(error)

@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwork.batch.coefficients import loop_coefficients, zero_coefficients
 from linkwork.batch.designs import Designs
-from linkwork.batch.lane_rows import DesignRows
+from linkwork.batch.rows import DesignRows
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.foundation.lanes import Consensus, NotElementwise, many

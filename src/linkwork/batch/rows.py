@@ -1,0 +1,71 @@
+"""What is known of designs over the rows of a table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from linkwork.batch.own_rows import OwnRows
+from linkwork.foundation.aligned import aligned
+from linkwork.foundation.arrays import Array, BoolArray, StatusArray, TurnArray
+from linkwork.foundation.certification import Certification
+from linkwork.foundation.status import Status
+
+__all__ = ["DesignRows"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DesignRows:
+    """D designs over R rows of inputs, internal units.
+
+    ``v`` (n, R, D): unknowns, NaN where there is no position. ``status``, ``certification``
+    (R, D): codes. ``radius`` (R, D): of the proof, weighted, NaN without one; (0, D) if none is
+    asked for. ``limits`` (2, D): where the branch ends below and above, and ``limit_kinds`` (2, D)
+    what ends it, see :func:`linkwork.batch.own_rows.ends_as_limits`; NaN without a position.
+    ``alone`` (D,): designs that were computed one at a time; ``own``: what they say themselves.
+    """
+
+    v: Array
+    status: StatusArray
+    certification: StatusArray
+    radius: Array
+    limits: Array
+    limit_kinds: StatusArray
+    alone: BoolArray
+    own: dict[int, OwnRows] = field(default_factory=dict)
+
+    @classmethod
+    def blank(
+        cls, unknowns: int, rows: int, designs: int, certify: bool, falling: bool
+    ) -> DesignRows:
+        """No positions yet; rows are left as they come until they are filled or cleared.
+
+        Where inputs fall, unknowns and radii stand in memory by rising inputs: so does the march
+        write them.
+        """
+        way = slice(None, None, -1 if falling else 1)
+        return cls(
+            v=aligned(unknowns, rows, designs)[:, way],
+            status=np.empty((rows, designs), dtype=np.int8),
+            certification=np.empty((rows, designs), dtype=np.int8),
+            radius=aligned(rows if certify else 0, designs)[way],
+            limits=np.full((2, designs), np.nan),
+            limit_kinds=np.zeros((2, designs), dtype=np.int8),
+            alone=np.zeros(designs, dtype=bool),
+        )
+
+    @cached_property
+    def turns(self) -> TurnArray:
+        """How many whole turns further the position of a row was found, (R, D)."""
+        return np.zeros(self.status.shape, dtype=np.int32)
+
+    def clear(self, where: BoolArray, certify: bool) -> None:
+        """No position in some rows (R, D); no status in any of them."""
+        self.v[:, where] = np.nan
+        self.status[:] = Status.NO_START.code
+        none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
+        self.certification[:] = none.code
+        if certify:
+            self.radius[where] = np.nan
