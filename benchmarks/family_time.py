@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -17,6 +16,7 @@ from benchmarks.peers.pylinkage_numba import PylinkageEnsemble
 from benchmarks.peers.work import Work, four_bar_family
 from benchmarks.timing import Clock, bar, interleaved
 from linkwork.batch import Family
+from linkwork.foundation.sharing import cores
 
 __all__ = ["measure", "rapier_family"]
 
@@ -47,7 +47,7 @@ def measure(repeats: int = 9) -> bool:
             held = bar(f"four-bars, {what} / pylinkage Ensemble", ratios, limit) and held
         ratios = _ratios(harder, ours, repeats, time.process_time)
         held = bar(f"rapier drives / four-bars, {what}", ratios, _RAPIER) and held
-    if len(os.sched_getaffinity(0)) > 1:
+    if cores() > 1:
         held = _two_cores(four_bars, repeats) and held
     return held
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from benchmarks.machine import machine
 from benchmarks.scaling.cold_start import cold_start
-from benchmarks.scaling.families import cores, family_sizes
+from benchmarks.scaling.families import family_sizes, threads
 from benchmarks.scaling.loops import chain_of_dyads, coupled
 from benchmarks.scaling.part import Part
 from benchmarks.scaling.rows import four_bar_rows, jansen_rows
@@ -24,7 +24,7 @@ PARTS = (
     Part(name="dyads", measure=chain_of_dyads),
     Part(name="coupled", measure=coupled),
     Part(name="families", measure=family_sizes),
-    Part(name="threads", measure=cores),
+    Part(name="threads", measure=threads),
 )
 
 

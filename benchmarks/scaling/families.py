@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import statistics
 from functools import partial
 
@@ -11,8 +10,9 @@ from benchmarks.peers.registry import chosen
 from benchmarks.peers.work import four_bar_family
 from benchmarks.scaling.part import Growth, grown
 from benchmarks.timing import interleaved
+from linkwork.foundation.sharing import cores
 
-__all__ = ["cores", "family_sizes"]
+__all__ = ["family_sizes", "threads"]
 
 SIZES = (1, 10, 100, 1_000, 10_000, 100_000)
 ROWS = 200
@@ -32,10 +32,10 @@ def family_sizes(repeats: int) -> Growth:
     )
 
 
-def cores(repeats: int) -> Growth:
+def threads(repeats: int) -> Growth:
     """Wall time with one thread, with two, and so on up to all cores."""
     family = family_of(four_bar_family(MANY, ROWS))
-    most = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    most = cores()
     counts = sorted({1, most, *(2**k for k in range(1, 10) if 2**k < most)})
     times: dict[str, dict[int, float]] = {}
     for name, certify, compiled in (

@@ -127,7 +127,7 @@ def test_a_plan_from_standard_input(run: Run) -> None:
         (("plan.toml", "-o", "no/x.zarr"), 'cannot write "no/x.zarr": there is no folder "no"'),
         (
             ("plan.toml", "-o", "x.zarr", "--workers", "0"),
-            "a study needs at least one worker, got 0",
+            "workers must be a whole number, 1 or more, got 0",
         ),
     ],
 )

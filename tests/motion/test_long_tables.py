@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +16,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.foundation.arrays import Array
+from linkwork.kernels.lanes import at_hand
 from linkwork.kernels.lanes.at_hand import compiled_code_is_at_hand, say_that_it_compiles
 from linkwork.motion import by_kernels
 from linkwork.motion.drive import Drive
@@ -317,7 +320,7 @@ def test_who_waits_for_a_compiler_is_told(
     assert len(caplog.records) == 1
 
 
-def test_compiled_code_counts_unless_it_is_older_than_its_source(
+def test_compiled_code_counts_if_it_is_that_of_its_source(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
@@ -326,5 +329,18 @@ def test_compiled_code_counts_unless_it_is_older_than_its_source(
     left.parent.mkdir()
     left.write_bytes(b"")
     assert compiled_code_is_at_hand()
-    os.utime(left, (1.0, 1.0))
+    os.utime(left, (1.0, 1.0))  # older than the source: that of another one
     assert not compiled_code_is_at_hand()
+    digest = hashlib.sha256(at_hand._LAST.read_bytes()).digest()
+    left.write_bytes(b"an index with " + digest + b" in it")
+    os.utime(left, (1.0, 1.0))  # but in a copy times tell nothing
+    assert compiled_code_is_at_hand()
+
+
+def test_numba_keeps_the_digest_by_which_compiled_code_is_known() -> None:
+    numba = import_module("numba")
+    if tuple(map(int, numba.__version__.split(".")[:2])) < (0, 68):
+        pytest.skip("this version goes by the times of files")
+    import_module("linkwork.kernels.lanes.rowwise")
+    digest = hashlib.sha256(at_hand._LAST.read_bytes()).digest()
+    assert any(digest in index.read_bytes() for index in at_hand._indices())

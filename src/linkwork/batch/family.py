@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
@@ -14,6 +13,7 @@ from linkwork.batch.reductions import REDUCTIONS
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import whole_number
+from linkwork.foundation.sharing import cores
 from linkwork.kernels.lanes.device_compiling import graphics_card
 from linkwork.kernels.lanes.gear import Gear
 from linkwork.motion.model import Model
@@ -197,9 +197,7 @@ def family_of(model: Model, dimensions: Mapping[str, object]) -> Family:
 
 def _workers(threads: int | None) -> int:
     """How many threads are asked for; as many as there are cores by default."""
-    if threads is not None:
-        return whole_number("threads", threads, least=1)
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return cores() if threads is None else whole_number("threads", threads, least=1)
 
 
 def _function(reduction: Reduction) -> Callable[[Array], Array]:

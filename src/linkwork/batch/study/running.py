@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Generator, Iterable
 from contextlib import closing
 from dataclasses import dataclass
@@ -17,7 +16,8 @@ from linkwork.batch.study.store import opened
 from linkwork.batch.study.study import Study
 from linkwork.batch.study.summary import Summary, summary_of
 from linkwork.batch.study.zarr_files import check_packages
-from linkwork.foundation.errors import InputError
+from linkwork.foundation.plain_numbers import whole_number
+from linkwork.foundation.sharing import cores
 from linkwork.kernels.lanes.device_compiling import graphics_card
 
 __all__ = ["Progress", "run_study"]
@@ -97,8 +97,8 @@ def run_study(
     their checksums. A run that was killed computes the chunk again that it was writing.
     """
     check_packages()
-    if workers is not None and workers < 1:
-        raise InputError(f"a study needs at least one worker, got {workers}")
+    if workers is not None:
+        workers = whole_number("workers", workers, least=1)
     study = plan if isinstance(plan, Study) else read_plan(plan)
     if study.job.device == "gpu" and scheduler is None:
         graphics_card()  # or the reason why there is none, before a store is begun
@@ -123,8 +123,9 @@ def _crew(
     scheduler: str | None,
 ) -> Generator[tuple[int, Part]]:
     """The parts of all tasks by whoever is to compute them."""
-    usual = 1 if study.job.device == "gpu" else os.cpu_count() or 1
-    count = min(workers or usual, chunks)
+    if workers is None:
+        workers = 1 if study.job.device == "gpu" else cores()
+    count = min(workers, chunks)
     if scheduler is not None:
         yield from cluster_crew(study.job, tasks, scheduler)
     elif count == 1:

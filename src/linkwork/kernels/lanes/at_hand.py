@@ -2,36 +2,50 @@
 
 from __future__ import annotations
 
+import hashlib
 import logging
 import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 from platformdirs import user_cache_path
 
 __all__ = ["compiled_code_is_at_hand", "compiled_code_is_loaded", "say_that_it_compiles"]
 
-_LAST = "rowwise"  # of the modules that take long to compile
+_LAST = Path(__file__).with_name("rowwise.py")  # of the modules that take long to compile
 
 
 def compiled_code_is_loaded() -> bool:
     """Whether this process has the kernels in use."""
-    return f"{__package__}.{_LAST}" in sys.modules
+    return f"{__package__}.{_LAST.stem}" in sys.modules
 
 
 def compiled_code_is_at_hand() -> bool:
     """Whether an earlier process has left the kernels compiled: beside their sources, in the user's
     cache where that cannot be written to, or in the folder that ``NUMBA_CACHE_DIR`` names.
     """
-    here = Path(__file__).parent
-    source = (here / f"{_LAST}.py").stat().st_mtime
+    return any(map(_is_of_this_source, _indices()))
+
+
+def _indices() -> Iterator[Path]:
+    """What numba has written about the compiled code that takes longest."""
     given = os.environ.get("NUMBA_CACHE_DIR")
     shared = Path(given) if given else user_cache_path("numba", appauthor=False)
-    folders = list(shared.glob(f"{here.name}_*"))
+    folders = list(shared.glob(f"{_LAST.parent.name}_*"))
     if not given:
-        folders.append(here / "__pycache__")
-    left = (entry for folder in folders for entry in folder.glob(f"{_LAST}.by_rows-*.nbi"))
-    return any(entry.stat().st_mtime >= source for entry in left)
+        folders.append(_LAST.parent / "__pycache__")
+    for folder in folders:
+        yield from folder.glob(f"{_LAST.stem}.by_rows-*.nbi")
+
+
+def _is_of_this_source(index: Path) -> bool:
+    """By the digest that numba keeps in it, for the times of files tell nothing in a copy; without
+    one, as before numba 0.68, by them.
+    """
+    if hashlib.sha256(_LAST.read_bytes()).digest() in index.read_bytes():
+        return True
+    return index.stat().st_mtime >= _LAST.stat().st_mtime
 
 
 def say_that_it_compiles() -> None:
