@@ -71,11 +71,13 @@ def test_near_crossings_are_not_passed_straight(apart: float, step: float, certi
     mechanism = _near_crossing(apart, step)
     march, t = _march(mechanism.family({"A B": [1.0]}), certify)
     found = march.of_one(t).run()
+    if apart == 1e-3 and step <= 1:  # near, but the rows are nearer to each other
+        assert found is not None
     if found is not None:
         motion = mechanism.sweep()
         assert motion.certified.all()
         away = found[0][:, :, 0] - np.radians([motion["b"], motion["c"]])
-        assert np.abs(away).max() < 1e-9
+        assert np.abs(away).max() < 1e-9  # the other branch is 3.7e-3 away, or more
 
 
 class Proving:

@@ -102,6 +102,7 @@ def assert_same(plain: lw.Motion, quick: lw.Motion, mechanism: lw.Mechanism) -> 
     assert (away[proved] <= (quick.radius + plain.radius)[found][proved]).all()
     assert (away <= 1e-11).all()
     own, other = quick.radius[plain.certified], plain.radius[plain.certified]
+    # two proofs of one root from two guesses: 0.24 to 3.1 times each other over the whole library
     assert (own >= 0.2 * other - 1e-15).all()
     assert (own <= 4.0 * other + 4e-15).all()
     assert quick.worst <= 1e-13
@@ -260,8 +261,7 @@ def test_inputs_that_are_not_known_exactly_widen_the_proofs(
     both(fine(lw.example("four-bar")))
     narrow, wide = found
     moved = np.abs(wide.first[:-1]).max(axis=0) * apart  # by how much the position may be off
-    assert (wide.radius >= narrow.radius + 0.9 * moved).all()
-    assert (wide.radius <= narrow.radius + 30.0 * moved.max()).all()
+    assert wide.radius - narrow.radius == pytest.approx(moved, rel=1e-3)
 
 
 def test_corrections_are_counted(both: Sweep) -> None:

@@ -376,8 +376,8 @@ class LaneKernel:
 
 
 def _parts(count: int, threads: int) -> list[slice]:
-    """Whole lanes of designs. Several threads take smaller and smaller parts of what is left, so
-    that in the end none waits long for the others.
+    """Whole lanes of designs. Of several threads each takes half of its share of what is left, so
+    that the last parts are small and none waits long for the others.
     """
     parts, first = list[slice](), 0
     while first < count:
