@@ -11,6 +11,7 @@ from time import perf_counter
 from tests.campaigns.certificates import judge
 from tests.campaigns.circuits import circuit_campaign
 from tests.campaigns.configurations import configuration_campaign
+from tests.campaigns.dead_points import dead_point_campaign
 from tests.campaigns.families import family_campaign
 from tests.campaigns.kinds import kind_campaign
 from tests.campaigns.lanes import judge_lane_steps, judge_lanes
@@ -65,6 +66,10 @@ def _circuits(part: int) -> tuple[Counter[str], list[str]]:
     return circuit_campaign(part, _PART)
 
 
+def _dead_points(part: int) -> tuple[Counter[str], list[str]]:
+    return dead_point_campaign(part, _PART)
+
+
 def _kinds(part: int) -> tuple[Counter[str], list[str]]:
     return kind_campaign(part, _PART)
 
@@ -77,6 +82,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "motion": (_motion, 10_000),
     "configurations": (_configurations, 450),
     "circuits": (_circuits, 500),
+    "dead-points": (_dead_points, 1_000),
     "kinds": (_kinds, 100_000),
 }
 #: Those that share the cores themselves: what does the whole campaign, and its usual size.

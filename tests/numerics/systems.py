@@ -41,6 +41,9 @@ class Cubic:
         x, p, q = v.T
         return np.asarray((x**3 + p * x + q)[:, None])
 
+    def exact_residual(self, v: Array) -> tuple[Array, Array]:
+        return np.asarray(self.residual(v[None, :])[0]), np.full(1, np.inf)
+
     def jacobian(self, v: Array) -> Array:
         x, p, _ = v.T
         return np.stack([3 * x**2 + p, x, np.ones_like(x)], axis=1)[:, None, :]

@@ -258,7 +258,6 @@ class March:
                 {name: values[mine[ended]] for name, values in self.coefficients.items()},
                 self.kernel.last_nodes(rows, way, ended),
                 way,
-                self.certify,
             )
             limits[way, ended] = np.where(folds.found, folds.t, np.nan)
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.kernels.curvature import Curvature, PhaseGroups
+from linkwork.kernels.exact_rows import exact_line, exact_rows
 from linkwork.kernels.law_row import TURN_ROUNDING, LawRow
 from linkwork.kernels.phasor_rows import PhasorRows
 
@@ -127,6 +128,21 @@ class LoopTable:
         if self._only_loops:
             return residual
         return np.concatenate([residual, self._real_rows(v)[0]], axis=1)
+
+    def exact_residual(self, v: Array) -> tuple[Array, Array]:
+        """F at one position v (N,), (m,), each loop and line rounded once, and its error bounds."""
+        value = exact_rows(self.loops, v)
+        lines = [
+            exact_line(constant, row.tolist(), v.tolist())
+            for constant, row in zip(self.linear.constant, self._linear_matrix, strict=True)
+        ]
+        found = np.concatenate([value.real, value.imag, lines])
+        rows = [row.value_and_gradient(v[None, :])[0][0] for row in self.functions]
+        errors = [
+            row.rounding(v[None, :])[0][0] if isinstance(row, LawRow) else np.inf
+            for row in self.functions
+        ]
+        return np.append(found, rows), np.append(_UNIT * np.abs(found), errors)
 
     def jacobian(self, v: Array) -> Array:
         """dF/dv, (B, m, N): the Jacobian by the unknowns, then the derivative by the inputs."""

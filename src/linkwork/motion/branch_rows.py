@@ -13,6 +13,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.motion import by_kernels
 from linkwork.motion.drive import Drive
+from linkwork.motion.last_rows import fill_last_rows
 from linkwork.motion.limits import BranchEnd, ends_of
 from linkwork.motion.proving import inputs_apart, prove_rows
 from linkwork.motion.rows import SolvedRows
@@ -117,6 +118,7 @@ def rows_of_branch(
     ends = ends_of(drive, track, certify)
     if not to_ends:
         ends = tuple(end.demoted(Certification.MOTION_NOT_PROVED) for end in ends)
+    fill_last_rows(drive, track, ends, asked.t, placed, rows)
     _mark_missing(rows, track, asked.t, np.isnan(placed), ends)
     return BranchRows(rows=rows, track=track, placed=placed, ends=ends, proved_to_ends=to_ends)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
@@ -20,12 +21,10 @@ from linkwork.numerics.change_point import (
     locate_change_point,
     most_singular,
 )
-from linkwork.numerics.curve import Leg
 from linkwork.numerics.leaders import Led
-from linkwork.numerics.proof import prove
-from linkwork.numerics.proven_curve import leg_is_proved, same_solution
+from linkwork.numerics.proven_curve import same_solution
 from linkwork.numerics.track import End, Node, Track
-from linkwork.numerics.turning_point import TurningPoint, turn_beyond
+from linkwork.numerics.turning_point import TurnAhead, TurningPoint, turn_beyond
 from linkwork.results.motion import Limit, LimitKind
 
 __all__ = [
@@ -34,9 +33,9 @@ __all__ = [
     "dead_point_limit",
     "end_at_dead_point",
     "ends_of",
-    "slack_at",
 ]
 
+_UNIT = np.finfo(float).eps
 _MOVES = 1e-7  # weighted: a direction along which the input moves at all
 _SOUND = 1e4  # condition up to which a node is as good as any
 _SAME_INPUT = 1e-11  # relative: a value asked for at a limit is that limit's
@@ -47,20 +46,24 @@ _TOUCHING = 1e-12  # residual at a located crossing, where Newton-Raphson must n
 class BranchEnd:
     """One end of a branch: what is told of it, and its place if it was found.
 
-    ``side``: +1 at the upper end, -1 at the lower. ``t``: of the path. ``v`` (N,): the position.
-    ``first`` (N,): derivatives there, NaN where they do not exist. ``crossing``: if branches cross
-    there. ``led``, ``node``: a dead point as another leader sees it. ``radius``, ``unique``: of
-    its proof.
+    ``side``: +1 at the upper end, -1 at the lower. ``t``: of the path; ``slack``: how far a value
+    that is meant to be this end's may be from it. ``v`` (N,): the position. ``first`` (N,):
+    derivatives there, NaN where they do not exist. ``crossing``: if branches cross there.
+    ``led``, ``node``: a dead point as another leader sees it; ``ahead``: the way to it from the
+    last position that the input leads to well.
+    ``radius``, ``unique``: of its proof.
     """
 
     side: float
     limit: Limit
     t: float
+    slack: float = 0.0
     v: Array | None = None
     first: Array | None = None
     crossing: ChangePoint | None = None
     led: Led | None = None
     node: Node | None = None
+    ahead: TurnAhead | None = None
     certification: Certification = Certification.NOT_ASKED
     radius: float = np.nan
     unique: float = np.nan
@@ -69,23 +72,20 @@ class BranchEnd:
         """The end with its limit at the input value of its row in a table, whole turns away."""
         low, high = self.limit.bracket
         shift = value - self.limit.input
-        limit = replace(self.limit, input=value, bracket=(low + shift, high + shift))
+        rounding = _UNIT * (abs(value) + abs(shift))  # whole turns in radians are no floats
+        bracket = (low + shift - rounding, high + shift + rounding)
+        limit = replace(self.limit, input=value, bracket=bracket)
         return replace(self, limit=limit) if shift else self
 
     def is_at(self, t: float) -> bool:
         """Whether a value of the path that was asked for is this end's, and a position is there."""
-        return self.v is not None and abs(t - self.t) <= slack_at(t)
+        return self.v is not None and abs(t - self.t) <= self.slack
 
     def demoted(self, standing: Certification) -> BranchEnd:
         """The end with what the way to its branch is worth, if it is proved on it."""
         if self.certification is not Certification.CERTIFIED:
             return self
         return replace(self, certification=standing)
-
-
-def slack_at(t: float) -> float:
-    """How far values of the path near t may be apart and yet mean one place."""
-    return _SAME_INPUT * max(1.0, abs(t))
 
 
 def ends_of(drive: Drive, track: Track, certify: bool = False) -> tuple[BranchEnd, ...]:
@@ -103,12 +103,9 @@ def _end(drive: Drive, nodes: Sequence[Node], end: End, side: float, certify: bo
         crossing = locate_change_point(drive.solver, drive.path, nodes[-1], side)
         if crossing is not None:
             return _crossing_end(drive, crossing, side, certify)
-        # first from a node that is proved with the others; rounding is worst at the very last ones
-        sound = (node for node in reversed(nodes) if node.nearness < _SOUND)
-        for last in (next(sound, nodes[-1]), nodes[-1]):
-            turning = turn_beyond(drive.leads, last.v, last.first, side)
-            if turning is not None:
-                return _dead_end(drive, last, turning, side, certify)
+        ahead = _turn_ahead(drive, nodes, side)
+        if ahead is not None:
+            return _dead_end(drive, nodes[-1], ahead, side, certify)
     edges = sorted((end.reached, end.failed))
     return BranchEnd(
         side=side,
@@ -123,47 +120,63 @@ def _end(drive: Drive, nodes: Sequence[Node], end: End, side: float, certify: bo
     )
 
 
-def _dead_end(
-    drive: Drive, last: Node, turning: tuple[Leg, TurningPoint], side: float, certify: bool
-) -> BranchEnd:
-    leg, turn = turning
-    own = drive.leads.by(drive.leads.parameter)
-    joined = certify and own is not None and same_solution(own, leg.led, last.v)
-    joined = joined and leg_is_proved(leg)
-    return replace(end_at_dead_point(drive, turn, leg.led, certify, joined), side=side)
+def _turn_ahead(drive: Drive, nodes: Sequence[Node], side: float) -> TurnAhead | None:
+    """The dead point ahead of a track's last nodes.
+
+    First from a node that is proved with the others; rounding is worst at the very last ones.
+    """
+    sound = next((node for node in reversed(nodes) if node.nearness < _SOUND), nodes[-1])
+    best: TurnAhead | None = None
+    for last in (sound, nodes[-1]) if sound is not nodes[-1] else (sound,):
+        ahead = turn_beyond(drive.leads, last.v, last.first, side)
+        if ahead is not None and (best is None or ahead.located):
+            best = ahead
+        if best is not None and best.located:
+            break
+    return best
+
+
+def _dead_end(drive: Drive, last: Node, ahead: TurnAhead, side: float, certify: bool) -> BranchEnd:
+    leg, own = ahead.leg, drive.leads.by(drive.leads.parameter)
+    begin = leg.led.whole(leg.nodes[0].v)
+    joined = ahead.located and own is not None and same_solution(own, leg.led, begin)
+    turn = ahead.turn
+    if not ahead.located:  # nothing says that it is this branch's: it ended at the last node
+        edges = sorted((last.t, *turn.bracket))
+        turn = replace(turn, proof=None, bracket=(edges[0], edges[-1]))
+    end = end_at_dead_point(drive, turn, leg.led, certify, joined)
+    return replace(end, side=side, ahead=ahead)
 
 
 def end_at_dead_point(
-    drive: Drive, turn: TurningPoint, led: Led | None, certify: bool, joined: bool = False
+    drive: Drive, turn: TurningPoint, led: Led, certify: bool, joined: bool = False
 ) -> BranchEnd:
     """The end of a branch at a dead point, seen by the leader ``led``.
 
     ``joined``: whether the branch is proved to lead to it.
     """
+    low, high = turn.bracket
     found = BranchEnd(
         side=0.0,
         limit=dead_point_limit(drive, turn),
         t=turn.t,
+        slack=max(high - turn.t, turn.t - low) if turn.located else 0.0,
         v=turn.v,
         first=np.full(len(turn.v), np.nan),
         led=led,
         node=turn.node,
     )
-    if not certify or led is None:
+    if not certify:
         return found
-    if not all(block.system.bends_boundedly for block in led.solver.blocks):
-        return replace(found, certification=Certification.NO_BOUND)
-    proof = prove(led.solver, turn.node.v[None, :], np.zeros((1, 1)))
-    if not proof.holds[0]:
-        return replace(found, certification=Certification.POSITION_NOT_PROVED)
-    off = float(proof.each[0, led.place(drive.leads.parameter)]) / drive.unit
-    low, high = found.limit.bracket
+    if turn.proof is None:
+        bounded = all(block.system.bends_boundedly for block in drive.solver.blocks)
+        why = Certification.POSITION_NOT_PROVED if bounded else Certification.NO_BOUND
+        return replace(found, certification=why)
     return replace(
         found,
-        limit=replace(found.limit, bracket=(low - off, high + off)),
         certification=Certification.CERTIFIED if joined else Certification.MOTION_NOT_PROVED,
-        radius=float(proof.radius[0]),
-        unique=float(proof.alone_within[0]),
+        radius=turn.proof.radius,
+        unique=turn.proof.unique,
     )
 
 
@@ -203,6 +216,7 @@ def _crossing_end(drive: Drive, crossing: ChangePoint, side: float, certify: boo
         side=side,
         limit=limit,
         t=crossing.t,
+        slack=_SAME_INPUT * max(1.0, abs(crossing.t)),
         v=done.v[0] if done.status[0] == Status.CONVERGED.code else None,
         first=first,
         crossing=crossing,
@@ -227,13 +241,12 @@ def _located(drive: Drive, place: _Place, kind: LimitKind, block: int | None) ->
     """What is told of it: ``block`` is the number of the one that locks."""
     model = drive.model
     low, high = (edge / drive.unit for edge in place.bracket)
-    short = round(place.t / drive.unit, 9)
     status = Status.OUT_OF_REACH if kind is LimitKind.DEAD_POINT else Status.CHANGE_POINT
     equations = () if block is None else drive.solver.blocks[block].equations
     return Limit(
         kind=kind,
-        input=float(short if low <= short <= high else place.t / drive.unit) + 0.0,
-        bracket=(float(low), float(high)),
+        input=float(place.t / drive.unit) + 0.0,
+        bracket=(math.nextafter(low, -math.inf), math.nextafter(high, math.inf)),
         located=bool(place.located),
         status=status,
         loops=tuple(model.equations.labels[e] for e in equations),

@@ -13,10 +13,13 @@ from linkwork.foundation.short_number import short_number
 from linkwork.foundation.status import Status
 from linkwork.motion.branch_rows import Asked, BranchRows
 from linkwork.motion.drive import Drive
-from linkwork.motion.limits import BranchEnd, slack_at
+from linkwork.motion.limits import BranchEnd
 from linkwork.motion.rows import SolvedRows
 
 __all__ = ["NamedEnd", "SweepTable"]
+
+_SAME_PLACE = 1e-11  # relative: values of the path so near to each other are one place
+_UNIT = np.finfo(float).eps
 
 
 class _PlaceOfEnd(NamedTuple):
@@ -25,6 +28,10 @@ class _PlaceOfEnd(NamedTuple):
     guessed: bool  # no row of its branch is beside it
     away: float
     t: float
+
+
+def _slack_at(t: float) -> float:
+    return _SAME_PLACE * max(1.0, abs(t))
 
 
 #: The end of a branch, and the branch's name.
@@ -88,7 +95,7 @@ class SweepTable:
     def places_of(self, t: float) -> list[float]:
         """Where a value belongs in the table's range, whole turns apart too."""
         low, high = self.window
-        slack = slack_at(max(abs(low), abs(high)))
+        slack = _slack_at(max(abs(low), abs(high)))
         turns = np.zeros(1)
         if self.free:
             first = np.ceil((low - slack - t) / FULL_TURN)
@@ -106,7 +113,7 @@ class SweepTable:
         named = self.asked.everyday[:, lead] * scale
         beside = np.argsort(np.abs(self.asked.t - here), kind="stable")[:2]
         turns = [round(float(named[k] - self.asked.t[k]) / FULL_TURN) for k in beside]
-        slack = slack_at(abs(here))
+        slack = _slack_at(abs(here))
         low, high = self.span
         inside = [k for k in turns if low - slack <= here + k * FULL_TURN <= high + slack]
         return (inside or turns or [0])[0]
@@ -142,7 +149,7 @@ class SweepTable:
         found = []
         for here in self.places_of(end.t):
             away = abs(here - end.t)
-            beside = np.flatnonzero(end.side * (here - self.asked.t) > slack_at(abs(here)))
+            beside = np.flatnonzero(end.side * (here - self.asked.t) > _slack_at(abs(here)))
             if not len(beside):
                 found.append(_PlaceOfEnd(True, away, here))
                 continue
@@ -155,7 +162,8 @@ class SweepTable:
     def _put_at(self, end: BranchEnd, branch: str, here: float) -> bool:
         if end.v is None or end.first is None:
             return True
-        return self.put(self._row_of(end, end.v, end.first, branch, here), here)
+        slack = end.slack + 4.0 * _UNIT * abs(here)
+        return self.put(self._row_of(end, end.v, end.first, branch, here), here, slack)
 
     def _row_of(
         self, end: BranchEnd, v: Array, first: Array, branch: str, here: float
@@ -170,12 +178,13 @@ class SweepTable:
         row.branch[0], row.limit[0] = branch, end.limit.kind.word
         return row
 
-    def put(self, row: SolvedRows, here: float) -> bool:
+    def put(self, row: SolvedRows, here: float, slack: float | None = None) -> bool:
         """A row at a value of t: in the place of one that was asked for just there, or between.
 
-        Whether it was put: where a limit is already nothing is.
+        ``slack``: how far a row that was asked for just there may be. Whether it was put: where a
+        limit is already nothing is.
         """
-        slack = slack_at(abs(here))
+        slack = _slack_at(here) if slack is None else slack
         if any(abs(t - here) <= slack for t in self._extra_t):
             return False
         same = np.flatnonzero(np.abs(self.asked.t - here) <= slack)
@@ -205,7 +214,7 @@ class SweepTable:
         """Whether one of the rows beside a value of t is among some rows (B,)."""
         order = np.argsort(self.asked.t, kind="stable")
         t = self.asked.t[order]
-        slack = slack_at(abs(here))
+        slack = _slack_at(abs(here))
         left = int(np.searchsorted(t, here + slack, side="right")) - 1
         right = int(np.searchsorted(t, here - slack, side="left"))
         beside = [order[k] for k in (left, right) if 0 <= k < len(t)]

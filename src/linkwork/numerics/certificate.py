@@ -95,7 +95,9 @@ class Expansion:
         )
 
 
-def expansion(system: System, v: Array, jacobian: Array, matrix: Array) -> Expansion:
+def expansion(
+    system: System, v: Array, jacobian: Array, matrix: Array, *, exact: bool = False
+) -> Expansion:
     """A system at B positions.
 
     Parameters
@@ -107,16 +109,19 @@ def expansion(system: System, v: Array, jacobian: Array, matrix: Array) -> Expan
         dF/dv at v.
     matrix : (B, n, n)
         A, any approximate inverse of the Jacobian by the unknowns.
+    exact : bool
+        Take residuals that are rounded once: slow, for places where rounding decides.
     """
     n = system.unknowns
     bend = system.curvature(v, matrix)
     size, rest = np.abs(matrix), slice(bend.loop_rows, None)
     loss = size @ bend.jacobian_rounding
-    f, slope = system.residual(v), jacobian[:, :, n:]
+    f, rounding, slope = system.residual(v), bend.rounding, jacobian[:, :, n:]
+    if exact:
+        f, rounding = (np.stack(part) for part in zip(*map(system.exact_residual, v), strict=True))
     lines = np.abs(matrix[:, :, rest] @ slope[:, rest])
     return Expansion(
-        residual=np.abs(_apply(matrix, f))
-        + _apply(size, bend.rounding + (n + 2) * _UNIT * np.abs(f)),
+        residual=np.abs(_apply(matrix, f)) + _apply(size, rounding + (n + 2) * _UNIT * np.abs(f)),
         defect=np.abs(np.eye(n) - matrix @ jacobian[:, :, :n]) + loss[:, :, :n],
         slope=np.abs(matrix @ slope) + loss[:, :, n:],
         lines=lines + size[:, :, rest] @ bend.jacobian_rounding[:, rest, n:],

@@ -89,6 +89,15 @@ class JoinedBlocks:
         parts = [block.system.residual(whole[:, block.variables]) for block in self.blocks]
         return np.concatenate(parts, axis=1)
 
+    def exact_residual(self, v: Array) -> tuple[Array, Array]:
+        """F at one position v (N,), (n,), with as little rounding as the equations allow, and a
+        bound of its error.
+        """
+        whole = self._whole(v[None, :])[0]
+        parts = [block.system.exact_residual(whole[block.variables]) for block in self.blocks]
+        values, errors = zip(*parts, strict=True)
+        return np.concatenate(values), np.concatenate(errors)
+
     def jacobian(self, v: Array) -> Array:
         """dF/dv, (B, n, N)."""
         return self.residual_and_jacobian(v)[1]

@@ -64,11 +64,16 @@ def rounding_of_inputs(v: Array, unknowns: int) -> Array:
 
 
 def expansions(
-    solver: BlockSolver, v: Array, linear: Sequence[Linearised] | None = None
+    solver: BlockSolver,
+    v: Array,
+    linear: Sequence[Linearised] | None = None,
+    *,
+    exact: bool = False,
 ) -> list[Expansion | None]:
     """What proofs take from positions v (B, N), block by block.
 
-    ``None`` for a block without a curvature bound (function rows).
+    ``exact``: see :func:`~linkwork.numerics.certificate.expansion`. ``None`` for a block without a
+    curvature bound (function rows).
     """
     parts = solver.linearise(v) if linear is None else linear
     found: list[Expansion | None] = []
@@ -77,7 +82,9 @@ def expansions(
             here = v[:, block.variables]
             bounded = block.system.bends_boundedly
             found.append(
-                expansion(block.system, here, part.jacobian, part.inverse) if bounded else None
+                expansion(block.system, here, part.jacobian, part.inverse, exact=exact)
+                if bounded
+                else None
             )
     return found
 

@@ -19,9 +19,9 @@ from linkwork.numerics.proof import (
     reach,
     rounding_of_inputs,
 )
-from linkwork.numerics.track import InputPath
+from linkwork.numerics.track import InputPath, Node, Watch, node_at
 
-__all__ = ["Beads", "ProvenPath", "prove_path"]
+__all__ = ["Beads", "ProvenPath", "follow_with_proof", "prove_path"]
 
 _CONVERGED = Status.CONVERGED.code
 _ROUNDS = 45  # halvings of one step before it counts as not proved
@@ -348,3 +348,45 @@ def _between(
     spread = rounding_of_inputs(done.v, solver.unknowns)
     beads = Beads(t=t, v=done.v, first=rates.first, second=rates.second, spread=spread)
     return beads, done.status == _CONVERGED, expansions(solver, done.v, linear)
+
+
+_FIRST_STEP = 0.01  # of the path's natural size
+_LEAST_STEP = 1e-13
+_MOST_PROVED = 2000  # steps of a path whose every step is proved before the next
+
+
+def follow_with_proof(
+    solver: BlockSolver, path: InputPath, start: Node, goal: float, watch: Watch
+) -> list[Node]:
+    """The branch of ``start`` towards ``t = goal``, every step proved before the next is taken.
+
+    The step size is what the proof allows: many short steps near a crossing of branches, and none
+    that could come onto the other one. Ends where ``watch`` has seen enough or nothing is proved.
+    """
+    nodes: list[Node] = []
+    here = start
+    near = prove(solver, here.v[None, :], rounding_of_inputs(here.v[None, :], solver.unknowns))
+    sign, h = np.sign(goal - start.t), _FIRST_STEP * path.size
+    for _ in range(_MOST_PROVED):
+        t = goal if h >= abs(goal - here.t) else here.t + sign * h
+        step = t - here.t
+        guess = here.v + step * here.first + 0.5 * step * step * here.second
+        guess[solver.unknowns :] = path.at(t)
+        found = solver.solve(guess[None, :])
+        if found.status[0] == _CONVERGED:
+            known = rounding_of_inputs(found.v, solver.unknowns)
+            proof = prove(solver, found.v, known)
+            spread = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
+            reached = reach(solver, here.v[None, :], spread + 2.0 * known)
+            both = np.maximum(proof.each, near.each)
+            if proof.holds[0] and links_hold(here.v[None, :], found.v, reached, both)[0]:
+                before, here, near = here, node_at(solver, path, t, found.v[0]), proof
+                nodes.append(here)
+                h *= 1.5
+                if t == goal or watch(before, here):
+                    break
+                continue
+        h = 0.5 * abs(step)
+        if h < _LEAST_STEP * max(path.size, abs(here.t)):
+            break
+    return nodes

@@ -31,6 +31,11 @@ class System(Protocol):
     def residual(self, v: Array) -> Array:
         """F, (B, m)."""
 
+    def exact_residual(self, v: Array) -> tuple[Array, Array]:
+        """F at one position v (N,), (m,), with as little rounding as the equations allow, and a
+        bound of its error.
+        """
+
     def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
         """F, (B, m), and dF/dv, (B, m, N)."""
 

@@ -63,7 +63,7 @@ def located(crank: Array, off: Array | float = 0.0, error: float = 1e-12) -> Fol
     given = {"c0.re": R, "c1.re": L, "c2.re": -1.0, "scale2": L}
     coefficients = {name: np.full(len(crank), value) for name, value in given.items()}
     zeros = {f"c{k}.im" for k in range(3)}
-    return dead_points(slider_crank(), zeros, coefficients, nodes, 1, True)
+    return dead_points(slider_crank(), zeros, coefficients, nodes, 1)
 
 
 def test_longer_arcs_are_proved_in_more_parts(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,6 +12,8 @@ method on the curve. Registers as in :mod:`march_programs`, and
 ``e<k>``               how far the true place may be from where the arc was proved to
 ``p<k>`` ``pr<k>``     the node with its rates by λ; ``z<k>`` ``zr<k>`` the dead point with its own
 ``along``              which part of the way from the node to the dead point a place between has
+``sound``              1.0 where the place reached is proved, wherever it was reached from
+``side``               -1.0 or 1.0, on which side of the place ``w`` another one is tried
 """
 
 from __future__ import annotations
@@ -31,6 +33,8 @@ from linkwork.kernels.loop_table import LoopTable
 __all__ = ["FoldPrograms", "fold_programs"]
 
 _UNIT = float(np.finfo(float).eps) / 2.0
+_CLEARLY = 32.0  # half of it: how many errors of t the two places beside a dead point are off
+_LEAST = 1e-9  # weighted: the nearest of them
 _FARTHEST = 0.3  # weighted: how far λ may go in one step
 
 
@@ -38,18 +42,20 @@ _FARTHEST = 0.3  # weighted: how far λ may go in one step
 class FoldPrograms:
     """``iterate``: Newton-Raphson at a fixed λ with the rates by λ; ``move``: to the next λ.
 
-    Without proofs ``None``: ``prove``: the arc from ``w`` to the place reached. For proofs in parts
-    ``between`` predicts a place between node and dead point; after ``advance`` the place reached is
-    what the next part begins from.
+    ``prove``: the arc from ``w`` to the place reached. For proofs in parts ``between`` predicts a
+    place between node and dead point; after ``advance`` the place reached is what the next part
+    begins from. ``aside``: a place so far from ``w`` that t, which turns back there, differs by
+    more than what is known of it.
     """
 
     registers: Registers
     height: int
     iterate: Program
     move: Program
-    prove: Program | None = None
-    between: Program | None = None
-    advance: Program | None = None
+    prove: Program
+    between: Program
+    advance: Program
+    aside: Program
 
 
 class _Writer:
@@ -121,6 +127,7 @@ class _Writer:
         far = away + 2.0 * near + rec.input(f"x{self.lead}")
         place = proof.within(dict.fromkeys(proof.known, near))
         arc = proof.within(dict.fromkeys(proof.known, far))
+        rec.write("sound", rec.where(place.holds, 1.0, 0.0))
         masks = [place.holds, arc.holds]
         for k, error, alone in zip(self.part.unknowns, place.each, arc.alone, strict=True):
             rec.write(f"e{k}", error)
@@ -155,10 +162,21 @@ class _Writer:
             rec.write(f"x{k}", rec.input(f"e{k}"))
         return rec
 
+    def aside(self) -> Recorder:
+        """A place beside ``w``: t there differs by half of ``bend`` times the distance squared."""
+        rec = Recorder()
+        bend = rec.absolute(rec.input("bend"))
+        away = rec.sqrt(rec.divide(_CLEARLY * rec.input(f"x{self.n}"), bend))
+        here = rec.input(f"w{self.lead}")
+        least = _LEAST * self._scale(rec, self.lead)
+        away = rec.largest([away, least])
+        rec.write(f"v{self.lead}", here + rec.input("side") * away)
+        for k in self.part.unknowns:
+            rec.write(f"v{k}", rec.input(f"w{k}"))
+        return rec
 
-def fold_programs(
-    table: LoopTable, lead: int, zeros: Set[str] = frozenset(), certified: bool = False
-) -> FoldPrograms:
+
+def fold_programs(table: LoopTable, lead: int, zeros: Set[str] = frozenset()) -> FoldPrograms:
     """The programs of a table with a single input, led by one of its unknowns.
 
     Parameters
@@ -169,11 +187,14 @@ def fold_programs(
         The unknown that leads.
     """
     writer = _Writer(table, lead, zeros)
-    recorded = {"iterate": writer.iterate(), "move": writer.move()}
-    if certified:
-        recorded["prove"] = writer.prove()
-        recorded["between"] = writer.between()
-        recorded["advance"] = writer.advance()
+    recorded = {
+        "iterate": writer.iterate(),
+        "move": writer.move(),
+        "prove": writer.prove(),
+        "between": writer.between(),
+        "advance": writer.advance(),
+        "aside": writer.aside(),
+    }
     registers = Registers()
     for rec in recorded.values():
         reserve(rec, registers)

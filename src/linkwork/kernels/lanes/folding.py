@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.kernels.lanes.compiling import compiled
 from linkwork.kernels.lanes.fold_programs import FoldPrograms, fold_programs
 from linkwork.kernels.lanes.machine import LANES, run
@@ -20,6 +20,7 @@ _STEPS = 8  # of Newton-Raphson at each
 _CLOSE = 1e-7  # a move of λ after which the place is found: t is off by its square and less
 _TOLERANCE = 1e-8
 _PARTS = (2, 4, 8)  # that an arc is proved in where it is not proved in one
+_EXACT = 5e-14  # relative: a possible error of t from which on it is corrected
 _STRAIGHT = 1e-4  # weighted d²t/dλ² below which it is no ordinary dead point
 
 
@@ -39,8 +40,8 @@ class LastNodes:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Folds:
-    """``t`` (D,): of the dead point. ``found`` (D,): whether it is one, and proved to be joined to
-    the node if that was asked.
+    """``t`` (D,): of the dead point. ``found`` (D,): whether it is proved to be one, and joined to
+    the node.
     """
 
     t: Array
@@ -53,7 +54,6 @@ def dead_points(
     coefficients: Mapping[str, Array],
     nodes: LastNodes,
     way: int,
-    certified: bool,
 ) -> Folds:
     """The dead point right ahead of every node, downwards (way 0) or upwards (1).
 
@@ -71,7 +71,7 @@ def dead_points(
     found = Folds(t=np.full(count, np.nan), found=np.zeros(count, dtype=bool))
     for lead in np.unique(leads):
         mine = np.flatnonzero(leads == lead)
-        _led_by(table, int(lead), zeros, coefficients, nodes, mine, certified, found)
+        _led_by(table, int(lead), zeros, coefficients, nodes, mine, way, found)
     found.found[:] &= (found.t >= nodes.t) if way else (found.t <= nodes.t)
     return found
 
@@ -82,33 +82,79 @@ def _led_by(
     zeros: Set[str],
     coefficients: Mapping[str, Array],
     nodes: LastNodes,
-    mine: np.ndarray,
-    certified: bool,
+    mine: IndexArray,
+    way: int,
     found: Folds,
 ) -> None:
-    programs = fold_programs(table, lead, zeros, certified)
+    programs = fold_programs(table, lead, zeros)
     n = table.unknowns
     own = {name: values[mine] for name, values in coefficients.items()}
     at_node = _at_node(nodes, lead, mine)
-    named = ["step", "move", "bend", "live", "seeking", "good" if certified else "live"]
     others = [k for k in range(n + 1) if k != lead]
-    named += [*(f"v{k}" for k in range(n + 1)), *(f"r{k}" for k in others)]
-    run_on = _Runner(programs, own | at_node)
-    out = dict(zip(named, run_on.search(named), strict=True))
+    named = ["step", "move", "bend", "live", "seeking", "good", "sound"]
+    named += [*(f"v{k}" for k in range(n + 1)), *(f"{r}{k}" for k in others for r in "re")]
+    out = dict(zip(named, _Runner(programs, own | at_node).search(named), strict=True))
     size = own.get(f"scale{lead}", np.ones(len(mine)))
     with np.errstate(invalid="ignore"):
-        fine = (out["live"] == 0.0) & (out["seeking"] == 0.0)
+        fine = (out["live"] == 0.0) & (out["seeking"] == 0.0) & (out["sound"] > 0.5)
         fine &= (out["step"] <= _TOLERANCE) & (out["move"] <= _CLOSE)
         fine &= np.abs(out["bend"]) * size**2 >= _STRAIGHT
-    if certified:
-        proved = out["good"] > 0.5
-        both = own | at_node | _both_ends(at_node, out, lead, others)
-        for parts in _PARTS:
-            left = np.flatnonzero(fine & ~proved)
-            some = _Runner(programs, {name: values[left] for name, values in both.items()})
-            proved[left] = some.proved_in(parts)
-        fine &= proved
+    proved = out["good"] > 0.5
+    both = own | at_node | _both_ends(at_node, out, lead, others)
+    for parts in _PARTS:
+        left = np.flatnonzero(fine & ~proved)
+        some = _Runner(programs, {name: values[left] for name, values in both.items()})
+        proved[left] = some.proved_in(parts)
+    fine &= proved
+    left = np.flatnonzero(fine)
+    fine[left] = _turns(programs, own, out, lead, others, left, way)
+    left = np.flatnonzero(fine & (out[f"e{n}"] > _EXACT * np.maximum(1.0, np.abs(out[f"v{n}"]))))
+    for k in left:
+        v = np.array([out[f"v{j}"][k] for j in range(n + 1)])
+        out[f"v{n}"][k] = _exact(table, {name: values[k] for name, values in own.items()}, v, lead)
     found.t[mine], found.found[mine] = np.where(fine, out[f"v{n}"], np.nan), fine
+
+
+def _turns(
+    programs: FoldPrograms,
+    coefficients: Mapping[str, Array],
+    dead: Mapping[str, Array],
+    lead: int,
+    others: Sequence[int],
+    left: IndexArray,
+    way: int,
+) -> BoolArray:
+    """Whether t is proved to turn back at some places: on both sides it is less far than there."""
+    n, sign = len(others), 1.0 if way else -1.0
+    given = {name: values[left] for name, values in coefficients.items()}
+    given |= {f"w{k}": dead[f"v{k}"][left] for k in (lead, *others)}
+    given |= {f"x{k}": dead[f"e{k}"][left] for k in others}
+    given |= {f"x{lead}": np.zeros(len(left)), "bend": dead["bend"][left]}
+    t, error = given[f"w{n}"], given[f"x{n}"]
+    turns = np.ones(len(left), dtype=bool)
+    for side in (-1.0, 1.0):
+        runner = _Runner(programs, given | {"side": np.full(len(left), side)})
+        good, beside, off = runner.beside(["good", f"v{n}", f"e{n}"])
+        with np.errstate(invalid="ignore"):
+            turns &= (good > 0.5) & (sign * (t - beside) > error + off)
+    return turns
+
+
+def _exact(table: LoopTable, coefficients: Mapping[str, float], v: Array, lead: int) -> float:
+    """The last variable of a position of one design (n + 1,), corrected to rounding."""
+    loops, lines = table.loops, table.linear
+    factors = np.array([
+        complex(*(coefficients.get(f"c{term}.{part}", 0.0) for part in ("re", "im")))
+        for term in range(len(loops.row))
+    ])  # fmt: skip
+    constants = [coefficients.get(f"k{row}", 0.0) for row in range(len(lines.constant))]
+    own = replace(
+        table,
+        loops=replace(loops, coefficient=factors),
+        linear=replace(lines, constant=np.array(constants)),
+    )
+    slopes = np.delete(own.jacobian(v[None, :])[0], lead, axis=1)
+    return float(v[-1] - np.linalg.solve(slopes, own.exact_residual(v)[0])[-1])
 
 
 def _at_node(nodes: LastNodes, lead: int, mine: np.ndarray) -> dict[str, Array]:
@@ -148,14 +194,31 @@ class _Runner:
 
     def search(self, wanted: Sequence[str]) -> Array:
         """Registers (W, D) when the dead points are found, and the arcs to them tried in one."""
-        programs, prove = self.programs, self.programs.prove
+        programs = self.programs
         out = np.empty((len(wanted), self.given.shape[1]))
         _search(
             programs.iterate.code,
             programs.move.code,
-            np.empty((0, 5), np.uint32) if prove is None else prove.code,
+            programs.prove.code,
             self.space,
             *self.registers.all_of(["live", "seeking"]),
+            self.registers.all_of(wanted),
+            self.places,
+            self.given,
+            out,
+        )
+        return out
+
+    def beside(self, wanted: Sequence[str]) -> Array:
+        """Registers (W, D) at a place beside another one, and whether the arc to it is proved."""
+        programs = self.programs
+        out = np.empty((len(wanted), self.given.shape[1]))
+        _beside(
+            programs.aside.code,
+            programs.iterate.code,
+            programs.prove.code,
+            self.space,
+            *self.registers.all_of(["live"]),
             self.registers.all_of(wanted),
             self.places,
             self.given,
@@ -166,9 +229,6 @@ class _Runner:
     def proved_in(self, parts: int) -> BoolArray:
         """Whether so many parts prove the arcs, (D,)."""
         programs = self.programs
-        assert programs.between is not None
-        assert programs.prove is not None
-        assert programs.advance is not None
         proved = np.zeros(self.given.shape[1], dtype=bool)
         _prove_in_parts(
             programs.between.code,
@@ -223,8 +283,23 @@ def _search(  # type: ignore[no-untyped-def]
                 open_ += w[seeking, i]
             if open_ == 0.0:
                 break
-        if len(prove):
-            run(prove, w)
+        run(prove, w)
+        for lane in range(min(LANES, count - base)):
+            for j in range(len(wanted)):
+                out[j, base + lane] = w[wanted[j], lane]
+
+
+@compiled
+def _beside(  # type: ignore[no-untyped-def]
+    aside, iterate, prove, w, live, wanted, places, given, out
+):
+    """A place beside the one in ``w``, and the proof of the arc to it."""
+    count = given.shape[1]
+    for base in range(0, count, LANES):
+        _load(w, places, given, base)
+        run(aside, w)
+        _solve(iterate, w, live)
+        run(prove, w)
         for lane in range(min(LANES, count - base)):
             for j in range(len(wanted)):
                 out[j, base + lane] = w[wanted[j], lane]
