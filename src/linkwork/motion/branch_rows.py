@@ -13,11 +13,12 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.motion import by_kernels
 from linkwork.motion.drive import Drive
-from linkwork.motion.last_rows import fill_last_rows
+from linkwork.motion.last_rows import fill_last_rows, fill_passed_rows
 from linkwork.motion.limits import BranchEnd, ends_of
 from linkwork.motion.proving import inputs_apart, prove_rows
 from linkwork.motion.rows import SolvedRows
 from linkwork.motion.tracking import track_to
+from linkwork.numerics.passage import Passage
 from linkwork.numerics.track import (
     BOLD,
     Node,
@@ -98,16 +99,22 @@ class Report:
 
 
 def rows_of_branch(
-    drive: Drive, anchor: Node, asked: Asked, report: Report, certify: bool
+    drive: Drive,
+    anchor: Node,
+    asked: Asked,
+    report: Report,
+    certify: bool,
+    passage: Passage | None = None,
 ) -> BranchRows:
     """Follow the branch of ``anchor`` over the values asked for and solve those that lie on it.
 
-    The track is bold first; where that leaves rows unproved it is followed again with care.
+    The track is bold first; where that leaves rows unproved it is followed again with care. With a
+    ``passage`` that led to the anchor the branch is followed onwards only.
     """
     provable = all(block.system.bends_boundedly for block in drive.solver.blocks)
     tries = (BOLD, None) if certify and provable else (None,)
     for care in tries:
-        track = _covering(drive, anchor, asked.t, care, report)
+        track = _covering(drive, anchor, asked.t, care, report, passage)
         placed = _placed(track, asked.t, drive.free)
         work = _Rows(
             drive=drive, track=track, placed=placed, asked=asked, report=report, certify=certify
@@ -119,6 +126,8 @@ def rows_of_branch(
     if not to_ends:
         ends = tuple(end.demoted(Certification.MOTION_NOT_PROVED) for end in ends)
     fill_last_rows(drive, track, ends, asked.t, placed, rows)
+    if passage is not None:
+        fill_passed_rows(drive, passage, asked.t, placed, rows)
     _mark_missing(rows, track, asked.t, np.isnan(placed), ends)
     return BranchRows(rows=rows, track=track, placed=placed, ends=ends, proved_to_ends=to_ends)
 
@@ -131,11 +140,19 @@ def _doubtful(rows: SolvedRows, placed: Array, to_ends: bool) -> bool:
 
 
 def _covering(
-    drive: Drive, anchor: Node, t: Array, care: TrackOptions | None, report: Report
+    drive: Drive,
+    anchor: Node,
+    t: Array,
+    care: TrackOptions | None,
+    report: Report,
+    passage: Passage | None,
 ) -> Track:
     """A track over the table's range, wound on the other way where a limit cuts it short."""
     solver, path = drive.solver, drive.path
     low, high = float(t.min()), float(t.max())
+    if passage is not None:  # the way back leads to the change point
+        goals = [t for t in (low, high) if passage.side * (t - anchor.t) >= 0.0]
+        return track_to(solver, path, anchor, goals, care, report.tracked)
     track = track_to(solver, path, anchor, [low, high], care, report.tracked)
     if not drive.free:
         return track

@@ -1,7 +1,7 @@
-"""The rows right before a dead point, where the input leads the motion no longer well.
+"""Rows right before a dead point and around change points, where the input leads no longer well.
 
-There the position is found with the variable that leads through the dead point: its value at which
-the input has the value asked for.
+Before a dead point the position is found with the variable that leads through it: its value at
+which the input has the value asked for. Around change points it lies on the way across them.
 """
 
 from __future__ import annotations
@@ -19,12 +19,13 @@ from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.rows import SolvedRows
 from linkwork.numerics.divided_steps import sign_change
-from linkwork.numerics.proof import prove
+from linkwork.numerics.passage import Passage
+from linkwork.numerics.proof import Proof, prove
 from linkwork.numerics.proven_curve import same_solution
 from linkwork.numerics.track import Track
 from linkwork.numerics.turning_point import TurnAhead
 
-__all__ = ["fill_last_rows"]
+__all__ = ["fill_last_rows", "fill_passed_rows"]
 
 _UNIT = np.finfo(float).eps
 _SAME = 1e-6  # weighted: a position moves no further when its input is made exact
@@ -44,52 +45,79 @@ def fill_last_rows(
     that were not found; it gets the values of the rows that are found here.
     """
     for end in ends:
-        if end.ahead is None or not end.ahead.located:
-            continue
         edge = track.last_t if end.side > 0 else track.first_t
-        for row, here in _between(t, np.isnan(placed), edge, end, drive.free):
-            if _fill(drive, end, end.ahead, here, row, rows):
+        for row, here in _between(t, np.isnan(placed), edge, end.t, drive.free):
+            if end.passage is not None:
+                standing = Certification.MOTION_NOT_PROVED
+                _enter_passed(drive, end.passage, here, row, rows, standing)
+                placed[row] = here
+            elif end.ahead is not None and _fill(drive, end, end.ahead, here, row, rows):
                 placed[row] = here
 
 
+def fill_passed_rows(
+    drive: Drive, passage: Passage, t: Array, placed: Array, rows: SolvedRows
+) -> None:
+    """Fill the rows between the first change point on a way and its end."""
+    begin, end = passage.crossings[0][0].t, passage.node.t
+    for row, here in _between(t, np.isnan(placed), begin, end, False):
+        _enter_passed(drive, passage, here, row, rows, Certification.BRANCH_CHOSEN)
+        placed[row] = here
+
+
 def _between(
-    t: Array, missing: BoolArray, edge: float, end: BranchEnd, free: bool
+    t: Array, missing: BoolArray, a: float, b: float, free: bool
 ) -> Iterator[tuple[int, float]]:
-    """The rows that belong between the edge and the end of a branch, and where."""
-    middle = 0.5 * (edge + end.t)
-    turns = np.round((middle - t) / FULL_TURN) if free else np.zeros(len(t))
+    """The rows that belong between two values of t, and where."""
+    turns = np.round((0.5 * (a + b) - t) / FULL_TURN) if free else np.zeros(len(t))
     here = t + turns * FULL_TURN
-    inside = missing & (end.side * (here - edge) > 0.0) & (end.side * (end.t - here) > 0.0)
+    inside = missing & (here > min(a, b)) & (here < max(a, b))
     for row in np.flatnonzero(inside):
         yield int(row), float(here[row])
+
+
+def _enter_passed(
+    drive: Drive, passage: Passage, t: float, row: int, rows: SolvedRows, standing: Certification
+) -> None:
+    """Enter one row on the way across change points, where positions are too ill-conditioned for
+    Newton-Raphson to improve them.
+    """
+    v = passage.position(t)[0]
+    proof = _enter(drive, v, row, rows)
+    if proof is not None and proof.holds[0]:
+        rows.certification[row] = standing.code
+        rows.radius[row], rows.unique[row] = proof.radius[0], proof.alone_within[0]
+
+
+def _enter(drive: Drive, v: Array, row: int, rows: SolvedRows) -> Proof | None:
+    """Enter a position (N,) as a row, not proved yet; its proof, ``None`` if there can be none."""
+    solver, here = drive.solver, v[None, :]
+    rates = solver.rates(here, drive.path.rate)
+    rows.v[row], rows.first[row], rows.second[row] = v, rates.first[0], rates.second[0]
+    rows.status[row] = Status.CONVERGED.code
+    rows.residual[row], rows.condition[row] = solver.residual(here)[0], rates.condition[0]
+    if rows.certification[row] == Certification.NOT_ASKED.code:
+        return None
+    bounded = all(block.system.bends_boundedly for block in solver.blocks)
+    why = Certification.POSITION_NOT_PROVED if bounded else Certification.NO_BOUND
+    rows.certification[row] = why.code
+    rounding = 4.0 * _UNIT * np.abs(here[:, solver.unknowns :])
+    return prove(solver, here, rounding) if bounded else None
 
 
 def _fill(
     drive: Drive, end: BranchEnd, ahead: TurnAhead, t: float, row: int, rows: SolvedRows
 ) -> bool:
     """Solve one row at a value of the path; whether it was found."""
-    solver, p = drive.solver, drive.leads.parameter
-    v = _position(drive, ahead, t)
+    v = _position(drive, ahead, t) if ahead.located else None
     if v is None:
         return False
-    here = v[None, :]
-    rates = solver.rates(here, drive.path.rate)
-    where = np.array([row])
-    rows.v[where], rows.first[where], rows.second[where] = here, rates.first, rates.second
-    rows.status[where] = Status.CONVERGED.code
-    rows.residual[where], rows.condition[where] = solver.residual(here), rates.condition
-    if rows.certification[row] == Certification.NOT_ASKED.code:
+    proof, own = _enter(drive, v, row, rows), drive.leads.by(drive.leads.parameter)
+    if proof is None or own is None or not proof.holds[0]:
         return True
-    own = drive.leads.by(p)
-    rounding = 4.0 * _UNIT * np.abs(here[:, solver.unknowns :])
-    proof = None if own is None or not own.provable else prove(solver, here, rounding)
-    if proof is None or own is None:
-        rows.certification[where] = Certification.NO_BOUND.code
-    elif not (proof.holds[0] and same_solution(ahead.leg.led, own, v)):
-        rows.certification[where] = Certification.POSITION_NOT_PROVED.code
-    else:
-        rows.certification[where] = end.certification.code
-        rows.radius[where], rows.unique[where] = proof.radius, proof.alone_within
+    if same_solution(ahead.leg.led, own, v):
+        rows.certification[row] = end.certification.code
+        rows.radius[row], rows.unique[row] = proof.radius[0], proof.alone_within[0]
     return True
 
 

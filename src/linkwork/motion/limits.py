@@ -22,6 +22,7 @@ from linkwork.numerics.change_point import (
     most_singular,
 )
 from linkwork.numerics.leaders import Led
+from linkwork.numerics.passage import Passage, pass_change_points
 from linkwork.numerics.proven_curve import same_solution
 from linkwork.numerics.track import End, Node, Track
 from linkwork.numerics.turning_point import TurnAhead, TurningPoint, turn_beyond
@@ -31,6 +32,7 @@ __all__ = [
     "BranchEnd",
     "change_point_limit",
     "dead_point_limit",
+    "end_at_change_point",
     "end_at_dead_point",
     "ends_of",
 ]
@@ -38,7 +40,6 @@ __all__ = [
 _UNIT = np.finfo(float).eps
 _MOVES = 1e-7  # weighted: a direction along which the input moves at all
 _SOUND = 1e4  # condition up to which a node is as good as any
-_SAME_INPUT = 1e-11  # relative: a value asked for at a limit is that limit's
 _TOUCHING = 1e-12  # residual at a located crossing, where Newton-Raphson must not take a step
 
 
@@ -48,7 +49,8 @@ class BranchEnd:
 
     ``side``: +1 at the upper end, -1 at the lower. ``t``: of the path; ``slack``: how far a value
     that is meant to be this end's may be from it. ``v`` (N,): the position. ``first`` (N,):
-    derivatives there, NaN where they do not exist. ``crossing``: if branches cross there.
+    derivatives there, NaN where they do not exist. ``crossings``: if branches cross there, with
+    ``nodes``, the track that led there in the order of travel, and the ``passage`` straight on.
     ``led``, ``node``: a dead point as another leader sees it; ``ahead``: the way to it from the
     last position that the input leads to well.
     ``radius``, ``unique``: of its proof.
@@ -60,7 +62,9 @@ class BranchEnd:
     slack: float = 0.0
     v: Array | None = None
     first: Array | None = None
-    crossing: ChangePoint | None = None
+    crossings: tuple[ChangePoint, ...] = ()
+    nodes: tuple[Node, ...] = ()
+    passage: Passage | None = None
     led: Led | None = None
     node: Node | None = None
     ahead: TurnAhead | None = None
@@ -102,7 +106,7 @@ def _end(drive: Drive, nodes: Sequence[Node], end: End, side: float, certify: bo
     if end.status is not Status.START_SINGULAR:
         crossing = locate_change_point(drive.solver, drive.path, nodes[-1], side)
         if crossing is not None:
-            return _crossing_end(drive, crossing, side, certify)
+            return _crossing_end(drive, nodes, crossing, side, certify)
         ahead = _turn_ahead(drive, nodes, side)
         if ahead is not None:
             return _dead_end(drive, nodes[-1], ahead, side, certify)
@@ -182,44 +186,86 @@ def end_at_dead_point(
 
 def dead_point_limit(drive: Drive, turn: TurningPoint) -> Limit:
     """What is told of a dead point, everyday units."""
-    return _located(drive, turn, LimitKind.DEAD_POINT, most_singular(drive.solver, turn.v))
+    return _located(drive, turn, LimitKind.DEAD_POINT, _locking(drive, turn.v))
+
+
+def _locking(drive: Drive, v: Array) -> tuple[int, ...]:
+    """The number of the block that locks at a position (N,), if one does."""
+    block = most_singular(drive.solver, v)
+    return () if block is None else (block,)
 
 
 def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
     """What is told of a change point between two curves, everyday units."""
     leads = drive.leads
-    p, block = leads.parameter, most_singular(drive.solver, crossing.v)
+    p = leads.parameter
     rates = []
     for direction in crossing.directions:
         moving = abs(float(direction[p] / leads.scale[p])) > _MOVES
         rates.append(direction / direction[p] if moving else np.full(len(direction), np.nan))
     taking_part = np.any(crossing.directions != 0.0, axis=0)
     onward, other = (_rates(drive.model, np.where(taking_part, rate, np.nan)) for rate in rates)
-    limit = _located(drive, crossing, LimitKind.CHANGE_POINT, block)
+    blocks = _locking(drive, crossing.v)
+    limit = _located(drive, crossing, LimitKind.CHANGE_POINT, blocks)
     return replace(limit, onward=onward, other=other)
 
 
-def _crossing_end(drive: Drive, crossing: ChangePoint, side: float, certify: bool) -> BranchEnd:
-    solver, model = drive.solver, drive.model
-    limit = replace(
-        _located(drive, crossing, LimitKind.CHANGE_POINT, crossing.block),
-        onward=_rates(model, crossing.onward),
-        other=_rates(model, crossing.other),
+def _crossing_end(
+    drive: Drive, nodes: Sequence[Node], first: ChangePoint, side: float, certify: bool
+) -> BranchEnd:
+    """The end of a branch at the change point of a block, and of all that cross at that input."""
+    passage = pass_change_points(drive.solver, drive.path, nodes, first.t, side, turn=False)
+    if passage is None:
+        rates = first.onward.copy()
+        rates[drive.solver.unknowns :] = drive.path.rate
+        end = end_at_change_point(drive, (first,), first.v, rates, side, certify)
+    else:
+        group = passage.crossings[0]
+        end = end_at_change_point(drive, group, *passage.position(group[0].t), side, certify)
+    return replace(end, passage=passage, nodes=tuple(nodes))
+
+
+def end_at_change_point(
+    drive: Drive,
+    crossings: tuple[ChangePoint, ...],
+    v: Array,
+    first: Array,
+    side: float,
+    certify: bool,
+) -> BranchEnd:
+    """The end of a branch where blocks cross other branches, all at one input.
+
+    ``v``, ``first`` (N,): the position, and its derivatives on the branch that was followed.
+    """
+    solver, model, t = drive.solver, drive.model, crossings[0].t
+    low = min(crossing.bracket[0] for crossing in crossings)
+    high = max(crossing.bracket[1] for crossing in crossings)
+    place = Crossing(
+        t=t,
+        v=v,
+        directions=crossings[0].directions,
+        bracket=(low, high),
+        located=all(crossing.located for crossing in crossings),
     )
-    start = crossing.v.copy()
+    blocks = [crossing.block for crossing in crossings]
+    onward: dict[str, float] = {}
+    other: dict[str, float] = {}
+    for crossing in crossings:
+        onward |= _rates(model, crossing.onward)
+        other |= _rates(model, crossing.other)
     done = solver.solve(
-        start[None, :], replace(solver.options, equation_tolerance=_TOUCHING, max_steps=8)
+        v[None, :], replace(solver.options, equation_tolerance=_TOUCHING, max_steps=8)
     )
-    first = crossing.onward.copy()
-    first[solver.unknowns :] = drive.path.rate
     return BranchEnd(
         side=side,
-        limit=limit,
-        t=crossing.t,
-        slack=_SAME_INPUT * max(1.0, abs(crossing.t)),
+        limit=replace(
+            _located(drive, place, LimitKind.CHANGE_POINT, blocks), onward=onward, other=other
+        ),
+        t=t,
+        slack=max(high - t, t - low),
         v=done.v[0] if done.status[0] == Status.CONVERGED.code else None,
         first=first,
-        crossing=crossing,
+        crossings=crossings,
         certification=Certification.POSITION_NOT_PROVED if certify else Certification.NOT_ASKED,
     )
 
@@ -237,12 +283,12 @@ class _Place(Protocol):
     def located(self) -> bool: ...
 
 
-def _located(drive: Drive, place: _Place, kind: LimitKind, block: int | None) -> Limit:
-    """What is told of it: ``block`` is the number of the one that locks."""
+def _located(drive: Drive, place: _Place, kind: LimitKind, blocks: Sequence[int]) -> Limit:
+    """What is told of it: ``blocks`` are the numbers of those that lock."""
     model = drive.model
     low, high = (edge / drive.unit for edge in place.bracket)
     status = Status.OUT_OF_REACH if kind is LimitKind.DEAD_POINT else Status.CHANGE_POINT
-    equations = () if block is None else drive.solver.blocks[block].equations
+    equations = [e for block in blocks for e in drive.solver.blocks[block].equations]
     return Limit(
         kind=kind,
         input=float(place.t / drive.unit) + 0.0,
@@ -250,7 +296,7 @@ def _located(drive: Drive, place: _Place, kind: LimitKind, block: int | None) ->
         located=bool(place.located),
         status=status,
         loops=tuple(model.equations.labels[e] for e in equations),
-        in_line=() if block is None else links_in_line(model, block, place.v),
+        in_line=tuple(dict.fromkeys(n for b in blocks for n in links_in_line(model, b, place.v))),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -138,7 +139,15 @@ class SweepTable:
         return self._named(end, places[0].t) if places else end
 
     def _named(self, end: BranchEnd, here: float) -> BranchEnd:
-        return end.named(float(self._inputs(end, here)[0, self.drive.lead]))
+        """The end named at a place; as a row that was asked for there is, if it may be that."""
+        lead = self.drive.lead
+        named = end.named(float(self._inputs(end, here)[0, lead]))
+        low, high = named.limit.bracket
+        for row in np.flatnonzero(np.abs(self.asked.t - here) <= _slack_at(here)):
+            asked = float(self.asked.everyday[row, lead])
+            if low <= asked <= high:
+                return replace(named, limit=replace(named.limit, input=asked))
+        return named
 
     def _places(self, end: BranchEnd) -> list[_PlaceOfEnd]:
         """Where an end belongs in the table, best first.

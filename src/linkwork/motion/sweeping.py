@@ -15,7 +15,7 @@ from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.status import Status
 from linkwork.motion.around import further_branches
 from linkwork.motion.branch_rows import Asked, BranchRows, Report, rows_of_branch
-from linkwork.motion.crossing import beyond_change_point
+from linkwork.motion.crossing import beyond_change_point, ends_passed
 from linkwork.motion.drive import Drive
 from linkwork.motion.extremes import check_quantities, output_limit_at, output_limits
 from linkwork.motion.limits import BranchEnd
@@ -30,6 +30,7 @@ from linkwork.motion.sweep_table import NamedEnd, SweepTable
 from linkwork.motion.tracking import track_to
 from linkwork.numerics.leaders import coincide, whole_turns
 from linkwork.numerics.newton import NewtonOptions
+from linkwork.numerics.passage import Passage
 from linkwork.numerics.track import InputPath, Node, Track, follow, node_at
 from linkwork.results.motion import Limit, Motion, OutputLimit
 
@@ -188,8 +189,15 @@ class _Sweep:
         self.ends = table.put_ends([*below[::-1], *above])
         self.limits = [end.limit for end in self.ends]
 
-    def _branch(self, anchor: Node, asked: Asked, name: str, standing: Certification) -> BranchRows:
-        found = rows_of_branch(self.drive, anchor, asked, self.report, self.certify)
+    def _branch(
+        self,
+        anchor: Node,
+        asked: Asked,
+        name: str,
+        standing: Certification,
+        passage: Passage | None = None,
+    ) -> BranchRows:
+        found = rows_of_branch(self.drive, anchor, asked, self.report, self.certify, passage)
         found.rows.demote(standing)
         found.rows.branch[found.converged] = name
         return found
@@ -218,19 +226,20 @@ class _Sweep:
         table, name, met = first.table, first.name, []
         for _ in range(_MOST_CROSSINGS):
             beyond = table.not_straight(end)
-            if policy is ChangePointPolicy.STOP or end.crossing is None or not len(beyond):
+            if policy is ChangePointPolicy.STOP or not (end.crossings and len(beyond)):
                 break
-            node = beyond_change_point(self.drive, end.crossing, end.side, policy)
-            if node is None:
+            passage = beyond_change_point(self.drive, end, policy)
+            if passage is None:
                 break
-            if misfit(self.model.equations, node.v[None, :])[0] > FITS:
+            if misfit(self.model.equations, passage.node.v[None, :])[0] > FITS:
                 table.leave_out(beyond, Status.DOES_NOT_FIT)
                 break
-            passed = replace(end, limit=replace(end.limit, passed=policy.value))
-            met.append((passed, name))
-            name = self.model.circuit
+            for passed in ends_passed(self.drive, end, passage, self.certify):
+                limit = replace(passed.limit, passed=policy.value)
+                met.append((replace(passed, limit=limit), name))
+                name = self.model.circuit
             standing = Certification.BRANCH_CHOSEN
-            found = self._branch(node, table.asked.take(beyond), name, standing)
+            found = self._branch(passage.node, table.asked.take(beyond), name, standing, passage)
             self._keep(table, found, name, standing, table.take(found, beyond))
             ahead = [other for other in found.ends if other.side == end.side]
             if not ahead:

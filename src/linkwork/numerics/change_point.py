@@ -12,7 +12,9 @@ C = wᵀD²F[z2, z2].
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -25,13 +27,16 @@ from linkwork.numerics.track import InputPath, Node
 __all__ = [
     "ChangePoint",
     "Crossing",
+    "KnownJet",
     "crossing_near",
     "locate_change_point",
+    "locate_crossing",
     "most_singular",
 ]
 
 _UNIT = np.finfo(float).eps
 _STEPS = 12
+_FAR = 1e-3  # ratio of a block's singular values from which on it is far from a singular position
 _UNFOLDED = 1e-13  # |β| beyond which the branches pass each other without touching
 
 
@@ -67,6 +72,18 @@ class Crossing:
     located: bool
 
 
+@dataclass(frozen=True)
+class KnownJet:
+    """What some equations take as known as a motion: y, y', y'' by t, (p,) each."""
+
+    at: Callable[[float], tuple[Array, Array, Array]]
+
+    @classmethod
+    def along(cls, path: InputPath) -> KnownJet:
+        """The inputs on a path."""
+        return cls(lambda t: (path.at(t), path.rate, np.zeros_like(path.rate)))
+
+
 def locate_change_point(
     solver: BlockSolver, path: InputPath, last: Node, side: float
 ) -> ChangePoint | None:
@@ -82,44 +99,102 @@ def locate_change_point(
     Returns
     -------
     ChangePoint or None
-        ``None`` if the branches only come near each other, or there is none on that side.
+        Of the first block in solving order that has one; what it depends on is regular. ``None`` if
+        the branches only come near each other, or there is none on that side.
     """
-    block = most_singular(solver, last.v)
-    if block is None:
+    inputs = solver.variable_scale[solver.unknowns :]
+    near = 1e-3 * float(np.min(inputs[path.rate != 0.0] / np.abs(path.rate[path.rate != 0.0])))
+    singular = nearly_singular(solver, last.v)
+    for block in singular:
+        members = closure_of(solver, block)
+        if any(other in members for other in singular if other != block):
+            continue
+        system = JoinedBlocks(solver, members)
+        mine = system.order[: system.unknowns]
+        known = KnownJet.along(path)
+        found = _located(system, known, last.v[mine], last.t, last.first[mine])
+        if found is None or (found.t - last.t) * side < -1e-3 * near:
+            continue
+        if abs(found.t - last.t) > near:
+            continue
+        v = last.v + (found.t - last.t) * last.first
+        v[mine], v[solver.unknowns :] = found.x, path.at(found.t)
+        return _placed_point(solver, path.rate, block, mine, v, found)
+    return None
+
+
+def locate_crossing(
+    solver: BlockSolver, number: int, known: KnownJet, x: Array, t: float, own: Array
+) -> ChangePoint | None:
+    """The change point of one block, given how everything moves that it takes as known.
+
+    Parameters
+    ----------
+    number : int
+        Of the block.
+    known : KnownJet
+        Of the block's known variables.
+    x, t : (n,), float
+        Near it.
+    own : (n,)
+        Derivatives by t of the branch that is followed.
+    """
+    block = solver.blocks[number]
+    found = _located(block.system, known, x, t, own)
+    if found is None:
         return None
-    system = JoinedBlocks(solver, closure_of(solver, block))
-    n, order = system.unknowns, system.order
-    crossing = _Crossing(system, path)
-    found = crossing.solve(last.v[order[:n]], last.t)
+    y, rate, _ = known.at(found.t)
+    v = np.full(solver.variables, np.nan)
+    v[block.variables] = np.concatenate([found.x, y])
+    moving = np.zeros(solver.variables - solver.unknowns)
+    inputs = block.variables[len(found.x) :] - solver.unknowns
+    moving[inputs[inputs >= 0]] = rate[inputs >= 0]
+    return _placed_point(solver, moving, number, block.unknowns, v, found)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Located:
+    """A crossing of some equations: ``onward``, ``other`` as scaled directions (n + 1,)."""
+
+    x: Array
+    t: float
+    error: float
+    onward: Array
+    other: Array
+
+
+def _located(system: _Equations, known: KnownJet, x: Array, t: float, own: Array) -> _Located | None:
+    """The crossing near (x, t); ``own`` (n,) is the derivative of the branch that is followed."""
+    crossing = _Crossing(system, known)
+    found = crossing.solve(x, t)
     if found is None:
         return None
     x, t, w, beta, error = found
-    inputs = solver.variable_scale[solver.unknowns :]
-    near = 1e-3 * float(np.min(inputs[path.rate != 0.0] / np.abs(path.rate[path.rate != 0.0])))
-    if abs(beta) > _UNFOLDED or (t - last.t) * side < -1e-3 * near or abs(t - last.t) > near:
-        return None
-    tangents = crossing.tangents(x, t, w)
+    tangents = None if abs(beta) > _UNFOLDED else crossing.tangents(x, t, w)
     if tangents is None:
         return None
-    own = last.first[order[:n]] / system.variable_scale[:n]
-    rates = [_rate(z) for z in tangents]
-    if _distance(rates[1], own) < _distance(rates[0], own):
-        rates, tangents = rates[::-1], tangents[::-1]
-    onward, other = rates
-    whole = last.v + (t - last.t) * last.first
-    whole[order[:n]] = x
-    whole[solver.unknowns :] = path.at(t)
-    reach = error + 4.0 * _UNIT * max(1.0, abs(t))
-    weights = system.variable_scale[:n]
+    mine = own / crossing.weights
+    onward, other = sorted(tangents, key=lambda z: _distance(_rate(z), mine))
+    return _Located(x=x, t=t, error=error, onward=onward, other=other)
+
+
+def _placed_point(
+    solver: BlockSolver, rate: Array, block: int, mine: IndexArray, v: Array, found: _Located
+) -> ChangePoint:
+    """A crossing in the order of the whole; ``mine``: which variables are the equations' own."""
+    weights = solver.variable_scale[mine]
+    both = (found.onward, found.other)
+    onward, other = (_placed(solver, mine, _rate(z) * weights) for z in both)
+    reach = found.error + 4.0 * _UNIT * max(1.0, abs(found.t))
     return ChangePoint(
-        t=t,
-        bracket=(t - reach, t + reach),
-        v=whole,
-        onward=_placed(solver, order[:n], onward * weights),
-        other=_placed(solver, order[:n], other * weights),
-        directions=np.stack([_direction(solver, path, order[:n], z, weights) for z in tangents]),
+        t=found.t,
+        bracket=(found.t - reach, found.t + reach),
+        v=v,
+        onward=onward,
+        other=other,
+        directions=np.stack([_direction(solver, rate, mine, z, weights) for z in both]),
         block=block,
-        located=error <= 1e-9 * max(1.0, abs(t)),
+        located=found.error <= 1e-9 * max(1.0, abs(found.t)),
     )
 
 
@@ -131,7 +206,7 @@ def crossing_near(solver: BlockSolver, path: InputPath, block: int, v: Array) ->
     system = JoinedBlocks(solver, closure_of(solver, block))
     moving = int(np.argmax(np.abs(path.rate)))
     t = float((v[solver.unknowns + moving] - path.origin[moving]) / path.rate[moving])
-    found = _Crossing(system, path).solve(v[system.order[: system.unknowns]], t)
+    found = _Crossing(system, KnownJet.along(path)).solve(v[system.order[: system.unknowns]], t)
     if found is None or abs(found[3]) > _UNFOLDED:
         return None
     near = 1e-2 * float(solver.variable_scale[solver.unknowns + moving] / abs(path.rate[moving]))
@@ -152,11 +227,11 @@ def _rate(z: Array) -> Array:
 
 
 def _direction(
-    solver: BlockSolver, path: InputPath, where: IndexArray, z: Array, weights: Array
+    solver: BlockSolver, rate: Array, where: IndexArray, z: Array, weights: Array
 ) -> Array:
     whole = np.zeros(solver.variables)
     whole[where] = z[:-1] * weights
-    whole[solver.unknowns :] = z[-1] * path.rate
+    whole[solver.unknowns :] = z[-1] * rate
     unit: Array = whole / np.abs(whole / solver.variable_scale).max()
     return unit
 
@@ -168,8 +243,20 @@ def _placed(solver: BlockSolver, where: IndexArray, values: Array) -> Array:
 
 
 def most_singular(solver: BlockSolver, v: Array) -> int | None:
-    """The block with the smallest singular value, relative to its largest; ``None`` if all are far
-    from singular at v (N,).
+    """The block nearest to a singular position; ``None`` if all are far from it at v (N,)."""
+    ratios = _ratios(solver, v)
+    if not ratios or min(ratios) > _FAR:
+        return None
+    return int(np.argmin(ratios))
+
+
+def nearly_singular(solver: BlockSolver, v: Array) -> list[int]:
+    """The blocks that are near a singular position at v (N,), in solving order."""
+    return [k for k, ratio in enumerate(_ratios(solver, v)) if ratio <= _FAR]
+
+
+def _ratios(solver: BlockSolver, v: Array) -> list[float]:
+    """The smallest singular value of every block, relative to its largest.
 
     Columns of J are divided by their sizes near by: those of lengths that differ much are no sign
     of a singular position, one that is about to vanish is.
@@ -185,9 +272,7 @@ def most_singular(solver: BlockSolver, v: Array) -> int | None:
         scaled = j / system.equation_scale[:, None] / np.where(sizes > 0.0, sizes, 1.0)
         values = np.linalg.svd(scaled, compute_uv=False)
         ratios.append(float(values[-1] / values[0]) if values[0] > 0 else 0.0)
-    if not ratios or min(ratios) > 1e-3:
-        return None
-    return int(np.argmin(ratios))
+    return ratios
 
 
 def _near(system: System, v: Array) -> Array:
@@ -202,35 +287,56 @@ def _near(system: System, v: Array) -> Array:
     return largest
 
 
-class _Crossing:
-    """The extended system of one set of blocks, in scaled variables and equations."""
+class _Equations(Protocol):
+    """What locating a crossing needs to know of equations: a part of a System."""
 
-    def __init__(self, system: JoinedBlocks, path: InputPath) -> None:
-        self.system, self.path = system, path
+    @property
+    def unknowns(self) -> int: ...
+    @property
+    def equation_scale(self) -> Array: ...
+    @property
+    def variable_scale(self) -> Array: ...
+    def jacobian(self, v: Array) -> Array: ...
+    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]: ...
+    def second(self, v: Array, d: Array) -> Array: ...
+
+
+class _Crossing:
+    """The extended system of some equations, in scaled variables and equations."""
+
+    def __init__(self, system: _Equations, known: KnownJet) -> None:
+        self.system, self.known = system, known
         self.n = system.unknowns
         self.weights = system.variable_scale[: self.n]
         self.scale = system.equation_scale
-        count = len(system.variable_scale)
-        self.basis = np.zeros((self.n + 1, count))  # scaled unit steps of the unknowns, and of t
-        self.basis[: self.n, : self.n] = np.diag(self.weights)
-        self.basis[self.n, self.n :] = path.rate
 
-    def _at(self, x: Array, t: float) -> Array:
-        return np.concatenate([x, self.path.at(t)])[None, :]
+    def _at(self, x: Array, t: float) -> tuple[Array, Array, Array]:
+        """v (1, N), scaled unit steps of the unknowns and of t, (n + 1, N), and y'' (p,)."""
+        y, first, second = self.known.at(t)
+        basis = np.zeros((self.n + 1, self.n + len(y)))
+        basis[: self.n, : self.n] = np.diag(self.weights)
+        basis[self.n, self.n :] = first
+        return np.concatenate([x, y])[None, :], basis, second
 
     def linear(self, x: Array, t: float) -> tuple[Array, Array]:
         """F (n,) and D (n, n + 1), scaled."""
-        f, jacobian = self.system.residual_and_jacobian(self._at(x, t))
-        d = jacobian[0] @ self.basis.T / self.scale[:, None]
+        v, basis, _ = self._at(x, t)
+        f, jacobian = self.system.residual_and_jacobian(v)
+        d = jacobian[0] @ basis.T / self.scale[:, None]
         return f[0] / self.scale, d
 
     def bend(self, x: Array, t: float, w: Array) -> Array:
         """wᵀD²F over all pairs of scaled unit steps, (n + 1, n + 1)."""
         size = self.n + 1
         i, j = (index.ravel() for index in np.indices((size, size)))
-        v = np.repeat(self._at(x, t), size * size, axis=0)
-        values = self.system.mixed(v, self.basis[i], self.basis[j]) / self.scale
-        matrix: Array = (values @ w).reshape(size, size)
+        v, basis, second = self._at(x, t)
+        lanes = np.repeat(v, size * size, axis=0)
+        a, b = basis[i], basis[j]
+        values = 0.25 * (self.system.second(lanes, a + b) - self.system.second(lanes, a - b))
+        matrix: Array = (values / self.scale @ w).reshape(size, size)
+        if second.any():  # what is known does not move at a constant rate
+            slope = self.system.jacobian(v)[0, :, self.n :]
+            matrix[self.n, self.n] += float(w @ (slope @ second / self.scale))
         return matrix
 
     def solve(self, x: Array, t: float) -> tuple[Array, float, Array, float, float] | None:

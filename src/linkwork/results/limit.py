@@ -8,6 +8,7 @@ from enum import Enum
 from typing import Any
 
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.short_number import short_number
 from linkwork.foundation.status import Status
 
 __all__ = ["Limit", "LimitKind", "OutputLimit"]
@@ -84,7 +85,7 @@ class Limit:
 
         ``name`` and ``unit`` are the leading input's.
         """
-        text = f"{name} = {self.input:.12g} {unit}".rstrip()
+        text = f"{name} = {short_number(self.input):.12g} {unit}".rstrip()
         if self.loops:
             quoted = ", ".join(f'"{loop}"' for loop in self.loops)
             one = len(self.loops) == 1
