@@ -81,9 +81,9 @@ class BranchEnd:
         limit = replace(self.limit, input=value, bracket=bracket)
         return replace(self, limit=limit) if shift else self
 
-    def is_at(self, t: float) -> bool:
+    def is_at(self, t: float, rounding: float) -> bool:
         """Whether a value of the path that was asked for is this end's, and a position is there."""
-        return self.v is not None and abs(t - self.t) <= self.slack
+        return self.v is not None and abs(t - self.t) <= self.slack + rounding
 
     def demoted(self, standing: Certification) -> BranchEnd:
         """The end with what the way to its branch is worth, if it is proved on it."""

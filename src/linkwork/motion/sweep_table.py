@@ -73,7 +73,8 @@ class SweepTable:
         """Rows beyond the end of a branch that are not there, or only whole turns around."""
         missing = self.rows.status != Status.CONVERGED.code
         missing |= self._placed != self.asked.t
-        return np.flatnonzero(missing & (end.side * (self.asked.t - end.t) > 0.0))
+        slack = end.slack + 4.0 * _UNIT * abs(end.t)
+        return np.flatnonzero(missing & (end.side * (self.asked.t - end.t) > slack))
 
     def take(self, found: BranchRows, where: IndexArray) -> BoolArray:
         """Take rows of another branch, asked for at the rows ``where``; which of all were taken.
@@ -143,6 +144,8 @@ class SweepTable:
         lead = self.drive.lead
         named = end.named(float(self._inputs(end, here)[0, lead]))
         low, high = named.limit.bracket
+        if not named.limit.located:
+            return named
         for row in np.flatnonzero(np.abs(self.asked.t - here) <= _slack_at(here)):
             asked = float(self.asked.everyday[row, lead])
             if low <= asked <= high:

@@ -32,10 +32,12 @@ __all__ = [
     "locate_change_point",
     "locate_crossing",
     "most_singular",
+    "tangents_behind_kink",
 ]
 
 _UNIT = np.finfo(float).eps
 _STEPS = 12
+_SHARES = 17  # in which rates are led around a kink
 _FAR = 1e-3  # ratio of a block's singular values from which on it is far from a singular position
 _UNFOLDED = 1e-13  # |β| beyond which the branches pass each other without touching
 
@@ -83,6 +85,11 @@ class KnownJet:
         """The inputs on a path."""
         return cls(lambda t: (path.at(t), path.rate, np.zeros_like(path.rate)))
 
+    @classmethod
+    def resting(cls, y: Array, first: Array, second: Array) -> KnownJet:
+        """The same y, y', y'' whatever t is asked for."""
+        return cls(lambda t: (y, first, second))
+
 
 def locate_change_point(
     solver: BlockSolver, path: InputPath, last: Node, side: float
@@ -99,17 +106,14 @@ def locate_change_point(
     Returns
     -------
     ChangePoint or None
-        Of the first block in solving order that has one; what it depends on is regular. ``None`` if
-        the branches only come near each other, or there is none on that side.
+        Of the first block in solving order that has one: where several cross at one input, the
+        equations of the others lose more than one rank. ``None`` if the branches only come near
+        each other, or there is none on that side.
     """
     inputs = solver.variable_scale[solver.unknowns :]
     near = 1e-3 * float(np.min(inputs[path.rate != 0.0] / np.abs(path.rate[path.rate != 0.0])))
-    singular = nearly_singular(solver, last.v)
-    for block in singular:
-        members = closure_of(solver, block)
-        if any(other in members for other in singular if other != block):
-            continue
-        system = JoinedBlocks(solver, members)
+    for block in nearly_singular(solver, last.v):
+        system = JoinedBlocks(solver, closure_of(solver, block))
         mine = system.order[: system.unknowns]
         known = KnownJet.along(path)
         found = _located(system, known, last.v[mine], last.t, last.first[mine])
@@ -152,6 +156,51 @@ def locate_crossing(
     return _placed_point(solver, moving, number, block.unknowns, v, found)
 
 
+def tangents_behind_kink(
+    solver: BlockSolver,
+    point: ChangePoint,
+    before: tuple[Array, Array, Array],
+    after: tuple[Array, Array, Array],
+) -> tuple[Array, Array] | None:
+    """The rates (n,) of the branch followed and of the other one, where what is known has a kink.
+
+    Parameters
+    ----------
+    point : ChangePoint
+        Of a block, at the kink.
+    before, after : y, y', y'' (p,) each
+        What the block takes as known, on both sides of the kink.
+
+    Notes
+    -----
+    The rates of what is known are led from one side to the other, and both tangents with them:
+    straight on where both rest for a moment.
+    """
+    block = solver.blocks[point.block]
+    weights = block.system.variable_scale[: len(block.unknowns)]
+    x = point.v[block.unknowns]
+    here = np.stack([part[block.unknowns] / weights for part in (point.onward, point.other)])
+    last, slope = 0.0, np.zeros_like(here)
+    for share in np.linspace(0.0, 1.0, _SHARES)[1:].tolist():
+        y, first, second = (
+            (1.0 - share) * a + share * b for a, b in zip(before, after, strict=True)
+        )
+        crossing = _Crossing(block.system, KnownJet.resting(y, first, second))
+        w = np.linalg.svd(crossing.linear(x, point.t)[1])[0][:, -1]
+        found = crossing.tangents(x, point.t, w)
+        if found is None:
+            continue  # what is known rests
+        both = np.stack([_rate(z) for z in found])
+        if not np.isfinite(both).all():
+            return None
+        ahead = here + (share - last) * slope
+        if np.abs(both[::-1] - ahead).max() < np.abs(both - ahead).max():
+            both = both[::-1]
+        slope = (both - here) / (share - last)
+        here, last = both, share
+    return (here[0] * weights, here[1] * weights) if last == 1.0 else None
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Located:
     """A crossing of some equations: ``onward``, ``other`` as scaled directions (n + 1,)."""
@@ -163,7 +212,9 @@ class _Located:
     other: Array
 
 
-def _located(system: _Equations, known: KnownJet, x: Array, t: float, own: Array) -> _Located | None:
+def _located(
+    system: _Equations, known: KnownJet, x: Array, t: float, own: Array
+) -> _Located | None:
     """The crossing near (x, t); ``own`` (n,) is the derivative of the branch that is followed."""
     crossing = _Crossing(system, known)
     found = crossing.solve(x, t)

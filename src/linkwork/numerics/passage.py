@@ -19,18 +19,24 @@ import numpy as np
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import Block, BlockSolver, linearised
-from linkwork.numerics.change_point import ChangePoint, KnownJet, locate_crossing
+from linkwork.numerics.change_point import (
+    ChangePoint,
+    KnownJet,
+    locate_crossing,
+    tangents_behind_kink,
+)
 from linkwork.numerics.newton import newton
 from linkwork.numerics.track import InputPath, Node, follow, node_at
 
 __all__ = ["Passage", "pass_change_points"]
 
 _CONVERGED = Status.CONVERGED.code
-_HALVES = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # natural sizes of the path on both sides, tried in order
+_HALVES = (1e-2, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6)  # of the path's size, to both sides, in this order
 _STEPS = 4  # in which a block that does not cross is followed
 _OFF = 1e-3  # weighted: how far such a step may end from its prediction
 _CLOSER = 0.1  # a position belongs to a tangent it is so many times nearer to than to the other
-_REGULAR = 1e5  # condition from which on branches are as good as crossing
+_REGULAR = 3e6  # condition from which on branches are as good as crossing, as in tracks
+_BESIDE = 0.1  # of the way to the next kink: a crossing so near to a kink is taken together with it
 _DRIVEN = 2e-13  # relative: how well a crossing is located behind blocks that cross themselves
 
 
@@ -210,20 +216,23 @@ class _Walk:
             waiting = [point for point in waiting if point not in same]
 
     def _led(self, number: int, block: Block) -> list[_Piece] | None:
+        """The pieces of a block's motion from one kink of what drives it to the next."""
         x = self.start.v[block.unknowns]
         pieces: list[_Piece] = []
-        for begin, end in itertools.pairwise(list(self.kinks)):
-            steps = self._followed(block, begin, end, x)
+        kinks = list(self.kinks)
+        while len(kinks) > 1:
+            steps = self._followed(block, kinks[0], kinks[1], x)
             if steps is not None:
                 pairs = itertools.pairwise(steps)
                 pieces += [_through(a.t, a.jet, b.t, b.jet) for a, b in pairs]
-                x = steps[-1].x
-                continue
-            across = self._across(number, block, begin, end, x)
-            if across is None:
-                return None
-            pieces += across
-            x = across[-1].jet(end)[0]
+                del kinks[0]
+            else:
+                across = self._across(number, block, kinks, x)
+                if across is None:
+                    return None
+                pieces += across
+                del kinks[: kinks.index(across[-1].end)]
+            x = pieces[-1].jet(kinks[0])[0]
         return pieces
 
     def _known(self, block: Block, t: float, towards: float) -> tuple[Array, Array, Array]:
@@ -274,35 +283,70 @@ class _Walk:
         return steps
 
     def _across(
-        self, number: int, block: Block, begin: float, end: float, x: Array
+        self, number: int, block: Block, kinks: Sequence[float], x: Array
     ) -> list[_Piece] | None:
-        """The block led across the change point that lies between two values of t."""
+        """The block led across the change point ahead: to the next kink, or the one behind it."""
+        begin, end = kinks[0], kinks[1]
         before, _, condition = self._step(block, begin, x, end)
-        if not condition < _REGULAR:
+        point = self._located(number, block, before) if condition < _REGULAR else None
+        if point is None:
             return None
-        known = KnownJet(lambda t: self._known(block, t, begin))
-        h = self.near - begin
-        guess = x + h * before.first + 0.5 * h * h * before.second
-        own = before.first + h * before.second
-        point = locate_crossing(self.solver, number, known, guess, self.near, own)
-        if point is None or (point.t - begin) * (point.t - end) >= 0.0:
+        ahead = self.side * (end - point.t)
+        if len(kinks) > 2 and abs(ahead) < _BESIDE * abs(kinks[2] - end):
+            return self._at_kink(block, before, point, end, kinks[2])
+        if ahead <= 0.0 or self.side * (point.t - begin) <= 0.0:
             return None
         at = point.v[block.unknowns]
-        onward, other = point.onward[block.unknowns], point.other[block.unknowns]
-        chosen, left = (other, onward) if self.turn else (onward, other)
+        chosen, left = self._ways(point.onward[block.unknowns], point.other[block.unknowns])
         after = self._beyond(block, point.t, at, chosen, left, end)
         if after is None:
             return None
-        if self.found:
-            point = _less_sharp(point)
-        self.found.append(point)
+        self._keep(point)
         if not self.turn:
             return [_through(begin, before.jet, end, after.jet)]
-        self.kinks = sorted({*self.kinks, point.t}, key=lambda t: self.side * t)
         return [
-            _through(begin, before.jet, point.t, (at, onward)),
+            _through(begin, before.jet, point.t, (at, point.onward[block.unknowns])),
             _through(point.t, (at, chosen), end, after.jet),
         ]
+
+    def _at_kink(
+        self, block: Block, before: _Step, point: ChangePoint, kink: float, end: float
+    ) -> list[_Piece] | None:
+        """The block led across a change point at a kink of what drives it: both at one input."""
+        if not _is_at(point, kink):
+            return None  # so near to each other that nothing is resolved in between
+        sides = (before.t, end)
+        known = [self._known(block, kink, towards) for towards in sides]
+        both = tangents_behind_kink(self.solver, point, known[0], known[1])
+        if both is None:
+            return None
+        at = point.v[block.unknowns]
+        chosen, left = self._ways(*both)
+        after = self._beyond(block, kink, at, chosen, left, end)
+        if after is None:
+            return None
+        self._keep(replace(point, t=kink))
+        return [
+            _through(before.t, before.jet, kink, (at, point.onward[block.unknowns])),
+            _through(kink, (at, chosen), end, after.jet),
+        ]
+
+    def _located(self, number: int, block: Block, before: _Step) -> ChangePoint | None:
+        """The crossing of a block near the one that was met first."""
+        known = KnownJet(lambda t: self._known(block, t, before.t))
+        h = self.near - before.t
+        guess = before.x + h * before.first + 0.5 * h * h * before.second
+        own = before.first + h * before.second
+        return locate_crossing(self.solver, number, known, guess, self.near, own)
+
+    def _ways(self, onward: Array, other: Array) -> tuple[Array, Array]:
+        """The rates of the branch that was chosen, and of the one that is left."""
+        return (other, onward) if self.turn else (onward, other)
+
+    def _keep(self, point: ChangePoint) -> None:
+        self.found.append(_less_sharp(point) if self.found else point)
+        if self.turn:
+            self.kinks = sorted({*self.kinks, point.t}, key=lambda t: self.side * t)
 
     def _beyond(
         self, block: Block, t: float, at: Array, chosen: Array, left: Array, end: float
@@ -327,6 +371,12 @@ class _Walk:
 def _at_one_input(a: ChangePoint, b: ChangePoint) -> bool:
     """Whether two crossings are at one input, as far as they are located."""
     return abs(a.t - b.t) <= sum(0.5 * (p.bracket[1] - p.bracket[0]) for p in (a, b))
+
+
+def _is_at(point: ChangePoint, t: float) -> bool:
+    """Whether a crossing that other ones drive is at a value of t."""
+    low, high = _less_sharp(point).bracket
+    return low <= t <= high
 
 
 def _less_sharp(point: ChangePoint) -> ChangePoint:

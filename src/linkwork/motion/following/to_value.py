@@ -24,6 +24,8 @@ from linkwork.results.position import Certificate
 
 __all__ = ["OutOfReach", "followed"]
 
+_UNIT = np.finfo(float).eps
+
 
 @dataclass(frozen=True, kw_only=True)
 class OutOfReach:
@@ -82,7 +84,7 @@ def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | Ou
             break
         ends = ends_of(drive, track, certify)
         for end in ends:
-            if end.is_at(t):
+            if end.is_at(t, 4.0 * _UNIT * max(abs(goal), abs(t))):
                 return _at_end(model, end, place, laps, certify)
         met = [end.limit for end in ends]
         limits += tuple(limit for limit in met if limit.input not in [old.input for old in limits])
