@@ -22,6 +22,7 @@ __all__ = ["SOURCES", "Op", "Program", "Registers"]
 class Op(IntEnum):
     """What an instruction does with the registers a, b, c; masks are 1.0 and 0.0."""
 
+    # The numbers stay: kernels that an earlier process has compiled know them.
     COPY = 0  # a
     ADD = 1  # a + b
     SUB = 2  # a - b
