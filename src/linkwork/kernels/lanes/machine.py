@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import math
 
+from linkwork.foundation.arrays import Array
 from linkwork.kernels.lanes.compiling import uncounted
-from linkwork.kernels.lanes.program import Op
+from linkwork.kernels.lanes.program import Code, Op
 from linkwork.kernels.lanes.sine import sin_cos
 
 __all__ = ["LANES", "run", "run_part"]
@@ -19,7 +20,7 @@ LANES = 64
 
 
 @uncounted
-def run_part(code, first, end, w, lanes):  # type: ignore[no-untyped-def]
+def run_part(code: Code, first: int, end: int, w: Array, lanes: int) -> None:
     """Run some instructions of a program in the first lanes."""
     for k in range(first, end):
         op = code[k, 0]
@@ -88,6 +89,6 @@ def run_part(code, first, end, w, lanes):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def run(code, w):  # type: ignore[no-untyped-def]
+def run(code: Code, w: Array) -> None:
     """Run a program (K, 5) over a workspace (R, LANES)."""
     run_part(code, 0, code.shape[0], w, LANES)

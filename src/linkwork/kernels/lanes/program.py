@@ -16,7 +16,10 @@ import numpy as np
 from linkwork.foundation.aligned import aligned
 from linkwork.foundation.arrays import Array, IndexArray
 
-__all__ = ["SOURCES", "Op", "Program", "Registers"]
+__all__ = ["SOURCES", "Code", "Op", "Program", "Registers"]
+
+#: Instructions, (K, 5) uint32; see :class:`Program`.
+Code = np.ndarray[tuple[int, int], np.dtype[np.uint32]]
 
 
 class Op(IntEnum):
@@ -105,5 +108,5 @@ class Program:
         How many registers a workspace needs.
     """
 
-    code: np.ndarray[tuple[int, int], np.dtype[np.uint32]]
+    code: Code
     height: int
