@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import TypeVar
 
 import numpy as np
 
@@ -20,6 +21,8 @@ __all__ = ["SOURCES", "Code", "Op", "Program", "Registers"]
 
 #: Instructions, (K, 5) uint32; see :class:`Program`.
 Code = np.ndarray[tuple[int, int], np.dtype[np.uint32]]
+
+_Key = TypeVar("_Key", str, float)
 
 
 class Op(IntEnum):
@@ -75,10 +78,10 @@ class Registers:
         """The register of a constant."""
         return self._in(self.constants, value)
 
-    def _in(self, table: dict[str, int] | dict[float, int], key: str | float) -> int:
-        found = table.get(key)  # type: ignore[arg-type]
+    def _in(self, table: dict[_Key, int], key: _Key) -> int:
+        found = table.get(key)
         if found is None:
-            found = table[key] = self.count  # type: ignore[index]
+            found = table[key] = self.count
             self.count += 1
         return found
 
