@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
+from functools import partial
 
 import numpy as np
 
 from linkwork.batch.designs import Designs
+from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import LinkworkError
+from linkwork.kernels.phasor_rows import PhasorRows
 from linkwork.motion.model import Model
 
 __all__ = ["agree", "disagreement"]
@@ -71,27 +74,31 @@ def _other_numbers(designs: Designs, k: int, alone: Model, relative: float) -> s
     return ""
 
 
-def _by_key(rows, values):
+def _by_key(rows: PhasorRows, values: ComplexArray) -> dict[tuple[object, ...], list[complex]]:
     """Coefficients by row, variable length and weighted angles; like ones are interchangeable."""
-    phases = defaultdict(list)
+    phases: defaultdict[int, list[tuple[int, float]]] = defaultdict(list)
     entries = zip(rows.phase_term, rows.phase_variable, rows.phase_weight, strict=True)
     for term, variable, weight in entries:
         phases[term].append((variable, weight))
-    found = defaultdict(list)
+    found: defaultdict[tuple[object, ...], list[complex]] = defaultdict(list)
     for term, value in enumerate(values):
         key = (rows.row[term], rows.length[term], tuple(phases[term]))
         found[key].append(complex(value))
     return found
 
 
-def _gap(ours, theirs):
+def _apart(one: complex, other: complex) -> float:
+    return abs(other - one)
+
+
+def _gap(ours: list[complex], theirs: list[complex]) -> float:
     """The largest difference of like coefficients; one that is not there is 0."""
     count = max(len(ours), len(theirs))
     mine = ours + [0j] * (count - len(ours))
     left = theirs + [0j] * (count - len(theirs))
     worst = 0.0
     for value in mine:
-        nearest = min(left, key=lambda z, value=value: abs(z - value))
+        nearest = min(left, key=partial(_apart, value))
         left.remove(nearest)
         worst = max(worst, abs(nearest - value))
     return worst

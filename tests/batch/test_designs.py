@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any, NoReturn
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,9 +12,10 @@ from hypothesis import strategies as st
 import linkwork as lw
 from linkwork.batch import building
 from linkwork.batch.designs import designs_of
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, MechanismError, UnknownNameError
 from linkwork.mechanism import link_shape
-from linkwork.mechanism.quantities import quantities
+from linkwork.mechanism.quantities import Quantity, quantities
 from tests.batch.alone import agree
 
 FOUR_BAR = {
@@ -33,7 +36,7 @@ def _four_bar(**changed: object) -> lw.Mechanism:
     return lw.linkage(**{**FOUR_BAR, **changed})
 
 
-def _slider_crank(offset: object = 0) -> lw.Mechanism:
+def _slider_crank(offset: float | str = 0) -> lw.Mechanism:
     return lw.linkage(
         points={"O": (0, 0), "A": (10, 30), "B": (120, 0), "S": (-1, 0), "T": (1, 0)},
         links={
@@ -45,14 +48,20 @@ def _slider_crank(offset: object = 0) -> lw.Mechanism:
         lengths={"O A": 32, "A B": 115},
         sliders=[
             lw.Slider(
-                name="s", link="piston", points=["B"], on="ground", line=["S", "T"], offset=offset
+                name="s", link="piston", points=("B",), on="ground", line=("S", "T"), offset=offset
             )
         ],
         inputs=lw.Input(link="crank"),
     )  # fmt: skip
 
 
-def _varied(mechanism: lw.Mechanism, chosen: list, spread: float, rng, count: int = 3) -> dict:
+def _varied(
+    mechanism: lw.Mechanism,
+    chosen: list[Quantity],
+    spread: float,
+    rng: np.random.Generator,
+    count: int = 3,
+) -> dict[str, Array]:
     size = mechanism.model.equations.length_scale
     found = {}
     for quantity in chosen:
@@ -63,9 +72,9 @@ def _varied(mechanism: lw.Mechanism, chosen: list, spread: float, rng, count: in
 
 
 @pytest.mark.parametrize("name", lw.examples())
-def test_every_kind_of_number_of_every_library_mechanism_varies_as_by_itself(name):
+def test_every_kind_of_number_of_every_library_mechanism_varies_as_by_itself(name: str) -> None:
     mechanism, rng = lw.example(name), np.random.default_rng(7)
-    tables: dict[str, list] = {}
+    tables: dict[str, list[Quantity]] = {}
     for quantity in quantities(mechanism.description):
         tables.setdefault(quantity.table, []).append(quantity)
     for chosen in tables.values():
@@ -74,7 +83,7 @@ def test_every_kind_of_number_of_every_library_mechanism_varies_as_by_itself(nam
         agree(designs_of(mechanism, _varied(mechanism, one, 0.2, rng)), 1e-13)
 
 
-def test_the_mechanism_itself_is_the_base_and_the_order_is_its_own():
+def test_the_mechanism_itself_is_the_base_and_the_order_is_its_own() -> None:
     mechanism = _four_bar()
     designs = designs_of(mechanism, {"a": [40.0, 41.0]})
     assert designs.base is mechanism.model
@@ -83,7 +92,7 @@ def test_the_mechanism_itself_is_the_base_and_the_order_is_its_own():
     np.testing.assert_allclose(designs.start[0], mechanism.model.equations.start, rtol=1e-15)
 
 
-def test_keys_of_every_kind_are_found_in_any_spelling():
+def test_keys_of_every_kind_are_found_in_any_spelling() -> None:
     designs = designs_of(
         _four_bar(angles={"P A B": 300.0}, lengths={"O2 A": 40, "A B": 110, "O4 B": 80, "A P": 70}),
         {"A O2": [38.0, 41.0], "P A B": [301.0, 305.0], "O4.x": 99.0, "O4.y": [0.0, 3.0], "b": 5.0},
@@ -95,7 +104,7 @@ def test_keys_of_every_kind_are_found_in_any_spelling():
     agree(designs)
 
 
-def test_formulas_of_what_varies_follow_it():
+def test_formulas_of_what_varies_follow_it() -> None:
     rng = np.random.default_rng(3)
     designs = designs_of(_four_bar(), {"a": rng.uniform(35, 45, 20), "b": rng.uniform(50, 60, 20)})
     assert not designs.problem.any()
@@ -118,12 +127,14 @@ def test_formulas_of_what_varies_follow_it():
         max_size=6,
     )
 )  # fmt: skip
-def test_any_numbers_give_a_design_or_the_problem_that_it_has_by_itself(rows):
+def test_any_numbers_give_a_design_or_the_problem_that_it_has_by_itself(
+    rows: list[tuple[float, float, float]],
+) -> None:
     a, b, y = (np.array(column) for column in zip(*rows, strict=True))
     agree(designs_of(_four_bar(), {"a": a, "b": b, "P.y": y}))
 
 
-def test_one_bad_design_leaves_the_others_alone():
+def test_one_bad_design_leaves_the_others_alone() -> None:
     a = np.full(50, 40.0)
     a[[3, 17, 31]] = [-5.0, np.nan, np.inf]
     designs = designs_of(_four_bar(), {"a": a})
@@ -135,7 +146,7 @@ def test_one_bad_design_leaves_the_others_alone():
     agree(designs)
 
 
-def test_no_triangle_is_told_with_the_design_s_own_lengths():
+def test_no_triangle_is_told_with_the_design_s_own_lengths() -> None:
     designs = designs_of(_four_bar(), {"A P": [70.0, 400.0, 500.0, 71.0]})
     assert designs.problem.tolist() == [0, 1, 1, 0]
     assert "no triangle has |AB| = 110, |AP| = … and |BP| = 59.3" in designs.problems[1]
@@ -143,7 +154,7 @@ def test_no_triangle_is_told_with_the_design_s_own_lengths():
     agree(designs)
 
 
-def test_mirror_images_follow_the_sketch_of_each_design():
+def test_mirror_images_follow_the_sketch_of_each_design() -> None:
     designs = designs_of(_four_bar(), {"P.y": [90.0, -90.0, 20.0, 80.0], "P.x": 60.0})
     assert not designs.problem.any()
     agree(designs)
@@ -151,7 +162,7 @@ def test_mirror_images_follow_the_sketch_of_each_design():
     assert np.abs(above - below).max() > 10.0
 
 
-def test_an_offset_of_zero_keeps_its_term_where_it_varies():
+def test_an_offset_of_zero_keeps_its_term_where_it_varies() -> None:
     mechanism = _slider_crank()
     terms = len(mechanism.model.compiled.table.loops.row)
     designs = designs_of(mechanism, {"s.offset": [-7.0, 0.0, 12.0]})
@@ -164,7 +175,7 @@ def test_an_offset_of_zero_keeps_its_term_where_it_varies():
     agree(alike)
 
 
-def test_gears_of_another_ratio_have_another_structure_and_scaled_ones_do_not():
+def test_gears_of_another_ratio_have_another_structure_and_scaled_ones_do_not() -> None:
     mechanism = lw.example("geared-five-bar")
     factor = np.array([1.0, 1.1, 1.3, 1.0])
     numbers = {q.name: q.of(mechanism.description) for q in quantities(mechanism.description)}
@@ -173,13 +184,13 @@ def test_gears_of_another_ratio_have_another_structure_and_scaled_ones_do_not():
     agree(designs_of(mechanism, scaled))
 
 
-def test_gear_ratios_of_designs_stand_apart():
+def test_gear_ratios_of_designs_stand_apart() -> None:
     mechanism = lw.linkage(
         points={"O": (0, 0), "P": (30, 0), "A": (0, 5), "B": (30, 5)},
         links={"ground": ("O", "P"), "one": ("O", "A"), "two": ("P", "B")},
         dimensions={"r": 10, "x": 30},
         lengths={"O A": 5},
-        gears=[lw.Gear(name="g", wheels=["one", "two"], centers=["O", "P"], radii=("r", "30 - r"))],
+        gears=[lw.Gear(name="g", wheels=("one", "two"), centers=("O", "P"), radii=("r", "30 - r"))],
         inputs=lw.Input(link="one"),
     )
     designs = designs_of(mechanism, {"r": [10.0, 12.0, 10.0, -1.0], "O A": [5.0, 6.0, 7.0, 8.0]})
@@ -189,7 +200,7 @@ def test_gear_ratios_of_designs_stand_apart():
     assert "must be positive" in designs.message(3)
 
 
-def test_a_term_that_a_design_does_not_have_is_zero():
+def test_a_term_that_a_design_does_not_have_is_zero() -> None:
     loops = lw.loops(
         dimensions={"a": 2.0, "b": 4.0, "e0": 0.0},
         loops={"one": "a*e^(i*t) + b*e^(i*u) + i*e0 = s"},
@@ -203,7 +214,7 @@ def test_a_term_that_a_design_does_not_have_is_zero():
     agree(designs)
 
 
-def test_textbook_loops_and_plain_equations_vary_too():
+def test_textbook_loops_and_plain_equations_vary_too() -> None:
     loops = lw.loops(
         dimensions={"a": 2.0, "b": 4.0, "c": "b - 1", "d": 5.0, "delta": 10.0},
         loops={"one": "a*e^(i*t) + b*e^(i*u) = d + c^2/3*e^(i*(v + delta)) + sqrt(a)*i"},
@@ -229,7 +240,9 @@ def test_textbook_loops_and_plain_equations_vary_too():
     agree(found)
 
 
-def test_results_do_not_depend_on_how_designs_are_cut_into_blocks(monkeypatch):
+def test_results_do_not_depend_on_how_designs_are_cut_into_blocks(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     rng = np.random.default_rng(5)
     asked = {
         "a": rng.normal(40, 60, 40),
@@ -245,14 +258,14 @@ def test_results_do_not_depend_on_how_designs_are_cut_into_blocks(monkeypatch):
     assert [whole.message(k) for k in range(40)] == [pieces.message(k) for k in range(40)]
 
 
-def test_designs_are_built_alone_where_passes_end(monkeypatch):
+def test_designs_are_built_alone_where_passes_end(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(building, "_MOST_PASSES", 1)
     designs = designs_of(_four_bar(), {"a": [40.0, -1.0, 41.0, np.nan], "A P": [70.0, 70, 900, 70]})
     agree(designs)
     assert np.count_nonzero(designs.problem) == 3
 
 
-def test_taking_some_designs_keeps_their_numbers_together():
+def test_taking_some_designs_keeps_their_numbers_together() -> None:
     designs = designs_of(_four_bar(), {"a": [38.0, -1.0, 42.0], "b": 55.0})
     some = designs.take(np.array([2, 1]))
     assert len(some) == 2
@@ -263,13 +276,13 @@ def test_taking_some_designs_keeps_their_numbers_together():
     assert len(designs.take(slice(0, 0))) == 0
 
 
-def test_scalars_hold_for_all_designs_and_no_designs_are_fine():
+def test_scalars_hold_for_all_designs_and_no_designs_are_fine() -> None:
     assert len(designs_of(_four_bar(), {"a": 41, "b": 54})) == 1
     assert len(designs_of(_four_bar(), {"a": [], "b": 54})) == 0
     assert designs_of(_four_bar(), {"a": 41, "b": [54, 55]}).dimensions["a"].tolist() == [41, 41]
 
 
-def test_names_that_mean_nothing_are_refused_with_what_exists():
+def test_names_that_mean_nothing_are_refused_with_what_exists() -> None:
     with pytest.raises(
         UnknownNameError, match=r'"O2 B" is no number of .* \(numbers: O4 B, O2 A, '
     ):
@@ -293,12 +306,12 @@ def test_names_that_mean_nothing_are_refused_with_what_exists():
         ({"O2 A": 1.0, "A O2": 2.0}, '"O2 A" and "A O2" are the same number'),
     ],
 )
-def test_arrays_of_no_use_are_refused(asked, told):
+def test_arrays_of_no_use_are_refused(asked: dict[str, Any], told: str) -> None:
     with pytest.raises(InputError, match=told):
         designs_of(_four_bar(), asked)
 
 
-def test_a_design_by_itself_is_an_ordinary_mechanism():
+def test_a_design_by_itself_is_an_ordinary_mechanism() -> None:
     designs = designs_of(_four_bar(), {"a": [38.0, -1.0]})
     assert designs.description(0) == _four_bar().description.with_dimensions({"a": 38.0})
     assert lw.Mechanism(designs.description(0)).solve(at=60).status.ok
@@ -307,22 +320,22 @@ def test_a_design_by_itself_is_an_ordinary_mechanism():
 
 
 @pytest.fixture
-def never_alone(monkeypatch):
-    def refuse(self, k):
+def never_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(self: building.Builder, k: int) -> NoReturn:
         raise AssertionError(f"design {k} was built alone")
 
     monkeypatch.setattr(building.Builder, "_alone", refuse)
 
 
 @pytest.mark.usefixtures("never_alone")
-def test_sides_of_the_sketch_need_no_pass_of_their_own(monkeypatch):
+def test_sides_of_the_sketch_need_no_pass_of_their_own(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(building, "_MOST_PASSES", 1)
     rng = np.random.default_rng(2)
     designs_of(_four_bar(), {"P.y": rng.normal(0, 90, 50), "A P": rng.uniform(60, 80, 50)})
     designs_of(_slider_crank(5), {"s.offset": [3.0, -4.0], "A.y": [30.0, -30.0]})
 
 
-def test_shapes_that_do_not_converge_stop_no_others():
+def test_shapes_that_do_not_converge_stop_no_others() -> None:
     mechanism, rng = lw.example("rapier-drive-links"), np.random.default_rng(6)
     chosen = [q for q in quantities(mechanism.description) if q.table == "lengths"]
     designs = designs_of(mechanism, _varied(mechanism, chosen, 0.4, rng, 80))
@@ -330,14 +343,14 @@ def test_shapes_that_do_not_converge_stop_no_others():
     agree(designs, 1e-12)
 
 
-def test_shapes_that_go_on_by_themselves_are_the_same(monkeypatch):
+def test_shapes_that_go_on_by_themselves_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(link_shape._gauss_newton, "__defaults__", (1,))
     mechanism, rng = lw.example("watt-linkage"), np.random.default_rng(6)
     chosen = [q for q in quantities(mechanism.description) if q.table == "lengths"]
     agree(designs_of(mechanism, _varied(mechanism, chosen, 0.1, rng, 20)), 1e-13)
 
 
-def test_coefficients_beyond_every_number_are_a_problem():
+def test_coefficients_beyond_every_number_are_a_problem() -> None:
     loops = lw.loops(
         dimensions={"a": 2.0, "b": 4.0},
         loops={"one": "a*b*e^(i*t) + 9*e^(i*u) = s"},
@@ -350,7 +363,9 @@ def test_coefficients_beyond_every_number_are_a_problem():
     assert np.isnan(designs.loops[1]).all()
 
 
-def test_a_term_more_than_the_base_has_is_another_structure(monkeypatch):
+def test_a_term_more_than_the_base_has_is_another_structure(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr("linkwork.batch.designs.family_base", lambda model, varied: (model, False))
     designs = designs_of(_slider_crank(), {"s.offset": [0.0, 3.0]})
     assert [bool(p) for p in designs.problem] == [False, True]
@@ -358,7 +373,7 @@ def test_a_term_more_than_the_base_has_is_another_structure(monkeypatch):
 
 
 @pytest.mark.usefixtures("never_alone")
-def test_ordinary_designs_are_not_built_one_at_a_time():
+def test_ordinary_designs_are_not_built_one_at_a_time() -> None:
     rng = np.random.default_rng(2)
     mechanism = lw.example("jansen-leg")
     chosen = [q for q in quantities(mechanism.description) if q.table == "lengths"]

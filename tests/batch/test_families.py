@@ -13,6 +13,8 @@ import linkwork as lw
 from linkwork.batch import Family, FamilyMotion, designs_of
 from linkwork.foundation.errors import InputError, UnknownNameError
 from linkwork.foundation.status import Status
+from linkwork.mechanism.linkage import Linkage
+from tests.described import described_as
 
 Array = npt.NDArray[np.float64]
 CRANKS = np.array([40.0, 41.0, 110.0, 39.0, math.nan, 42.0])
@@ -219,7 +221,7 @@ def test_outputs_and_angles_of_designs_follow_their_own_numbers() -> None:
 def test_designs_and_families_are_made_of_the_same() -> None:
     mechanism = lw.example("slider-crank")
     lengths = np.array([39.0, 40.0])
-    name = next(iter(mechanism.description.lengths))
+    name = next(iter(described_as(Linkage, mechanism).lengths))
     family, designs = mechanism.family({name: lengths}), designs_of(mechanism, {name: lengths})
     np.testing.assert_array_equal(family.designs.loops, designs.loops)
     with pytest.raises(UnknownNameError):

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -16,11 +18,13 @@ from linkwork.batch.family_motion import FamilyMotion
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.kernels.lanes import lane_kernel, one_design
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.quantities import quantities
 from linkwork.motion import sweep
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 from tests.batch.rate_referee import assert_same_evidence, assert_same_limits, assert_same_rates
+from tests.described import described_as
 from tests.oracles.balls import BallTable, exactly, newton
 
 Array = npt.NDArray[np.float64]
@@ -47,13 +51,14 @@ def by_itself(family: Family, k: int, certify: bool = True) -> Motion:
     base = family.designs.base
     if not np.array_equal(model.everyday_rows, base.everyday_rows):
         number = base.description.numbers
-        inputs = tuple(
-            replace(
-                which, start=number(which.start), stop=number(which.stop), step=number(which.step)
-            )
-            for which in base.description.inputs
-        )
-        description = replace(model.description, inputs=inputs)
+        inputs = []
+        for which in base.description.inputs:
+            start, stop, step = which.start, which.stop, which.step
+            assert start is not None
+            assert stop is not None
+            assert step is not None
+            inputs.append(replace(which, start=number(start), stop=number(stop), step=number(step)))
+        description = replace(model.description, inputs=tuple(inputs))
         model = Model(description, model.equations, model.compiled, model.skeleton, model.branch)
     return sweep(model, certify=certify)
 
@@ -153,12 +158,15 @@ def test_rows_side_by_side_are_those_of_designs_in_step(
     name: str, few: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("linkwork.kernels.lanes.lane_kernel._FEW", few)
-    ways = []
+    ways: list[str] = []
+
+    def noted(way: str, inner: Callable[..., int], *arguments: object) -> int:
+        ways.append(way)
+        return inner(*arguments)
+
     for where, way in ((lane_kernel, "in_step"), (one_design, "by_rows")):
         inner = getattr(where, way)
-        monkeypatch.setattr(
-            where, way, lambda *a, inner=inner, way=way: (ways.append(way), inner(*a))[1]
-        )
+        monkeypatch.setattr(where, way, partial(noted, way, inner))
     family = family_of(name, 0.998, 1.002)
     motion = family.sweep()
     assert ways[0] == ("by_rows" if few else "in_step")
@@ -213,7 +221,7 @@ def test_rows_right_in_front_of_dead_points_are_found() -> None:
 
 def test_change_points_stop_designs_as_they_do_by_themselves() -> None:
     mechanism = lw.example("parallelogram").driven_by(link="crank", start=5, stop=355, step=5)
-    length = mechanism.description.lengths["O2 A"]
+    length = described_as(Linkage, mechanism).lengths["O2 A"]
     family = mechanism.family({"O2 A": length * np.array([1.0, 1.0001, 0.99])})
     motion = family.sweep()
     assert_agrees(family, motion)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from linkwork.kernels.lanes import one_design, rowwise
@@ -33,8 +35,13 @@ def test_rows_side_by_side_stay_on_their_branch(
     part: int, step: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     done = []
-    inner = one_design.by_rows
-    monkeypatch.setattr(one_design, "by_rows", lambda *a: (done.append(inner(*a)), done[-1])[1])
+    inner = rowwise.by_rows
+
+    def noted(*arguments: Any) -> int:
+        done.append(inner(*arguments))
+        return done[-1]
+
+    monkeypatch.setattr(one_design, "by_rows", noted)
     counts, false = kinds.kind_campaign(part, 8, step)
     assert not false
     assert counts["row CERTIFIED"] > 0.9 * counts["rows found"] > 0

@@ -12,7 +12,9 @@ import pytest
 import linkwork as lw
 from linkwork.batch import FamilyMotion
 from linkwork.foundation.errors import InputError, UnknownNameError
+from linkwork.mechanism.linkage import Linkage
 from linkwork.results.quantity import Rate
+from tests.described import described_as
 
 Array = npt.NDArray[np.float64]
 CRANKS = np.array([40.0, 41.0, 110.0, math.nan])
@@ -104,6 +106,7 @@ def test_every_design_has_its_own_speed() -> None:
     speeds = np.array([60.0, math.nan, 120.0])
     motion = mechanism.family({"n": speeds}).sweep()
     expected = (speeds / 2 + 30) * 2 * np.pi / 60
+    assert motion.speed is not None
     np.testing.assert_allclose(motion.speed, expected, rtol=1e-14)
     turned = np.radians(motion.inputs[:, 0])
     np.testing.assert_allclose(
@@ -112,7 +115,9 @@ def test_every_design_has_its_own_speed() -> None:
     np.testing.assert_allclose(
         motion["x.acceleration"], -2.0 * np.cos(turned) * expected[:, None] ** 2, atol=1e-12
     )
-    np.testing.assert_allclose(mechanism.sweep().speed, 2 * np.pi, rtol=1e-14)
+    speed = mechanism.sweep().speed
+    assert speed is not None
+    np.testing.assert_allclose(speed, 2 * np.pi, rtol=1e-14)
 
 
 # ------------------------------------------------------------------ numbers per design
@@ -224,7 +229,7 @@ def test_limits_are_those_met_on_the_way_to_the_rows(
 
 def test_change_points_and_lost_ends_have_their_kind() -> None:
     mechanism = lw.example("parallelogram").driven_by(link="crank", start=5, stop=355, step=5)
-    length = mechanism.description.lengths["O2 A"]
+    length = described_as(Linkage, mechanism).lengths["O2 A"]
     motion = mechanism.family({"O2 A": length * np.array([1.0, 0.99])}).sweep()
     limits = motion.limits
     assert (limits.lower_kind[0], limits.upper_kind[0]) == ("change point", "change point")

@@ -6,15 +6,18 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.batch import Family
 from linkwork.batch.lane_rows import March, Path
 from linkwork.kernels.lanes.gear import Gear
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.rowwise import _proved, _smooth
 from linkwork.kernels.lanes.tasks import Found
+from linkwork.mechanism.linkage import Linkage
+from tests.described import described_as
 
 
-def _march(family: object, certify: bool) -> tuple[March, np.ndarray]:
-    designs = family.designs  # type: ignore[attr-defined]
+def _march(family: Family, certify: bool) -> tuple[March, np.ndarray]:
+    designs = family.designs
     path = Path.of(designs.base)
     assert path is not None
     t = designs.base.rows[:, path.lead]
@@ -25,7 +28,8 @@ def _march(family: object, certify: bool) -> tuple[March, np.ndarray]:
 @pytest.mark.parametrize("name", ["four-bar", "jansen-leg", "crank-slider"])
 def test_they_are_those_of_the_sweep_every_time(name: str, certify: bool) -> None:
     mechanism = lw.example(name)
-    table = mechanism.description.lengths if name != "crank-slider" else {"a": 40.0}
+    own = {"a": 40.0}
+    table = described_as(Linkage, mechanism).lengths if name != "crank-slider" else own
     length, value = next(iter(table.items()))
     family = mechanism.family({length: [value]})
     march, t = _march(family, certify)
@@ -91,7 +95,8 @@ class Proving:
         self.rows, self.start = found[0], 60
         there = self.rows[:, self.start, 0]
         base = np.exp(1j * self.t) * 40  # the other branch: the rocker mirrored in the diagonal
-        turn = 2 * np.angle(lw.example("four-bar").description.points["O4"][0] - base)[None, :]
+        four_bar = described_as(Linkage, lw.example("four-bar"))
+        turn = 2 * np.angle(four_bar.points["O4"][0] - base)[None, :]
         self.mirrored = (turn - found[0][:, :, 0])[:, :, None]
         self.begin = there
 

@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 from benchmarks.machine import machine
-from benchmarks.peers.comparison import compare
+from benchmarks.peers.comparison import Entry, compare
 from benchmarks.peers.linkwork_sweep import LinkworkSweep
 from benchmarks.peers.numpy_dyads import NumpyDyads
-from benchmarks.peers.peer import DyadPeer
+from benchmarks.peers.peer import DyadPeer, Peer
 from benchmarks.peers.plot import draw
 from benchmarks.peers.registry import PEERS, chosen
 from benchmarks.peers.report import significant, table, write_figures
-from benchmarks.peers.work import four_bar, four_bar_family, jansen_leg, rapier_drive
+from benchmarks.peers.work import Work, four_bar, four_bar_family, jansen_leg, rapier_drive
 from benchmarks.scaling.chains import coupled_loops, dyad_chain
 from benchmarks.scaling.part import Growth, grown
 from benchmarks.single_thread import LIMITS, environment
@@ -29,48 +29,52 @@ from tests.benchmarks.solvers import Absent, Answering, Raising, crossed, right
 REQUIREMENTS = Path(__file__).parents[2] / "benchmarks" / "peers" / "requirements.txt"
 
 
-def entries_of(*peers, work=None):
+def entries_of(*peers: Peer, work: Work | None = None) -> list[Entry]:
     return compare(work or four_bar(37), peers, repeats=5)
 
 
-def test_a_peer_on_the_wrong_branch_is_reported_as_such():
+def test_a_peer_on_the_wrong_branch_is_reported_as_such() -> None:
     wrong, good = entries_of(Answering("wrong", crossed), Answering("good", right))
+    assert wrong.verdict
+    assert good.verdict
     assert (wrong.verdict.found, wrong.verdict.other_branch) == (0, 37)
     assert (good.verdict.found, good.verdict.other_branch) == (37, 0)
     flips = [line.split()[-3] for line in table([wrong, good]).splitlines()[2:]]
     assert flips == ["37", "0"]
 
 
-def test_a_missing_peer_is_listed_with_the_name_that_pip_installs():
+def test_a_missing_peer_is_listed_with_the_name_that_pip_installs() -> None:
     entry, good = entries_of(Absent(), Answering("good", right))
     assert entry.absent == "not installed (pip install no-such-solver)"
     assert entry.absent in table([entry, good])
+    assert good.verdict
     assert good.verdict.found == 37
 
 
-def test_a_peer_that_fails_does_not_stop_the_others():
+def test_a_peer_that_fails_does_not_stop_the_others() -> None:
     entry, good = entries_of(Raising(), Answering("good", right))
     assert entry.absent == "failed: ArithmeticError: no such linkage"
     assert len(good.nanoseconds) == 5
 
 
-def test_a_peer_that_drops_rows_has_failed():
+def test_a_peer_that_drops_rows_has_failed() -> None:
     (entry,) = entries_of(Answering("short", lambda work: right(work)[:, :-1]))
     assert entry.absent.startswith("failed: ValueError: positions have the shape (1, 36)")
     assert entry.nanoseconds == ()
 
 
-def test_dyads_cannot_solve_coupled_loops():
+def test_dyads_cannot_solve_coupled_loops() -> None:
     (entry,) = entries_of(NumpyDyads(), work=rapier_drive(5))
     assert entry.absent == "cannot: dyads only"
 
 
-def test_a_slow_peer_is_given_a_part_of_a_family():
+def test_a_slow_peer_is_given_a_part_of_a_family() -> None:
     slow = Answering("slow", right)
     slow.most_members = 2
     entry, all_of_it = entries_of(
         slow, Answering("fast", right), work=four_bar_family(members=6, rows=10)
     )
+    assert entry.verdict
     assert (entry.members, entry.positions, entry.verdict.rows) == (2, 20, 20)
     assert (all_of_it.members, all_of_it.positions) == (6, 60)
 
@@ -81,18 +85,20 @@ def test_a_slow_peer_is_given_a_part_of_a_family():
     ids=lambda peer: peer.name,
 )
 @pytest.mark.parametrize("work", [four_bar(37), jansen_leg(37)], ids=lambda work: work.name)
-def test_own_solvers_find_every_row(peer, work):
+def test_own_solvers_find_every_row(peer: Peer, work: Work) -> None:
     (entry,) = entries_of(peer, work=work)
+    assert entry.verdict, entry.absent
     assert entry.verdict.found == 37, entry.absent
     assert entry.verdict.error <= 1e-11
 
 
-def test_linkwork_finds_every_row_of_the_rapier_drive():
+def test_linkwork_finds_every_row_of_the_rapier_drive() -> None:
     (entry,) = entries_of(LinkworkSweep(certify=True), work=rapier_drive(37))
+    assert entry.verdict, entry.absent
     assert entry.verdict.found == 37, entry.absent
 
 
-def test_calls_are_timed_in_turn():
+def test_calls_are_timed_in_turn() -> None:
     order = []
     interleaved([lambda: order.append("A"), lambda: order.append("B")], 3)
     assert "".join(order) == "AB" + "ABABAB"
@@ -105,7 +111,7 @@ def test_steady_work_is_measured_behind_work_of_its_own_kind() -> None:
     assert [len(found) for found in times] == [2, 2]
 
 
-def test_tables_have_at_most_eighty_columns():
+def test_tables_have_at_most_eighty_columns() -> None:
     wide = Answering("n" * 22, right)
     entries = entries_of(wide, Absent(), Raising(), work=four_bar_family(members=3, rows=5))
     lines = table(entries).splitlines()
@@ -117,11 +123,11 @@ def test_tables_have_at_most_eighty_columns():
     ("value", "text"),
     [(9.3149, "9.31"), (63.84, "63.8"), (152.4, "152"), (24_512.0, "24,500"), (99.97, "100")],
 )
-def test_figures_have_three_digits(value, text):
+def test_figures_have_three_digits(value: float, text: str) -> None:
     assert significant(value) == text
 
 
-def test_figures_and_picture_are_written(tmp_path):
+def test_figures_and_picture_are_written(tmp_path: Path) -> None:
     lost = Answering("lost", lambda work: np.full((1, 37), np.nan, complex))
     entries = entries_of(Answering("good", right), lost, Absent())
     write_figures(tmp_path / "peers.json", "one core", 5, entries)
@@ -135,34 +141,34 @@ def test_figures_and_picture_are_written(tmp_path):
     assert (tmp_path / "peers.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_every_peer_has_a_name_of_its_own_that_fits_the_table():
+def test_every_peer_has_a_name_of_its_own_that_fits_the_table() -> None:
     names = [peer.name for peer in PEERS]
     assert len(set(names)) == len(names)
     assert max(map(len, names)) <= 22
 
 
-def test_every_peer_that_pip_installs_is_in_the_requirements():
+def test_every_peer_that_pip_installs_is_in_the_requirements() -> None:
     listed = set(re.findall(r"^([\w-]+)[>=]", REQUIREMENTS.read_text(encoding="utf-8"), re.M))
     assert listed == {peer.distribution for peer in PEERS} - {"linkwork", "numpy"}
 
 
-def test_peers_are_chosen_by_part_of_their_name():
+def test_peers_are_chosen_by_part_of_their_name() -> None:
     assert [peer.name for peer in chosen(["NumPy", "kinepy"])] == ["NumPy dyads", "kinepy"]
     assert chosen([]) == list(PEERS)
     with pytest.raises(ValueError, match='no peer is called "nobody"'):
         chosen(["nobody"])
 
 
-def test_the_measured_process_has_one_thread():
+def test_the_measured_process_has_one_thread() -> None:
     assert {environment()[name] for name in LIMITS} == {"1"}
     assert "NUMBA_NUM_THREADS" in LIMITS
 
 
-def test_the_machine_is_described_without_its_name():
+def test_the_machine_is_described_without_its_name() -> None:
     assert re.fullmatch(r"one core.*; Python 3\.\d+, NumPy \d+\.\d+", machine())
 
 
-def test_growth_is_told_as_multiples_of_the_first():
+def test_growth_is_told_as_multiples_of_the_first() -> None:
     growth = Growth(title="t", unit="ns", size="rows", times={"a": {1: 10.0, 10: 25.0}})
     assert [line.split() for line in growth.table().splitlines()[1:]] == [
         ["rows", "1", "10"],
@@ -171,7 +177,7 @@ def test_growth_is_told_as_multiples_of_the_first():
     ]
 
 
-def test_growth_notes_wrong_rows_and_leaves_out_what_is_too_large():
+def test_growth_notes_wrong_rows_and_leaves_out_what_is_too_large() -> None:
     growth = grown(
         title="t",
         unit="ns",
@@ -190,7 +196,7 @@ def test_growth_notes_wrong_rows_and_leaves_out_what_is_too_large():
 
 
 @pytest.mark.parametrize("count", range(1, 7))
-def test_coupled_loops_close_at_the_start_and_are_no_dyads(count):
+def test_coupled_loops_close_at_the_start_and_are_no_dyads(count: int) -> None:
     loops = coupled_loops(count)
     assert loops.unknowns == 2 * count
     gap = loops.residual(loops.start, loops.driven(0.0))
@@ -201,13 +207,13 @@ def test_coupled_loops_close_at_the_start_and_are_no_dyads(count):
         assert used[chosen_loops].any(axis=0).sum() > 2 * len(chosen_loops)
 
 
-def test_every_dyad_of_a_chain_copies_the_crank():
+def test_every_dyad_of_a_chain_copies_the_crank() -> None:
     chain = dyad_chain(7)
     u = np.radians([60.0, 90.0, 120.0])
     np.testing.assert_allclose(chain.positions(u)["A7"], 700.0 + 40.0 * np.exp(1j * u), atol=1e-9)
 
 
-def test_peers_that_place_dyads_say_so():
+def test_peers_that_place_dyads_say_so() -> None:
     placing = [peer.name for peer in PEERS if isinstance(peer, DyadPeer)]
     assert "NumPy dyads" in placing
     assert "scipy fsolve" not in placing

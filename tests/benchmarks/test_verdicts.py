@@ -7,16 +7,16 @@ import pytest
 
 from benchmarks.peers.loop_system import newton
 from benchmarks.peers.reference import reference_of
-from benchmarks.peers.verdict import TOLERANCE, judged
-from benchmarks.peers.work import four_bar, four_bar_family, jansen_leg, rapier_drive
+from benchmarks.peers.verdict import TOLERANCE, Verdict, judged
+from benchmarks.peers.work import Work, four_bar, four_bar_family, jansen_leg, rapier_drive
 from tests.benchmarks.solvers import crossed, right
 
 
-def counts(verdict):
+def counts(verdict: Verdict) -> tuple[int, int, int, int]:
     return verdict.found, verdict.other_branch, verdict.wrong, verdict.missing
 
 
-def test_each_row_is_found_on_another_branch_nowhere_or_missing():
+def test_each_row_is_found_on_another_branch_nowhere_or_missing() -> None:
     work = four_bar(37)
     reference = reference_of(work)
     answer = reference.traced.copy()
@@ -28,7 +28,7 @@ def test_each_row_is_found_on_another_branch_nowhere_or_missing():
     assert verdict.rows == 37
 
 
-def test_the_error_is_that_of_the_worst_row_relative_to_the_longest_link():
+def test_the_error_is_that_of_the_worst_row_relative_to_the_longest_link() -> None:
     work = four_bar(37)
     reference = reference_of(work)
     answer = reference.traced.copy()
@@ -38,27 +38,27 @@ def test_the_error_is_that_of_the_worst_row_relative_to_the_longest_link():
     assert verdict.error == pytest.approx(0.5 * TOLERANCE, rel=1e-6)
 
 
-def test_an_answer_without_any_right_row_has_no_error():
+def test_an_answer_without_any_right_row_has_no_error() -> None:
     work = four_bar(5)
     verdict = judged(np.full((1, 5), np.nan, complex), reference_of(work))
     assert counts(verdict) == (0, 0, 0, 5)
     assert np.isnan(verdict.error)
 
 
-def test_rows_that_were_dropped_are_not_judged():
+def test_rows_that_were_dropped_are_not_judged() -> None:
     work = four_bar(37)
     with pytest.raises(ValueError, match=r"shape \(1, 36\), asked were \(1, 37\)"):
         judged(right(work)[:, 1:], reference_of(work))
 
 
 @pytest.mark.parametrize("work", [four_bar(61), jansen_leg(61)], ids=lambda work: work.name)
-def test_closed_forms_agree_with_newton_on_the_loop_equations(work):
+def test_closed_forms_agree_with_newton_on_the_loop_equations(work: Work) -> None:
     loops = work.members[0].loops
     solved = loops.trace(newton(loops, work.inputs), work.inputs)
     assert np.abs(solved - reference_of(work).traced[0]).max() <= 1e-12 * loops.scale
 
 
-def test_the_rapier_drive_is_among_all_its_configurations():
+def test_the_rapier_drive_is_among_all_its_configurations() -> None:
     work = rapier_drive(61)
     reference = reference_of(work)
     near = np.abs(reference.configurations - reference.traced)
@@ -67,7 +67,7 @@ def test_the_rapier_drive_is_among_all_its_configurations():
     assert set(exist.tolist()) <= {2, 4, 6}  # they appear and vanish in pairs
 
 
-def test_the_jacobian_is_the_slope_of_the_residual():
+def test_the_jacobian_is_the_slope_of_the_residual() -> None:
     loops = rapier_drive(3).members[0].loops
     q, driven, h = loops.start, loops.driven(0.3), 1e-6
     steps = h * np.eye(loops.unknowns)
@@ -75,7 +75,7 @@ def test_the_jacobian_is_the_slope_of_the_residual():
     np.testing.assert_allclose(loops.jacobian(q), np.array(slopes).T / (2 * h), atol=1e-5)
 
 
-def test_a_member_of_a_family_is_the_linkage_alone():
+def test_a_member_of_a_family_is_the_linkage_alone() -> None:
     family = four_bar_family(members=5, rows=12)
     whole = reference_of(family)
     alone = reference_of(family.sample(3)).traced

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from flint import arb
 
+from linkwork.kernels.loop_table import LoopTable
 from linkwork.numerics.certificate import Bounds, Majorant, Radii, bounds, expansion, radii
 from tests.campaigns.positions import Placed
 from tests.oracles.balls import BallTable, ball, certainly_above, exactly, newton
@@ -88,7 +89,7 @@ def _case(rng: np.random.Generator, placed: Placed, number: int) -> Case | None:
         v[:n] += 10 ** rng.uniform(-14, -2) * rng.normal(size=n) * table.variable_scale[:n]
     jacobian = table.jacobian(v[None, :])
     try:
-        matrix = np.linalg.inv(jacobian[0, :, :n])
+        matrix = np.asarray(np.linalg.inv(jacobian[0, :, :n]), dtype=float)
     except np.linalg.LinAlgError:
         return None
     if number % 7 == 3:  # any approximate inverse will do
@@ -260,9 +261,9 @@ def _alone(
             false(f"a second root {float(off.mid())} away although r+ = {unique}")
 
 
-def _newton_step(table: object, v: Array) -> Array:
-    n = table.unknowns  # type: ignore[attr-defined]
-    f, j = table.residual_and_jacobian(v)  # type: ignore[attr-defined]
+def _newton_step(table: LoopTable, v: Array) -> Array:
+    n = table.unknowns
+    f, j = table.residual_and_jacobian(v)
     with np.errstate(all="ignore"):
         j = j[:, :, :n] + 1e-300
         try:
@@ -271,4 +272,4 @@ def _newton_step(table: object, v: Array) -> Array:
             step = np.stack(
                 [np.linalg.lstsq(a, b, rcond=None)[0] for a, b in zip(j, f, strict=False)]
             )
-    return np.clip(np.nan_to_num(step, nan=1.0, posinf=1.0, neginf=-1.0), -1e3, 1e3)
+    return np.asarray(np.clip(np.nan_to_num(step, nan=1.0, posinf=1.0, neginf=-1.0), -1e3, 1e3))

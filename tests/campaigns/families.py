@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 import linkwork as lw
+from linkwork.foundation.arrays import CountArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 
@@ -109,7 +110,7 @@ def _bars(rng: np.random.Generator, near: Bools) -> Array:
     return np.where(plain, r, np.abs(grashof))
 
 
-def _tip(bars: Array, theta: Array, sign: Array | int) -> Complex:
+def _tip(bars: Array, theta: Array, sign: CountArray | int) -> Complex:
     """Where coupler and rocker meet, NaN where they do not."""
     a, b, c, d = bars
     base = b * np.exp(1j * theta)
@@ -118,10 +119,10 @@ def _tip(bars: Array, theta: Array, sign: Array | int) -> Complex:
     with np.errstate(invalid="ignore"):
         along = (size**2 + c**2 - d**2) / (2.0 * size)
         across = np.sqrt(c**2 - along**2)
-    return base + line / size * (along + 1j * sign * across)
+    return np.asarray(base + line / size * (along + 1j * sign * across))
 
 
 def _turns(bars: Array) -> Bools:
     """Whether the crank turns fully."""
     a, b, c, d = bars
-    return (np.abs(a - b) > np.abs(c - d)) & (a + b < c + d)
+    return np.asarray((np.abs(a - b) > np.abs(c - d)) & (a + b < c + d))

@@ -12,7 +12,9 @@ import numpy as np
 
 from linkwork.batch import FamilyMotion
 from linkwork.foundation.certification import Certification
+from linkwork.mechanism.loops import Loops
 from tests.campaigns.motion import FAMILIES, Case, changed_branch, random_case
+from tests.described import described_as
 
 __all__ = ["kind_campaign"]
 
@@ -50,7 +52,7 @@ def kind_campaign(
 
 def _together(cases: Sequence[Case], certify: bool) -> FamilyMotion:
     """All of them as designs of the first one."""
-    described = [case.mechanism.description for case in cases]
+    described = [described_as(Loops, case.mechanism) for case in cases]
     columns = {
         name: np.array([one.dimensions[name] for one in described])
         for name in described[0].dimensions

@@ -143,7 +143,7 @@ def changed_branch(
     if case.exact is None:
         off = np.abs(joints - finer).max(axis=2)  # of three turns
         known = np.isfinite(off).any(axis=0)
-        return known & (np.where(np.isfinite(off), off, np.inf).min(axis=0) > 1e-6)
+        return np.asarray(known & (np.where(np.isfinite(off), off, np.inf).min(axis=0) > 1e-6))
     own = np.abs(joints - case.exact(theta, case.signs)).max(axis=1)
     nearest = np.full(len(theta), np.inf)
     for bits in range(2 ** len(case.signs)):
@@ -153,7 +153,7 @@ def changed_branch(
             nearest = np.fmin(nearest, other)
     # a row that no branch explains counts as changed, too
     with np.errstate(invalid="ignore"):
-        return (own > _APART) & ((nearest < own) | (own > 1e-4))
+        return np.asarray((own > _APART) & ((nearest < own) | (own > 1e-4)))
 
 
 def _finer(case: Case, step: int, motion: lw.Motion) -> Complex:
@@ -291,7 +291,7 @@ def _four_bar(rng: np.random.Generator, near: float | None, step: int) -> Case |
         return {"p": _degrees(tip - b * np.exp(1j * theta)), "q": _degrees(tip - a)}
 
     def joints(values: dict[str, Array], theta: Array) -> Complex:
-        return (b * np.exp(1j * theta) + c * _cis(values["p"]))[:, None]
+        return np.asarray((b * np.exp(1j * theta) + c * _cis(values["p"]))[:, None])
 
     return _built(
         rng,

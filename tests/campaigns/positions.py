@@ -75,7 +75,10 @@ def _filled(
     count = len(turns)
     n = 2 * loops + lines
     angles, lengths = np.flatnonzero(turns), np.flatnonzero(~turns)
-    row, coefficient, length, phases = [], [], [], []
+    row: list[int] = []
+    coefficient: list[complex] = []
+    length: list[int] = []
+    phases: list[tuple[int, int, float]] = []
 
     def term(r: int, c: complex, j: int, phase: list[tuple[int, float]]) -> None:
         phases.extend((len(row), k, w) for k, w in phase)

@@ -184,4 +184,4 @@ def _others(rng: np.random.Generator, table: LoopTable, v: Array) -> Array:
     gap[:, turns] = np.remainder(gap[:, turns] + np.pi, 2 * np.pi) - np.pi
     near = x.copy()
     near[:, :n] = v[:n] + gap
-    return near[good & (np.abs(gap).max(axis=1) > 1e-4)]
+    return np.asarray(near[good & (np.abs(gap).max(axis=1) > 1e-4)])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -91,11 +92,12 @@ def test_full_turn_rapier_has_three_circuits_one_of_them_with_dead_points() -> N
     circuits = lw.example("rapier-drive").circuits()
     assert [circuit.turns for circuit in circuits] == [1, 1, 0]
     assert all(circuit.closed and circuit.certified for circuit in circuits)
+    about: Any = pytest.approx  # a part of a tuple
     low, high = sorted(limit.input for limit in circuits[2].dead_points)
     assert low == pytest.approx(0.302876213349, abs=1e-11)
     assert high == pytest.approx(155.227836297534, abs=1e-11)
     assert [branch.input_range for branch in circuits[2].branches] == [
-        (pytest.approx(low), pytest.approx(high))
+        (about(low), about(high))
     ] * 2
     # circuit 1 holds the guess; its positions are a few degrees apart
     assert circuits[0].range("s16") == pytest.approx((-54.69985, 304.25187), abs=0.3)
@@ -160,13 +162,8 @@ def test_branches_are_chosen_by_name_to_solve_and_to_sweep() -> None:
             assert position.certificate.certified
             motion = circuit.motion
             mine = [k for k, name in enumerate(motion.branch) if name == branch.name]
-            here = np.interp(
-                at,
-                *(
-                    values[mine][np.argsort(motion["θ12"][mine])]
-                    for values in (motion["θ12"], motion["s16"])
-                ),
-            )
+            order = np.argsort(motion["θ12"][mine])
+            here = np.interp(at, motion["θ12"][mine][order], motion["s16"][mine][order])
             assert position["s16"] == pytest.approx(here, abs=2.0)
             swept = mechanism.sweep(configuration=branch.name)
             assert set(swept.branch) <= {branch.name, ""}

@@ -105,6 +105,13 @@ def meet(a: complex, ra: float, b: complex, rb: float, side: int = 1) -> complex
     return a + (x + side * 1j * math.sqrt(ra * ra - x * x)) * (b - a) / d
 
 
+def met(a: complex, ra: float, b: complex, rb: float, side: int) -> complex:
+    """Where circles meet that do."""
+    found = meet(a, ra, b, rb, side)
+    assert found is not None
+    return found
+
+
 def bars(**links: str) -> tuple[Bar, ...]:
     return tuple(Bar(name=name, points=tuple(points.split())) for name, points in links.items())
 
@@ -277,13 +284,13 @@ def jansen_at(degrees: float, far: bool = False) -> Places | None:
     crank = m * turn(degrees)
     # The far leg is the mirror image, driven by the mirrored crank angle.
     z = complex(flip * crank.real, crank.imag)
-    up = meet(pivot, b, z, j, 1)
-    down = meet(pivot, c, z, k, -1)
-    back = meet(pivot, d, up, e, 1)
-    knee = meet(back, f, down, g, -1)
-    foot = meet(knee, h, down, i, -1)
+    up = met(pivot, b, z, j, 1)
+    down = met(pivot, c, z, k, -1)
+    back = met(pivot, d, up, e, 1)
+    knee = met(back, f, down, g, -1)
+    foot = met(knee, h, down, i, -1)
     places = {"U": up, "V": back, "W": down, "N": knee, "F": foot}
-    mirrored = {n: complex(flip * p.real, p.imag) for n, p in places.items() if p is not None}
+    mirrored = {n: complex(flip * p.real, p.imag) for n, p in places.items()}
     return mirrored | {"Z": crank, "P": complex(flip * pivot.real, pivot.imag)}
 
 
@@ -328,7 +335,7 @@ def flat() -> Sample:
     def at(degrees: float) -> Places | None:
         crank = 30 * turn(degrees)
         joint = meet(crank, 500, 520 + 0j, 60)
-        return joint and {"O2": 0j, "A": crank, "B": joint, "O4": 520 + 0j}
+        return None if joint is None else {"O2": 0j, "A": crank, "B": joint, "O4": 520 + 0j}
 
     skeleton = Skeleton(
         fixed=("O2", "O4"),

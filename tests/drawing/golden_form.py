@@ -10,6 +10,7 @@ import re
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from xml.sax.saxutils import escape, quoteattr
 
 import linkwork as lw
@@ -92,7 +93,8 @@ def _shapes(svg: bytes) -> list[Shape]:
         name = group.get("id", "")
         if ":" not in name:
             continue
-        texts = [e.text.strip() for e in group.iter(ElementTree.Comment) if e.text]
+        comment: Any = ElementTree.Comment  # which types do not know as a kind of element
+        texts = [e.text.strip() for e in group.iter(comment) if e.text]
         if texts:
             place = next(_PLACE.search(g.get("transform", "")) for g in group.iter(f"{_SVG}g")
                          if "translate" in g.get("transform", ""))  # fmt: skip

@@ -5,19 +5,23 @@ from __future__ import annotations
 import re
 from itertools import combinations
 
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-__all__ = ["assert_page_is_clear", "printed_texts", "size_in_inches", "svg_texts"]
+__all__ = ["assert_page_is_clear", "left_title", "printed_texts", "size_in_inches", "svg_texts"]
 
 
 def printed_texts(page: Figure) -> list[tuple[str, Bbox]]:
     """Every text of a figure but those inside drawings, with its box in pixels."""
     page.canvas.draw()
+    assert isinstance(page.canvas, FigureCanvasAgg)
     renderer = page.canvas.get_renderer()
     artists = [*page.texts, *(text for legend in page.legends for text in legend.get_texts())]
     for ax in page.axes:
-        artists += [ax.xaxis.label, ax.yaxis.label, ax.title, ax._left_title]
+        artists += [ax.xaxis.label, ax.yaxis.label, ax.title, left_title(ax)]
         for axis, limits in ((ax.xaxis, ax.get_xlim()), (ax.yaxis, ax.get_ylim())):
             low, high = sorted(limits)
             slack = 1e-9 * (high - low)
@@ -31,6 +35,12 @@ def printed_texts(page: Figure) -> list[tuple[str, Bbox]]:
         for text in artists
         if text.get_visible() and text.get_text().strip()
     ]
+
+
+def left_title(ax: Axes) -> Text:
+    """The title at the left, which Matplotlib gives as text only."""
+    found: Text = getattr(ax, "_left_title")  # noqa: B009 - unknown to its types
+    return found
 
 
 def assert_page_is_clear(page: Figure) -> None:
@@ -53,7 +63,7 @@ def assert_page_is_clear(page: Figure) -> None:
 def _overlap(one: Bbox, other: Bbox) -> bool:
     width = min(one.x1, other.x1) - max(one.x0, other.x0)
     height = min(one.y1, other.y1) - max(one.y0, other.y0)
-    return width > 0 and height > 0
+    return bool(width > 0 and height > 0)
 
 
 def svg_texts(svg: bytes) -> list[str]:

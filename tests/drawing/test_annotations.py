@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,6 +19,7 @@ from linkwork.drawing import (
     Polygon,
     Polyline,
     Role,
+    Scene,
     SceneOptions,
     Text,
     scene_of,
@@ -28,36 +31,37 @@ from linkwork.foundation.errors import InputError
 from linkwork.results.force import Force
 
 NAMES = ["four-bar", "jansen-leg", "slider-crank", "crank-shaper", "planetary-gear"]
-_CACHE = {}
+_CACHE: dict[str, tuple[lw.Position, lw.Motion]] = {}
 
 
-def moved(name):
+def moved(name: str) -> tuple[lw.Position, lw.Motion]:
     if name not in _CACHE:
         mechanism = lw.example(name)
         _CACHE[name] = mechanism.solve(), mechanism.sweep()
     return _CACHE[name]
 
 
-def drawn(name, traces=None, **options):
+def drawn(name: str, traces: Sequence[str] | None = None, **options: Any) -> Scene:
     return scene_of(*moved(name), traces=traces, options=SceneOptions(**options))
 
 
-def vectors(scene, role):
+def vectors(scene: Scene, role: Role) -> dict[str, complex]:
     return {
         p.of: complex(*p.points[1]) - complex(*p.points[0]) for p in scene.select(Polyline, role)
     }
 
 
-def scale_of(caption, word):
+def scale_of(caption: str, word: str) -> float:
     """Length units per unit of the rate, as the caption has it."""
     found = re.search(rf"{word}: ([\d.e+-]+) \w+ shows ([\d.e+-]+) ", caption)
+    assert found
     return float(found[1]) / float(found[2])
 
 
 @pytest.mark.parametrize(
     ("role", "word"), [("VELOCITY", "velocity"), ("ACCELERATION", "acceleration")]
 )
-def test_an_arrow_is_the_rate_at_the_scale_of_the_caption(role, word):
+def test_an_arrow_is_the_rate_at_the_scale_of_the_caption(role: str, word: str) -> None:
     position, _ = moved("four-bar")
     scene = drawn("four-bar", velocities=True, accelerations=True)
     rates = position.velocity if role == "VELOCITY" else position.acceleration
@@ -68,7 +72,7 @@ def test_an_arrow_is_the_rate_at_the_scale_of_the_caption(role, word):
         assert arrow == pytest.approx(scale * complex(rates[f"{name}.x"], rates[f"{name}.y"]))
 
 
-def test_arrows_without_a_speed_are_by_the_input():
+def test_arrows_without_a_speed_are_by_the_input() -> None:
     position, _ = moved("slider-crank")
     scene = drawn("slider-crank", velocities=True)
     assert scene.caption.endswith(" mm/rad")
@@ -78,7 +82,9 @@ def test_arrows_without_a_speed_are_by_the_input():
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_longest_arrow_of_a_motion_is_at_most_the_stated_share_of_the_picture(name):
+def test_the_longest_arrow_of_a_motion_is_at_most_the_stated_share_of_the_picture(
+    name: str,
+) -> None:
     position, motion = moved(name)
     scene = drawn(name, velocities=True)
     scale = scale_of(scene.caption, "velocity")
@@ -88,7 +94,7 @@ def test_the_longest_arrow_of_a_motion_is_at_most_the_stated_share_of_the_pictur
     assert LONGEST / 1.51 <= scale * most / scene.measures.size <= LONGEST * (1 + 1e-9)
 
 
-def test_forces_are_arrows_at_their_points_at_the_scale_of_the_caption():
+def test_forces_are_arrows_at_their_points_at_the_scale_of_the_caption() -> None:
     forces = (Force(at="B", x=-40.0, y=0.0, unit="N"), Force(at="A", x=3.0, y=-15.0, unit="N"))
     position, _ = moved("slider-crank")
     scene = drawn("slider-crank", forces=forces)
@@ -101,7 +107,7 @@ def test_forces_are_arrows_at_their_points_at_the_scale_of_the_caption():
     assert {text.text for text in scene.select(Text, Role.FORCE_NAME)} == {"F(A)", "F(B)"}
 
 
-def test_forces_at_one_point_are_drawn_one_by_one_and_small_ones_are_told():
+def test_forces_at_one_point_are_drawn_one_by_one_and_small_ones_are_told() -> None:
     forces = [Force(at="B", x=10.0, y=0.0), Force(at="B", x=0.0, y=10.0)]
     scene = drawn("slider-crank", forces=(*forces, Force(at="A", x=0.01, y=0.0)))
     assert len(scene.select(Polyline, Role.FORCE)) == 2
@@ -118,38 +124,40 @@ def test_forces_at_one_point_are_drawn_one_by_one_and_small_ones_are_told():
         ([("A", np.inf, "N")], "the force at A is not finite: inf, 0"),
     ],
 )
-def test_forces_that_cannot_be_drawn_are_refused(forces, said):
+def test_forces_that_cannot_be_drawn_are_refused(
+    forces: list[tuple[str, float, str]], said: str
+) -> None:
     with pytest.raises(InputError, match=said):
         drawn("slider-crank", forces=tuple(Force(at=p, x=x, y=0.0, unit=u) for p, x, u in forces))
 
 
-def test_points_that_stand_still_or_say_where_a_line_runs_have_no_arrow():
+def test_points_that_stand_still_or_say_where_a_line_runs_have_no_arrow() -> None:
     found = vectors(drawn("slider-crank", velocities=True), Role.VELOCITY)
     assert set(found) == {"A", "B"}
 
 
-def test_rates_beside_a_dead_point_do_not_set_the_scale():
+def test_rates_beside_a_dead_point_do_not_set_the_scale() -> None:
     sizes = np.concatenate([np.linspace(1, 2, 99), [500.0]])
     assert usual_most(sizes) < 2.1
     assert usual_most(np.linspace(1, 2, 100)) == 2.0
     assert usual_most(np.array([np.nan])) == 0.0
 
 
-def test_scales_are_short_numbers_not_below_what_is_wanted():
+def test_scales_are_short_numbers_not_below_what_is_wanted() -> None:
     for wanted in np.geomspace(1e-7, 1e7, 203).tolist():
         found = round_up(wanted)
         assert wanted * (1 - 1e-9) <= found <= 1.51 * wanted
         assert float(f"{found:.1e}") == pytest.approx(found)
 
 
-def test_a_position_without_finite_rates_has_no_arrows():
+def test_a_position_without_finite_rates_has_no_arrows() -> None:
     position, _ = moved("four-bar")
     ended = replace(position, velocity=dict.fromkeys(position.velocity, np.nan))
     with pytest.raises(InputError, match=r"has no velocity to draw .*not that of A, B: the input"):
         scene_of(ended, options=SceneOptions(velocities=True))
 
 
-def test_a_path_is_coloured_by_its_speed_from_end_to_end():
+def test_a_path_is_coloured_by_its_speed_from_end_to_end() -> None:
     _, motion = moved("jansen-leg")
     scene = drawn("jansen-leg", speed=True)
     pieces = scene.select(Polyline, Role.SPEED_TRACE, of="F")
@@ -164,7 +172,7 @@ def test_a_path_is_coloured_by_its_speed_from_end_to_end():
     assert len({piece.level for piece in pieces}) > 5
 
 
-def test_the_colour_scale_stands_below_the_drawing_and_says_the_largest_speed():
+def test_the_colour_scale_stands_below_the_drawing_and_says_the_largest_speed() -> None:
     _, motion = moved("jansen-leg")
     scene = drawn("jansen-leg", speed=True)
     steps = scene.select(Polygon, Role.SCALE)
@@ -177,7 +185,7 @@ def test_the_colour_scale_stands_below_the_drawing_and_says_the_largest_speed():
     assert f"{np.abs(motion.trace('F.d1')).max():.3g} mm/rad  speed of F" in said
 
 
-def test_speeds_need_a_motion_and_a_path():
+def test_speeds_need_a_motion_and_a_path() -> None:
     position, motion = moved("four-bar")
     with pytest.raises(InputError, match="speeds along a path cannot be drawn from one position"):
         scene_of(position, options=SceneOptions(speed=True))
@@ -187,7 +195,7 @@ def test_speeds_need_a_motion_and_a_path():
         scene_of(position, options=SceneOptions(centrodes=("coupler",)))
 
 
-def test_instant_centres_are_numbered_and_the_caption_says_which_links():
+def test_instant_centres_are_numbered_and_the_caption_says_which_links() -> None:
     position, _ = moved("slider-crank")
     scene = drawn("slider-crank", centres=True)
     assert "instant centres of links 1:ground, 2:crank, 3:rod, 4:block" in scene.caption
@@ -199,13 +207,13 @@ def test_instant_centres_are_numbered_and_the_caption_says_which_links():
     assert set(crosses) == {text.text for text in scene.select(Text, Role.CENTRE_NAME)}
 
 
-def test_centres_in_one_place_share_a_name():
+def test_centres_in_one_place_share_a_name() -> None:
     """At P of the leg ground, 1, the upper triangle, 5, and the lower rocker, 6, are joined."""
     texts = drawn("jansen-leg", centres=True).select(Text, Role.CENTRE_NAME)
     assert "I₁₅ I₁₆ I₅₆" in {text.text for text in texts}
 
 
-def test_centrodes_touch_at_the_instant_centre():
+def test_centrodes_touch_at_the_instant_centre() -> None:
     position, _ = moved("four-bar")
     scene = drawn("four-bar", centrodes=("coupler",))
     o2, a, b, o4 = (complex(*position.points[name]) for name in ("O2", "A", "B", "O4"))
@@ -220,11 +228,11 @@ def test_centrodes_touch_at_the_instant_centre():
     assert "centrodes of coupler: fixed solid, moving dashed" in scene.caption
 
 
-def _cross(a, b):
+def _cross(a: complex, b: complex) -> float:
     return (a.conjugate() * b).imag
 
 
-def test_a_dimension_is_as_long_as_its_number():
+def test_a_dimension_is_as_long_as_its_number() -> None:
     scene = drawn("four-bar", dimensions=True)
     texts = {text.of: text.text for text in scene.select(Text, Role.DIMENSION_NAME)}
     assert texts == {"crank": texts["crank"], "coupler": "120", "rocker": "80", "ground": "100"}
@@ -235,13 +243,13 @@ def test_a_dimension_is_as_long_as_its_number():
         assert abs(complex(*tips[0]) - complex(*tips[1])) == pytest.approx(length)
 
 
-def test_the_angle_of_the_input_is_an_arc_of_its_size():
+def test_the_angle_of_the_input_is_an_arc_of_its_size() -> None:
     [arc] = drawn("four-bar", dimensions=True).select(Arc, Role.DIMENSION)
     assert arc.start == pytest.approx(0, abs=1e-9)
     assert np.degrees(arc.sweep) == pytest.approx(moved("four-bar")[0].input["crank"])
 
 
-def test_driven_lengths_and_radii_are_dimensions():
+def test_driven_lengths_and_radii_are_dimensions() -> None:
     texts = {t.text for t in drawn("excavator", dimensions=True).select(Text, Role.DIMENSION_NAME)}
     assert "boom_ram = 264.39" in texts
     scene = drawn("planetary-gear", dimensions=True)
@@ -252,7 +260,7 @@ def test_driven_lengths_and_radii_are_dimensions():
 @pytest.mark.parametrize(
     "shown", [{"velocities": True, "accelerations": True}, {"centres": True}, {"dimensions": True}]
 )
-def test_texts_cover_neither_each_other_nor_pins(name, shown):
+def test_texts_cover_neither_each_other_nor_pins(name: str, shown: dict[str, Any]) -> None:
     scene = drawn(name, **shown)
     for one, other in combinations(scene.select(Text), 2):
         assert one.box.overlap(other.box) == 0, (one.text, other.text)

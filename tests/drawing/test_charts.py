@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 import linkwork as lw
 from linkwork.drawing import LIGHT, circuit_chart, render
 from linkwork.drawing.charts import chart as chart_module
 from linkwork.drawing.charts import circuit_chart as circuit_chart_module
-from linkwork.drawing.charts.chart import Chart
+from linkwork.drawing.charts.chart import Chart, Curve
 from linkwork.drawing.charts.matplotlib_page import chart_figure
 from linkwork.drawing.charts.theme import LIGHT_CHART
 from linkwork.foundation.errors import InputError, UnknownNameError
@@ -35,7 +38,9 @@ LINKS = {
 }
 
 
-def four_bar(ground, crank, coupler, rocker, **parts):
+def four_bar(
+    ground: float, crank: float, coupler: float, rocker: float, **parts: Any
+) -> lw.Mechanism:
     """By its lengths, the crank near 60 degrees."""
     a = crank * (0.5 + 0.75**0.5 * 1j)
     d = abs(ground - a)
@@ -72,20 +77,20 @@ def ray_and_line() -> lw.Circuits:
     ).circuits()
 
 
-def breaks(curve):
+def breaks(curve: Curve) -> list[tuple[tuple[float, float], tuple[float, float]]]:
     """Where a line is interrupted: the points before and behind each gap."""
     gaps = np.flatnonzero(np.isnan(curve.x))
     return [((curve.x[k - 1], curve.y[k - 1]), (curve.x[k + 1], curve.y[k + 1])) for k in gaps]
 
 
-def page_of(chart: Chart):
+def page_of(chart: Chart) -> Figure:
     return chart_figure(chart, LIGHT)
 
 
 # ------------------------------------------------------------------ curves
 
 
-def test_every_branch_of_every_circuit_is_a_curve_in_every_panel():
+def test_every_branch_of_every_circuit_is_a_curve_in_every_panel() -> None:
     chart = circuit_chart(circuits_of("rapier-drive"))
     labels = [panel.axis.label for panel in chart.panels]
     assert labels == ["θ₁₃ [deg]", "θ₁₄ [deg]", "θ₁₅ [deg]", "s₁₆ [mm]"]
@@ -95,7 +100,9 @@ def test_every_branch_of_every_circuit_is_a_curve_in_every_panel():
 
 
 @pytest.mark.parametrize("name", SWEPT)
-def test_curves_pass_through_every_position_of_their_circuit_and_through_no_other(name):
+def test_curves_pass_through_every_position_of_their_circuit_and_through_no_other(
+    name: str,
+) -> None:
     circuits = circuits_of(name)
     turn = circuits[0].motion.units.angle.turn
     chart = circuit_chart(circuits)
@@ -117,7 +124,7 @@ def test_curves_pass_through_every_position_of_their_circuit_and_through_no_othe
 
 
 @pytest.mark.parametrize("name", SWEPT)
-def test_curves_and_marks_stay_inside_their_axes(name):
+def test_curves_and_marks_stay_inside_their_axes(name: str) -> None:
     chart = circuit_chart(circuits_of(name))
     for panel in chart.panels:
         for along, axis in (("x", chart.axis), ("y", panel.axis)):
@@ -130,7 +137,7 @@ def test_curves_and_marks_stay_inside_their_axes(name):
             assert (high - low) / axis.step == pytest.approx(round((high - low) / axis.step))
 
 
-def test_a_line_stops_at_a_whole_turn_of_the_input_and_goes_on_at_the_other_side():
+def test_a_line_stops_at_a_whole_turn_of_the_input_and_goes_on_at_the_other_side() -> None:
     [panel] = circuit_chart(circuits_of("rapier-drive"), ["s16"]).panels
     for curve in panel.curves[:2]:  # the crank goes from 60 to 420
         [((x0, y0), (x1, y1))] = breaks(curve)
@@ -139,7 +146,7 @@ def test_a_line_stops_at_a_whole_turn_of_the_input_and_goes_on_at_the_other_side
     assert [breaks(curve) for curve in panel.curves[2:]] == [[], []]
 
 
-def test_an_angle_that_turns_fully_is_cut_once_at_the_edges_of_its_panel():
+def test_an_angle_that_turns_fully_is_cut_once_at_the_edges_of_its_panel() -> None:
     [panel] = circuit_chart(circuits_of("slider-input"), ["θ2"]).panels
     assert (panel.axis.ends, panel.axis.step) == ((0, 360), 90)
     cut = [gap for curve in panel.curves for gap in breaks(curve)]
@@ -149,7 +156,7 @@ def test_an_angle_that_turns_fully_is_cut_once_at_the_edges_of_its_panel():
         assert x0 == pytest.approx(x1, abs=1e-12)
 
 
-def test_angles_are_shown_over_the_turn_that_cuts_them_least():
+def test_angles_are_shown_over_the_turn_that_cuts_them_least() -> None:
     [rod] = circuit_chart(circuits_of("crank-slider"), ["θ3"]).panels
     # one circuit around 170 degrees, one around 10: a turn from 0 would cut the second
     assert (rod.axis.ends, rod.axis.step) == ((-90, 270), 90)
@@ -158,31 +165,33 @@ def test_angles_are_shown_over_the_turn_that_cuts_them_least():
     assert low == pytest.approx(-math.degrees(math.asin((40 - 20) / 120)), abs=0.1)
 
 
-def test_a_line_along_an_edge_moves_into_the_panel():
+def test_a_line_along_an_edge_moves_into_the_panel() -> None:
     coupler, rocker = circuit_chart(four_bar(100, 40, 100, 40).circuits()).panels
+    assert coupler.axis.ends
     low, high = coupler.axis.ends  # 0 in one circuit, between -90 and 90 in the other
     assert low < -20 < 20 < high
     assert rocker.axis.ends == (0, 360)  # it turns fully: cut in no other way
 
 
-def test_angles_within_less_than_half_a_turn_fill_their_panel():
+def test_angles_within_less_than_half_a_turn_fill_their_panel() -> None:
     chart = circuit_chart(circuits_of("rapier-drive-limited"))
     told = [(panel.axis.ends, panel.axis.step) for panel in chart.panels]
     assert told == [((150, 200), 10), ((30, 180), 30), ((60, 210), 30), (None, 0)]
     for panel in chart.panels[:3]:
+        assert panel.axis.ends
         (low, high), step = panel.axis.ends, panel.axis.step
         y = np.concatenate([curve.y for curve in panel.curves])
         assert low < np.nanmin(y) < low + 1.1 * step
         assert high - 1.1 * step < np.nanmax(y) < high
 
 
-def test_an_angle_that_stays_as_it_is_lies_inside_a_panel_of_some_degrees():
+def test_an_angle_that_stays_as_it_is_lies_inside_a_panel_of_some_degrees() -> None:
     [block] = circuit_chart(circuits_of("slider-crank"), ["block"]).panels
     assert all(np.nanmax(np.abs(curve.y)) == 0.0 for curve in block.curves)
     assert (block.axis.ends, block.axis.step) == ((-1, 1), 1)
 
 
-def test_radians_have_axes_of_radians():
+def test_radians_have_axes_of_radians() -> None:
     chart = circuit_chart(circuits_of("andrews-squeezer"))
     axis = chart.axis
     assert (axis.label, axis.ends, axis.step) == ("β [rad]", (0, 4 * QUARTER), QUARTER / 2)
@@ -197,7 +206,7 @@ def test_radians_have_axes_of_radians():
     assert labels[-14:-5] == ["0", "π/4", "π/2", "3π/4", "π", "5π/4", "3π/2", "7π/4", "2π"]
 
 
-def test_an_input_that_is_a_length_is_shown_as_far_as_it_goes():
+def test_an_input_that_is_a_length_is_shown_as_far_as_it_goes() -> None:
     chart = circuit_chart(circuits_of("slider-input"))
     assert (chart.axis.label, chart.axis.turn, chart.axis.ends) == ("d [mm]", 0.0, None)
     x = np.concatenate([curve.x for curve in chart.panels[0].curves])
@@ -205,7 +214,7 @@ def test_an_input_that_is_a_length_is_shown_as_far_as_it_goes():
     assert (np.nanmin(x), np.nanmax(x)) == pytest.approx((-reach, reach), abs=1e-9)
 
 
-def test_numbers_without_a_unit_are_labelled_with_their_name_alone():
+def test_numbers_without_a_unit_are_labelled_with_their_name_alone() -> None:
     circuits = four_bar(
         100, 40, 120, 80, outputs={"ratio": "rocker/coupler", "mu": "rocker"}
     ).circuits()
@@ -214,7 +223,7 @@ def test_numbers_without_a_unit_are_labelled_with_their_name_alone():
     assert labels[2] == "O₄.x [mm]"
 
 
-def test_an_input_at_rest_is_an_upright_line():
+def test_an_input_at_rest_is_an_upright_line() -> None:
     kite = four_bar(1, 1, 2, 2)
     circuits = kite.circuits()
     chart = circuit_chart(circuits)
@@ -228,10 +237,11 @@ def test_an_input_at_rest_is_an_upright_line():
             assert np.nanmax(curve.x) < 1e-6 or np.nanmin(curve.x) > 360 - 1e-6
 
 
-def test_lengths_that_run_to_infinity_leave_their_panel():
+def test_lengths_that_run_to_infinity_leave_their_panel() -> None:
     chart = circuit_chart(ray_and_line())
     for panel in chart.panels:
         y = np.concatenate([curve.y for curve in panel.curves])
+        assert panel.axis.ends
         low, high = panel.axis.ends
         assert np.nanmax(np.abs(y)) > 1000
         assert -20 < low < -2
@@ -243,7 +253,7 @@ def test_lengths_that_run_to_infinity_leave_their_panel():
     assert_page_is_clear(page)
 
 
-def test_a_curve_under_others_is_drawn_wider():
+def test_a_curve_under_others_is_drawn_wider() -> None:
     chart = circuit_chart(circuits_of("double-four-bar"))
     below = {panel.axis.label: [curve.below for curve in panel.curves] for panel in chart.panels}
     # θ2 and θ3 follow from the first loop alone: the second one's two ways lie over each other
@@ -261,7 +271,7 @@ def test_a_curve_under_others_is_drawn_wider():
 
 
 @pytest.mark.parametrize("name", SWEPT)
-def test_dead_points_are_marked_at_their_input_and_at_the_value_there(name):
+def test_dead_points_are_marked_at_their_input_and_at_the_value_there(name: str) -> None:
     circuits = circuits_of(name)
     chart = circuit_chart(circuits)
     turn = chart.axis.turn
@@ -282,7 +292,7 @@ def test_dead_points_are_marked_at_their_input_and_at_the_value_there(name):
                 assert away.min() < 1e-9
 
 
-def test_change_points_are_marked_on_both_sides_of_a_whole_turn():
+def test_change_points_are_marked_on_both_sides_of_a_whole_turn() -> None:
     chart = circuit_chart(four_bar(4, 1, 3, 2).circuits())
     for panel in chart.panels:
         assert {mark.kind for mark in panel.marks} == {"change point"}
@@ -297,18 +307,18 @@ def test_change_points_are_marked_on_both_sides_of_a_whole_turn():
 # ------------------------------------------------------------------ what is asked
 
 
-def test_quantities_are_drawn_as_asked_in_any_spelling_and_once():
+def test_quantities_are_drawn_as_asked_in_any_spelling_and_once() -> None:
     chart = circuit_chart(circuits_of("rapier-drive"), ["E.x", "theta13", "s16", "θ13"])
     assert [p.axis.label for p in chart.panels] == ["E.x [mm]", "θ₁₃ [deg]", "s₁₆ [mm]"]
 
 
-def test_the_first_unknowns_are_drawn_if_nobody_says_which(monkeypatch):
+def test_the_first_unknowns_are_drawn_if_nobody_says_which(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(circuit_chart_module, "MOST_PANELS", 3)
     chart = circuit_chart(circuits_of("rapier-drive"))
     assert [p.axis.label for p in chart.panels] == ["θ₁₃ [deg]", "θ₁₄ [deg]", "θ₁₅ [deg]"]
 
 
-def test_an_unknown_quantity_is_refused_with_those_that_exist():
+def test_an_unknown_quantity_is_refused_with_those_that_exist() -> None:
     with pytest.raises(UnknownNameError) as raised:
         circuit_chart(circuits_of("four-bar"), ["roker"])
     assert str(raised.value) == (
@@ -316,7 +326,7 @@ def test_an_unknown_quantity_is_refused_with_those_that_exist():
     )
 
 
-def test_no_circuit_is_no_chart():
+def test_no_circuit_is_no_chart() -> None:
     circuits = lw.linkage(
         name="Too short",
         points={"O2": (0, 0), "A": (10, 0), "B": (50, 0), "O4": (100, 0)},
@@ -333,7 +343,7 @@ def test_no_circuit_is_no_chart():
 
 
 @pytest.mark.parametrize("name", SWEPT)
-def test_texts_are_on_the_page_and_keep_clear_of_each_other(name):
+def test_texts_are_on_the_page_and_keep_clear_of_each_other(name: str) -> None:
     circuits = circuits_of(name)
     chart = circuit_chart(circuits)
     page = page_of(chart)
@@ -372,7 +382,7 @@ def crowded(chart: Chart) -> Chart:
     return replace(chart, title=title, caption="13 circuits", panels=(wide, *chart.panels[1:]))
 
 
-def test_long_names_and_many_circuits_have_room():
+def test_long_names_and_many_circuits_have_room() -> None:
     page = page_of(crowded(circuit_chart(circuits_of("rapier-drive"))))
     assert_page_is_clear(page)
     title = [text.get_text() for text in page.texts]
@@ -386,33 +396,38 @@ def test_long_names_and_many_circuits_have_room():
     assert legend == [*(f"circuit {k}" for k in range(1, 14)), "change point", "dead point"]
 
 
-def test_circuits_of_one_colour_differ_in_their_dashes():
+def dashes_of(line: Line2D) -> object:
+    """As drawn; Matplotlib tells no one else."""
+    return getattr(line, "_dash_pattern")  # noqa: B009 - unknown to its types
+
+
+def test_circuits_of_one_colour_differ_in_their_dashes() -> None:
     page = page_of(crowded(circuit_chart(circuits_of("rapier-drive"))))
     keys = [entry.get_lines()[0] for entry in page.legends][:13]
-    looks = {(to_rgba(key.get_color()), str(key._dash_pattern)) for key in keys}
+    looks = {(to_rgba(key.get_color()), str(dashes_of(key))) for key in keys}
     assert len(looks) == 13
-    lines = [line for line in page.axes[0].lines if line.get_gid().startswith("curve:")]
+    lines = [line for line in page.axes[0].lines if str(line.get_gid()).startswith("curve:")]
     for key, line in zip(keys, lines, strict=True):
         assert line.get_gid() == f"curve:{key.get_label()}"
         assert line.get_color() == key.get_color()
         assert line.get_linestyle() == key.get_linestyle()
 
 
-def test_the_page_draws_the_curves_and_marks_of_the_chart():
+def test_the_page_draws_the_curves_and_marks_of_the_chart() -> None:
     chart = circuit_chart(circuits_of("rapier-drive"))
     for ax, panel in zip(page_of(chart).axes, chart.panels, strict=True):
-        lines = [line for line in ax.lines if line.get_gid().startswith("curve:")]
+        lines = [line for line in ax.lines if str(line.get_gid()).startswith("curve:")]
         for line, curve in zip(lines, panel.curves, strict=True):
             np.testing.assert_array_equal(line.get_xydata(), np.stack([curve.x, curve.y], axis=1))
             assert line.get_color() == LIGHT_CHART.tones[curve.tone - 1]
         marks = [line for line in ax.lines if line.get_gid() == "dead-point"]
         for line, mark in zip(marks, panel.marks, strict=True):
-            assert line.get_xydata().tolist() == [[mark.x, mark.y]]
+            assert np.asarray(line.get_xydata()).tolist() == [[mark.x, mark.y]]
             assert line.get_marker() == "o"
             assert line.get_markeredgecolor() == LIGHT_CHART.tones[mark.tone - 1]
 
 
-def test_a_png_is_as_wide_as_a_page_and_grows_by_a_panel():
+def test_a_png_is_as_wide_as_a_page_and_grows_by_a_panel() -> None:
     circuits = circuits_of("rapier-drive")
     names = ["s16", "θ13", "θ14", "θ15", "E.x"]
     sizes = [
@@ -428,7 +443,7 @@ def test_a_png_is_as_wide_as_a_page_and_grows_by_a_panel():
     assert five - four == pytest.approx(2.12, abs=0.011)
 
 
-def test_an_svg_names_its_texts_curves_and_marks():
+def test_an_svg_names_its_texts_curves_and_marks() -> None:
     svg = render(circuit_chart(circuits_of("rapier-drive"), ["s16"]), "svg")
     texts = svg_texts(svg)
     for text in (
@@ -443,6 +458,6 @@ def test_an_svg_names_its_texts_curves_and_marks():
 
 
 @pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
-def test_the_same_chart_gives_the_same_bytes(kind):
+def test_the_same_chart_gives_the_same_bytes(kind: str) -> None:
     chart = circuit_chart(circuits_of("four-bar"))
     assert render(chart, kind) == render(circuit_chart(circuits_of("four-bar")), kind)

@@ -17,12 +17,15 @@ from linkwork.drawing import (
     Polygon,
     Polyline,
     Role,
+    Scene,
     SceneOptions,
     reach_of,
     scene_of,
 )
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.tooth_outline import tooth_outline, tooth_phases
+from linkwork.foundation.arrays import ComplexArray
+from linkwork.mechanism.contact_shapes import Disc as Wheel
 
 EXAMPLES = [
     "planetary-gear", "planetary-differential", "cardan-circles", "geared-five-bar",
@@ -36,47 +39,54 @@ ROUNDING = 1e-12
 
 
 @cache
-def motion_of(name):
+def motion_of(name: str) -> lw.Motion:
     return lw.example(name).sweep(certify=False)
 
 
 @cache
-def position_of(name, value):
+def position_of(name: str, value: float | None) -> lw.Position:
     return lw.example(name).solve(value, certify=False)
 
 
 @cache
-def scene_at(name, value=None):
+def scene_at(name: str, value: float | None = None) -> Scene:
     return scene_of(position_of(name, value), motion_of(name))
 
 
-def z(point):
+def z(point: tuple[float, float]) -> complex:
     return complex(*point)
 
 
-def line_of(part):
+def line_of(part: Arc | Polygon | Polyline) -> ComplexArray:
     return np.array([z(point) for point in part.points])
 
 
-def place(position, name):
+def teeth_of(disc: Wheel) -> int:
+    assert disc.teeth is not None
+    return disc.teeth
+
+
+def place(position: lw.Position, name: str) -> complex:
     return z(position.points[name])
 
 
-def distance_to_line(point, corners):
+def distance_to_line(point: complex, corners: ComplexArray) -> float:
     """From a point to a closed line through corners."""
     start, step = corners, np.roll(corners, -1) - corners
     share = np.clip(((point - start) * step.conj()).real / np.abs(step) ** 2, 0.0, 1.0)
     return float(np.abs(point - start - share * step).min())
 
 
-def inside(point, corners):
+def inside(point: complex, corners: ComplexArray) -> bool:
     """Whether a closed line runs around a point."""
-    return abs(np.angle((np.roll(corners, -1) - point) / (corners - point)).sum()) > 1.0
+    return bool(abs(np.angle((np.roll(corners, -1) - point) / (corners - point)).sum()) > 1.0)
 
 
 @pytest.mark.parametrize(("name", "ends"), [("belt-drive", (25, 50)), ("crossed-belt", (30, 30))])
 @pytest.mark.parametrize("value", [0, 77])
-def test_the_runs_of_a_belt_touch_both_pulleys(name, ends, value):
+def test_the_runs_of_a_belt_touch_both_pulleys(
+    name: str, ends: tuple[float, float], value: float
+) -> None:
     position, scene = position_of(name, value), scene_at(name, value)
     [belt] = position.skeleton.contacts.belts
     centres = [place(position, point) for point in belt.centers]
@@ -96,7 +106,7 @@ def test_the_runs_of_a_belt_touch_both_pulleys(name, ends, value):
 
 
 @pytest.mark.parametrize("name", ["belt-drive", "crossed-belt"])
-def test_a_belt_is_closed_and_goes_around_the_far_sides(name):
+def test_a_belt_is_closed_and_goes_around_the_far_sides(name: str) -> None:
     position, scene = position_of(name, 40), scene_at(name, 40)
     centres = [place(position, point) for point in position.skeleton.contacts.belts[0].centers]
     runs = [line_of(run) for run in scene.select(Polyline, Role.BELT)]
@@ -110,7 +120,7 @@ def test_a_belt_is_closed_and_goes_around_the_far_sides(name):
         assert np.abs(points - far).min() < 0.06 * arc.radius  # pieces are 0.1 rad long
 
 
-def test_gears_have_their_number_of_teeth():
+def test_gears_have_their_number_of_teeth() -> None:
     scene = scene_at("planetary-gear", 100)
     position = position_of("planetary-gear", 100)
     for link, teeth, centre in (("sun", 40, "O"), ("planet", 20, "A")):
@@ -134,7 +144,7 @@ def test_gears_have_their_number_of_teeth():
 
 @pytest.mark.parametrize("value", [0, 13, 100, 741])
 @pytest.mark.parametrize("name", ["planetary-gear", "planetary-differential"])
-def test_teeth_in_mesh_do_not_run_into_each_other(name, value):
+def test_teeth_in_mesh_do_not_run_into_each_other(name: str, value: float) -> None:
     at = {"sun": value, "ring": value / 7} if name == "planetary-differential" else value
     mechanism = lw.example(name)
     position = mechanism.solve(at, certify=False)
@@ -157,14 +167,14 @@ def test_teeth_in_mesh_do_not_run_into_each_other(name, value):
 @pytest.mark.parametrize(
     ("name", "first"), [("planetary-gear", "ground"), ("planetary-differential", "ring")]
 )
-def test_teeth_turn_with_their_links(name, first):
+def test_teeth_turn_with_their_links(name: str, first: str) -> None:
     mechanism = lw.example(name)
     within = []
     for value in (0, 10, 250, 1000):
         at = value if name == "planetary-gear" else {"sun": value, "ring": 90 - value / 9}
         pose = Pose.of(mechanism.solve(at, certify=False), None)
         within.append({
-            disc.link: ((phase - pose.angle(disc.link)) * disc.teeth / math.tau) % 1.0
+            disc.link: ((phase - pose.angle(disc.link)) * teeth_of(disc) / math.tau) % 1.0
             for disc, phase in tooth_phases(pose).items()
         })  # fmt: skip
     assert set(within[0]) == {first, "planet", "sun"}
@@ -174,16 +184,16 @@ def test_teeth_turn_with_their_links(name, first):
             assert min(off, 1 - off) < 1e-9, link
 
 
-def test_a_tooth_is_half_a_pitch_wide_on_its_pitch_circle():
+def test_a_tooth_is_half_a_pitch_wide_on_its_pitch_circle() -> None:
     disc = position_of("planetary-gear", 0).skeleton.contacts.discs[1]
     outline = tooth_outline(disc)
-    per_tooth = len(outline) // disc.teeth
+    per_tooth = len(outline) // teeth_of(disc)
     tooth = outline[: per_tooth // 2]
     half = np.interp(disc.radius, np.abs(tooth), -np.angle(tooth))
-    assert half == pytest.approx(math.tau / disc.teeth / 4, rel=0.03)  # chords of the flank
+    assert half == pytest.approx(math.tau / teeth_of(disc) / 4, rel=0.03)  # chords of the flank
 
 
-def test_the_mark_of_a_wheel_turns_with_its_link():
+def test_the_mark_of_a_wheel_turns_with_its_link() -> None:
     for name, link, centre in (
         ("planetary-gear", "sun", "O"),
         ("belt-drive", "motor", "M"),
@@ -203,7 +213,7 @@ def test_the_mark_of_a_wheel_turns_with_its_link():
     ("cam-roller-follower", 0), ("cam-roller-follower", 60), ("cam-roller-follower", 215),
     ("cam-swinging-follower", 0), ("cam-swinging-follower", 75), ("cam-swinging-follower", 230),
 ])  # fmt: skip
-def test_the_outline_of_a_cam_touches_its_roller(name, value):
+def test_the_outline_of_a_cam_touches_its_roller(name: str, value: float) -> None:
     position, scene = position_of(name, value), scene_at(name, value)
     [outline] = scene.select(Polygon, Role.WHEEL, "cam")
     [roller] = [d for d in scene.select(Disc, Role.WHEEL) if d.radius == 10]
@@ -214,7 +224,7 @@ def test_the_outline_of_a_cam_touches_its_roller(name, value):
 
 
 @pytest.mark.parametrize("value", [0, 50, 200, 300])
-def test_a_flat_face_touches_its_cam_within_its_ends(value):
+def test_a_flat_face_touches_its_cam_within_its_ends(value: float) -> None:
     scene = scene_at("eccentric-cam", value)
     outline = line_of(scene.select(Polygon, Role.WHEEL, "cam")[0])
     face = next(
@@ -227,7 +237,7 @@ def test_a_flat_face_touches_its_cam_within_its_ends(value):
     assert min(face.real) < top.real < max(face.real)
 
 
-def test_the_block_of_a_follower_stands_clear_of_its_cam():
+def test_the_block_of_a_follower_stands_clear_of_its_cam() -> None:
     for value in (0, 90, 270):
         scene = scene_at("eccentric-cam", value)
         [block] = scene.select(Polygon, Role.SLIDER)
@@ -240,7 +250,7 @@ def test_the_block_of_a_follower_stands_clear_of_its_cam():
 
 
 @pytest.mark.parametrize("value", [-90, -200, -444])
-def test_a_rolling_wheel_stands_on_its_line(value):
+def test_a_rolling_wheel_stands_on_its_line(value: float) -> None:
     scene = scene_at("rolling-wheel", value)
     [wheel] = scene.select(Disc, Role.WHEEL)
     [line] = scene.select(Polyline, Role.GROUND, "x")
@@ -253,7 +263,7 @@ def test_a_rolling_wheel_stands_on_its_line(value):
     assert all(((z(b) - z(a)) * along.conjugate()).imag < 0 for a, b in strokes.strokes)
 
 
-def test_a_wheel_inside_a_circle_touches_it():
+def test_a_wheel_inside_a_circle_touches_it() -> None:
     scene = scene_at("rolling-inside", -333)
     [wheel] = scene.select(Disc, Role.WHEEL)
     rim = min(
@@ -265,7 +275,9 @@ def test_a_wheel_inside_a_circle_touches_it():
 @pytest.mark.parametrize(
     ("name", "values"), [("rack-and-pinion", (0, 90, 200)), ("rack-steering", (-300, 0))]
 )
-def test_the_pitch_line_of_a_rack_touches_the_pitch_circle_of_its_pinion(name, values):
+def test_the_pitch_line_of_a_rack_touches_the_pitch_circle_of_its_pinion(
+    name: str, values: tuple[int, ...]
+) -> None:
     for value in values:
         scene = scene_at(name, value)
         [pinion] = scene.select(Disc, Role.PITCH)
@@ -279,7 +291,7 @@ def test_the_pitch_line_of_a_rack_touches_the_pitch_circle_of_its_pinion(name, v
         assert 0 < foot.real < abs(end - start)
 
 
-def test_a_rack_moves_with_its_slider():
+def test_a_rack_moves_with_its_slider() -> None:
     ends = {}
     for value in (10, 150):
         [rack] = scene_at("rack-and-pinion", value).select(Polygon, Role.WHEEL, "rack")
@@ -290,7 +302,7 @@ def test_a_rack_moves_with_its_slider():
 @pytest.mark.parametrize(
     ("name", "curve", "point"), [("curved-slot", "slot", "B"), ("garage-door", "track", "H")]
 )
-def test_a_pin_runs_in_the_middle_of_its_slot(name, curve, point):
+def test_a_pin_runs_in_the_middle_of_its_slot(name: str, curve: str, point: str) -> None:
     motion = motion_of(name)
     for row in (5, 40, 90):
         value = float(next(iter(motion.inputs.values()))[row])
@@ -307,7 +319,7 @@ def test_a_pin_runs_in_the_middle_of_its_slot(name, curve, point):
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_the_picture_holds_everything_and_reach_holds_the_whole_motion(name):
+def test_the_picture_holds_everything_and_reach_holds_the_whole_motion(name: str) -> None:
     motion = motion_of(name)
     reach = reach_of(motion)
     slack = 1e-3 * max(reach.width, reach.height)  # outlines are followed at 90 places
@@ -331,17 +343,18 @@ def test_the_picture_holds_everything_and_reach_holds_the_whole_motion(name):
 @pytest.mark.parametrize(
     "name", ["planetary-gear", "belt-drive", "eccentric-cam", "planetary-differential"]
 )
-def test_an_input_wheel_of_one_point_has_its_arrow_around_its_centre(name):
+def test_an_input_wheel_of_one_point_has_its_arrow_around_its_centre(name: str) -> None:
     position = position_of(name, None)
     arrows = {arrow.of: arrow for arrow in scene_at(name).select(Arc, Role.INPUT)}
     for part in position.skeleton.driven:
+        assert part.pivot is not None
         assert arrows[part.name].centre == position.points[part.pivot]
         assert (arrows[part.name].sweep < 0) is part.backwards
     if "ring" in arrows:
         assert arrows["ring"].radius > 60
 
 
-def test_wheels_lie_below_pins_and_bear_the_tones_of_their_links():
+def test_wheels_lie_below_pins_and_bear_the_tones_of_their_links() -> None:
     scene = scene_of(position_of("planetary-gear", 100), options=SceneOptions(link_names=True))
     layers = [p.role for p in scene.primitives]
     assert max(k for k, role in enumerate(layers) if role is Role.WHEEL) < layers.index(Role.LINK)
@@ -351,7 +364,7 @@ def test_wheels_lie_below_pins_and_bear_the_tones_of_their_links():
     assert tone["planet"] == names["planet"] != names["carrier"]
 
 
-def test_faint_wheels_stand_at_their_further_positions():
+def test_faint_wheels_stand_at_their_further_positions() -> None:
     motion = motion_of("rolling-inside")
     scene = scene_of(position_of("rolling-inside", 0), motion, options=SceneOptions(further=6))
     faint = [d for d in scene.select(Disc, Role.WHEEL) if d.fade]
@@ -362,7 +375,7 @@ def test_faint_wheels_stand_at_their_further_positions():
     assert not [p for p in scene.primitives if p.fade and p.role in (Role.FRAME, Role.HATCH)]
 
 
-def test_wheels_in_place_are_not_repeated_faintly():
+def test_wheels_in_place_are_not_repeated_faintly() -> None:
     scene = scene_of(
         position_of("planetary-gear", 0),
         motion_of("planetary-gear"),
@@ -374,7 +387,7 @@ def test_wheels_in_place_are_not_repeated_faintly():
     assert all(isinstance(p, Disc) for p in faint)
 
 
-def test_without_a_motion_the_picture_holds_the_line_to_roll_on():
+def test_without_a_motion_the_picture_holds_the_line_to_roll_on() -> None:
     scene = scene_of(position_of("rolling-wheel", -90))
     [line] = scene.select(Polyline, Role.GROUND, "x")
     left, right = sorted(point[0] for point in line.points)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -24,6 +25,8 @@ from linkwork.drawing.link_symbols import convex_outline, uncovered
 from linkwork.drawing.trace_path import drawn_once, thinned
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Strut
+from linkwork.results.position import Position
+from tests.drawing.conftest import Places, Sample
 
 MECHANISMS = [
     "four_bar", "slider_crank", "inverted_slider_crank", "collar", "six_link", "boom", "jansen",
@@ -35,21 +38,21 @@ AT = {"boom": 95.0}
 ROUNDING = 1e-12
 
 
-def z(point):
+def z(point: tuple[float, float]) -> complex:
     return complex(*point)
 
 
-def close(a, b, size):
+def close(a: complex, b: complex, size: float) -> bool:
     return abs(a - b) <= ROUNDING * size
 
 
 @pytest.fixture(params=MECHANISMS)
-def sample(request):
+def sample(request: pytest.FixtureRequest) -> tuple[Sample, Position]:
     found = request.getfixturevalue(request.param)
     return found, found.position(AT.get(request.param, 50.0))
 
 
-def test_every_pin_is_a_circle_exactly_at_its_point(sample):
+def test_every_pin_is_a_circle_exactly_at_its_point(sample: tuple[Sample, Position]) -> None:
     mechanism, position = sample
     scene = scene_of(position, mechanism.motion())
     pins = {disc.of: disc for disc in scene.select(Disc, Role.PIN)}
@@ -60,7 +63,7 @@ def test_every_pin_is_a_circle_exactly_at_its_point(sample):
         assert disc.radius == scene.measures.pin
 
 
-def test_points_that_join_nothing_are_smaller_dots(four_bar):
+def test_points_that_join_nothing_are_smaller_dots(four_bar: Sample) -> None:
     scene = scene_of(four_bar.position(50), four_bar.motion())
     [dot] = scene.select(Disc, Role.TRACED)
     assert dot.of == "P"
@@ -68,12 +71,12 @@ def test_points_that_join_nothing_are_smaller_dots(four_bar):
     assert dot.radius < scene.measures.pin
 
 
-def test_nothing_is_drawn_at_points_that_only_tell_a_fixed_line(slider_crank):
+def test_nothing_is_drawn_at_points_that_only_tell_a_fixed_line(slider_crank: Sample) -> None:
     scene = scene_of(slider_crank.position(50), slider_crank.motion())
     assert not {p.of for p in scene.primitives} & {"S", "T"}
 
 
-def test_every_binary_link_is_a_bar_between_its_points(four_bar):
+def test_every_binary_link_is_a_bar_between_its_points(four_bar: Sample) -> None:
     position = four_bar.position(50)
     scene = scene_of(position)
     for link, ends in (("crank", "O2 A"), ("rocker", "O4 B")):
@@ -81,21 +84,21 @@ def test_every_binary_link_is_a_bar_between_its_points(four_bar):
         assert set(bar.points) == {position.points[name] for name in ends.split()}
 
 
-def test_links_have_tones_of_their_own_and_the_driven_one_is_tone_zero(jansen):
+def test_links_have_tones_of_their_own_and_the_driven_one_is_tone_zero(jansen: Sample) -> None:
     scene = scene_of(jansen.position(50))
     tones = {p.of: p.tone for p in scene.primitives if p.role in (Role.LINK, Role.PLATE)}
     assert tones["crank"] == 0
     assert sorted(tones.values()) == list(range(13))
 
 
-def test_a_ternary_link_is_a_polygon_through_its_points(four_bar):
+def test_a_ternary_link_is_a_polygon_through_its_points(four_bar: Sample) -> None:
     position = four_bar.position(50)
     [plate] = scene_of(position).select(Polygon, Role.PLATE)
     assert plate.of == "coupler"
     assert set(plate.points) == {position.points[name] for name in "ABP"}
 
 
-def test_a_plate_encloses_all_points_of_its_link_whatever_their_order(boom):
+def test_a_plate_encloses_all_points_of_its_link_whatever_their_order(boom: Sample) -> None:
     shuffled = replace(boom.skeleton.bars[0], points=("O", "E", "L", "G"))
     skeleton = replace(boom.skeleton, bars=(shuffled,))
     position = replace(boom.position(95), skeleton=skeleton)
@@ -107,17 +110,17 @@ def test_a_plate_encloses_all_points_of_its_link_whatever_their_order(boom):
             assert ((b - a).conjugate() * (point - a)).imag >= -1e-9
 
 
-def test_convex_outlines_run_counter_clockwise_and_leave_inner_points_out():
+def test_convex_outlines_run_counter_clockwise_and_leave_inner_points_out() -> None:
     square = [0j, 2 + 0j, 2 + 2j, 2j]
     outline = convex_outline([2j, 1 + 1j, 2 + 2j, 0j, 1 + 0j, 2 + 0j])
     assert outline == square
 
 
-def test_upright_collinear_points_reach_from_end_to_end_in_spite_of_rounding():
+def test_upright_collinear_points_reach_from_end_to_end_in_spite_of_rounding() -> None:
     assert set(convex_outline([0j, -1e-14 + 100j, 1e-15 + 50j])) == {0j, -1e-14 + 100j}
 
 
-def test_three_collinear_points_are_a_bar_from_the_first_to_the_last(six_link):
+def test_three_collinear_points_are_a_bar_from_the_first_to_the_last(six_link: Sample) -> None:
     position = six_link.position(60)
     scene = scene_of(position, six_link.motion())
     assert not scene.select(Polygon, Role.PLATE)
@@ -125,7 +128,9 @@ def test_three_collinear_points_are_a_bar_from_the_first_to_the_last(six_link):
     assert set(bar.points) == {position.points["C0"], position.points["D"]}
 
 
-def test_every_ground_pivot_is_a_triangle_with_hatching_below_it(sample):
+def test_every_ground_pivot_is_a_triangle_with_hatching_below_it(
+    sample: tuple[Sample, Position],
+) -> None:
     mechanism, position = sample
     scene = scene_of(position, mechanism.motion())
     carried = {p for bar in mechanism.skeleton.bars for p in bar.points}
@@ -150,7 +155,9 @@ def test_every_ground_pivot_is_a_triangle_with_hatching_below_it(sample):
 
 
 @pytest.mark.parametrize("degrees", [0, 30, 75, 110, -40, -140, 180])
-def test_a_block_is_turned_with_its_line_and_centred_on_its_point(slope, degrees):
+def test_a_block_is_turned_with_its_line_and_centred_on_its_point(
+    slope: Callable[[float], Sample], degrees: float
+) -> None:
     mechanism = slope(degrees)
     position = mechanism.position(120)
     scene = scene_of(position, mechanism.motion())
@@ -164,7 +171,9 @@ def test_a_block_is_turned_with_its_line_and_centred_on_its_point(slope, degrees
 
 
 @pytest.mark.parametrize("degrees", [0, 30, 75, 110, -40, -140, 180])
-def test_a_rail_touches_the_block_is_parallel_to_the_line_and_hatched_behind(slope, degrees):
+def test_a_rail_touches_the_block_is_parallel_to_the_line_and_hatched_behind(
+    slope: Callable[[float], Sample], degrees: float
+) -> None:
     mechanism = slope(degrees)
     scene = scene_of(mechanism.position(120), mechanism.motion())
     [rail] = scene.select(Polyline, Role.GROUND, of="s")
@@ -181,7 +190,7 @@ def test_a_rail_touches_the_block_is_parallel_to_the_line_and_hatched_behind(slo
         assert ((z(tip) - start) / along).imag * block_side < 0
 
 
-def test_a_rail_is_as_long_as_the_travel_of_the_block(slider_crank):
+def test_a_rail_is_as_long_as_the_travel_of_the_block(slider_crank: Sample) -> None:
     motion = slider_crank.motion()
     scene = scene_of(slider_crank.position(50), motion)
     [rail] = scene.select(Polyline, Role.GROUND, of="s")
@@ -194,7 +203,9 @@ def test_a_rail_is_as_long_as_the_travel_of_the_block(slider_crank):
     assert right - left < np.ptp(travel) + 5 * half
 
 
-def test_rails_lie_below_unless_links_always_come_from_below(slider_crank, six_link):
+def test_rails_lie_below_unless_links_always_come_from_below(
+    slider_crank: Sample, six_link: Sample
+) -> None:
     scene = scene_of(slider_crank.position(50), slider_crank.motion())
     [rail] = scene.select(Polyline, Role.GROUND, of="s")
     assert rail.points[0][1] < 20
@@ -203,7 +214,7 @@ def test_rails_lie_below_unless_links_always_come_from_below(slider_crank, six_l
     assert rail.points[0][1] > 420
 
 
-def test_a_sliding_bar_with_two_guided_points_has_one_block_at_its_pin(six_link):
+def test_a_sliding_bar_with_two_guided_points_has_one_block_at_its_pin(six_link: Sample) -> None:
     position = six_link.position(60)
     scene = scene_of(position, six_link.motion())
     [block] = scene.select(Polygon, Role.SLIDER)
@@ -211,7 +222,7 @@ def test_a_sliding_bar_with_two_guided_points_has_one_block_at_its_pin(six_link)
     assert close(middle, z(position.points["E"]), scene.measures.size)
 
 
-def test_a_sliding_bar_without_pins_has_one_block_at_its_first_point(six_link):
+def test_a_sliding_bar_without_pins_has_one_block_at_its_first_point(six_link: Sample) -> None:
     skeleton = replace(six_link.skeleton, pins=("A0", "A", "B", "C0", "D"))
     position = replace(six_link.position(60), skeleton=skeleton)
     [block] = scene_of(position).select(Polygon, Role.SLIDER)
@@ -219,7 +230,9 @@ def test_a_sliding_bar_without_pins_has_one_block_at_its_first_point(six_link):
     assert close(middle, z(position.points["E"]), 1000)
 
 
-def test_a_slot_runs_along_its_link_and_holds_the_pin_in_every_position(inverted_slider_crank):
+def test_a_slot_runs_along_its_link_and_holds_the_pin_in_every_position(
+    inverted_slider_crank: Sample,
+) -> None:
     motion = inverted_slider_crank.motion()
     for value in (0, 50, 180, 270):
         position = inverted_slider_crank.position(value)
@@ -236,7 +249,7 @@ def test_a_slot_runs_along_its_link_and_holds_the_pin_in_every_position(inverted
         assert 145 + pin < max(w.real for w in turned) < 145 + 6 * pin
 
 
-def test_a_slot_without_a_motion_still_holds_the_pin(inverted_slider_crank):
+def test_a_slot_without_a_motion_still_holds_the_pin(inverted_slider_crank: Sample) -> None:
     position = inverted_slider_crank.position(50)
     scene = scene_of(position)
     [slot] = scene.select(Polygon, Role.SLOT)
@@ -249,7 +262,7 @@ def test_a_slot_without_a_motion_still_holds_the_pin(inverted_slider_crank):
     assert max(places) < 175
 
 
-def test_the_bar_of_a_slotted_link_stops_at_its_slot(inverted_slider_crank):
+def test_the_bar_of_a_slotted_link_stops_at_its_slot(inverted_slider_crank: Sample) -> None:
     position = inverted_slider_crank.position(50)
     scene = scene_of(position, inverted_slider_crank.motion())
     lever = scene.select(Polyline, Role.LINK, of="lever")
@@ -263,7 +276,7 @@ def test_the_bar_of_a_slotted_link_stops_at_its_slot(inverted_slider_crank):
     assert sorted(ends)[2] == pytest.approx(max(reach), rel=0.01)
 
 
-def test_a_slot_in_the_ground_is_hatched_and_no_link(slider_crank):
+def test_a_slot_in_the_ground_is_hatched_and_no_link(slider_crank: Sample) -> None:
     guide = replace(slider_crank.skeleton.guides[0], block=False)
     skeleton = replace(slider_crank.skeleton, guides=(guide,))
     slotted = replace(slider_crank, skeleton=skeleton)
@@ -276,7 +289,7 @@ def test_a_slot_in_the_ground_is_hatched_and_no_link(slider_crank):
     assert max(y for _, y in hatch.outline) <= min(ys) + 1e-9
 
 
-def test_a_collar_rides_on_a_rod_that_reaches_from_its_link_over_the_travel(collar):
+def test_a_collar_rides_on_a_rod_that_reaches_from_its_link_over_the_travel(collar: Sample) -> None:
     position = collar.position(50)
     scene = scene_of(position, collar.motion())
     [block] = scene.select(Polygon, Role.SLIDER)
@@ -294,9 +307,10 @@ def test_a_collar_rides_on_a_rod_that_reaches_from_its_link_over_the_travel(coll
         assert high < at - 0.99 * half or low > at + 0.99 * half
 
 
-def test_an_offset_collar_hangs_on_an_arm(collar):
-    def at(value):
+def test_an_offset_collar_hangs_on_an_arm(collar: Sample) -> None:
+    def at(value: float) -> Places:
         places = collar.at(value)
+        assert places is not None
         along = places["Q"] / abs(places["Q"])
         return {**places, "A": places["A"] + 12j * along}
 
@@ -313,12 +327,12 @@ def test_an_offset_collar_hangs_on_an_arm(collar):
     assert len(arms) == 1
 
 
-def test_hidden_pieces_of_a_bar_are_left_out():
+def test_hidden_pieces_of_a_bar_are_left_out() -> None:
     gaps = [(5 + 0j, 1 + 0j), (5 + 3j, 1 + 0j), (2 + 0j, 1j), (9 + 0j, 2 + 0j)]
     assert list(uncovered(0j, 10 + 0j, gaps)) == [(0j, 4 + 0j), (6 + 0j, 7 + 0j)]
 
 
-def test_a_cylinder_has_its_barrel_on_the_line_and_a_rod_to_the_second_point(boom):
+def test_a_cylinder_has_its_barrel_on_the_line_and_a_rod_to_the_second_point(boom: Sample) -> None:
     for value in (70, 95, 120):
         position = boom.position(value)
         scene = scene_of(position, boom.motion())
@@ -338,7 +352,9 @@ def test_a_cylinder_has_its_barrel_on_the_line_and_a_rod_to_the_second_point(boo
 
 
 @pytest.mark.parametrize("values", [(70, 110, 150), (90, 95, 100)])
-def test_a_barrel_keeps_its_length_and_is_shorter_than_the_cylinder_ever_is(boom, values):
+def test_a_barrel_keeps_its_length_and_is_shorter_than_the_cylinder_ever_is(
+    boom: Sample, values: tuple[int, ...]
+) -> None:
     motion = replace(boom, inputs=values).motion()
     within = reach_of(motion)
     lengths = []
@@ -350,7 +366,9 @@ def test_a_barrel_keeps_its_length_and_is_shorter_than_the_cylinder_ever_is(boom
     assert 0.3 * values[0] < lengths[0] < 0.9 * values[0]
 
 
-def test_the_input_arrow_turns_counter_clockwise_around_the_pivot_beside_the_links(four_bar):
+def test_the_input_arrow_turns_counter_clockwise_around_the_pivot_beside_the_links(
+    four_bar: Sample,
+) -> None:
     for value in range(0, 360, 15):
         position = four_bar.position(value)
         [arrow] = scene_of(position).select(Arc, Role.INPUT)
@@ -360,14 +378,16 @@ def test_the_input_arrow_turns_counter_clockwise_around_the_pivot_beside_the_lin
         assert (crank - arrow.start) % math.tau > arrow.sweep
 
 
-def test_a_negative_speed_turns_the_arrow_round(four_bar):
+def test_a_negative_speed_turns_the_arrow_round(four_bar: Sample) -> None:
     backwards = replace(four_bar, speed=-25.0)
     [arrow] = scene_of(backwards.position(50), backwards.motion()).select(Arc, Role.INPUT)
     assert arrow.sweep < 0
 
 
 @pytest.mark.parametrize("degrees", [0, 30, 110, -140])
-def test_a_driven_slider_has_a_straight_arrow_along_its_line_off_the_block(slope, degrees):
+def test_a_driven_slider_has_a_straight_arrow_along_its_line_off_the_block(
+    slope: Callable[[float], Sample], degrees: float
+) -> None:
     mechanism = slope(degrees)
     scene = scene_of(mechanism.position(120), mechanism.motion())
     [arrow] = scene.select(Polyline, Role.INPUT)
@@ -385,7 +405,7 @@ def test_a_driven_slider_has_a_straight_arrow_along_its_line_off_the_block(slope
     assert min(map(abs, beyond[:4])) < min(map(abs, beyond[4:]))
 
 
-def test_a_driven_cylinder_has_a_straight_arrow_beside_it(boom):
+def test_a_driven_cylinder_has_a_straight_arrow_beside_it(boom: Sample) -> None:
     position = boom.position(95)
     [arrow] = scene_of(position).select(Polyline, Role.INPUT)
     along = z(position.points["L"]) - z(position.points["K"])
@@ -395,12 +415,12 @@ def test_a_driven_cylinder_has_a_straight_arrow_beside_it(boom):
     assert len(arrow.arrow_head) == 3
 
 
-def test_arrows_can_be_left_out(four_bar):
+def test_arrows_can_be_left_out(four_bar: Sample) -> None:
     scene = scene_of(four_bar.position(50), options=SceneOptions(arrows=False))
     assert not scene.select(Arc, Role.INPUT)
 
 
-def test_a_trace_passes_through_all_positions_of_its_point(four_bar):
+def test_a_trace_passes_through_all_positions_of_its_point(four_bar: Sample) -> None:
     motion = four_bar.motion()
     [trace] = scene_of(four_bar.position(51), motion).select(Polyline, Role.TRACE)
     assert trace.of == "P"
@@ -408,7 +428,7 @@ def test_a_trace_passes_through_all_positions_of_its_point(four_bar):
     assert four_bar.position(51).points["P"] in trace.points
 
 
-def test_a_trace_is_broken_where_there_is_no_position(rocking_four_bar):
+def test_a_trace_is_broken_where_there_is_no_position(rocking_four_bar: Sample) -> None:
     motion = rocking_four_bar.motion()
     traces = scene_of(rocking_four_bar.position(20), motion).select(Polyline, Role.TRACE)
     assert len(traces) == 2
@@ -417,7 +437,7 @@ def test_a_trace_is_broken_where_there_is_no_position(rocking_four_bar):
     assert {p for trace in traces for p in trace.points} == found
 
 
-def test_a_row_that_failed_is_not_traced_even_if_it_holds_numbers(four_bar):
+def test_a_row_that_failed_is_not_traced_even_if_it_holds_numbers(four_bar: Sample) -> None:
     motion = four_bar.motion()
     status = tuple(Status.LOST if k == 60 else s for k, s in enumerate(motion.status))
     traces = scene_of(four_bar.position(50), replace(motion, status=status)).select(
@@ -426,14 +446,14 @@ def test_a_row_that_failed_is_not_traced_even_if_it_holds_numbers(four_bar):
     assert [len(trace.points) for trace in traces] == [60, 60]
 
 
-def test_runs_of_a_path_keep_lone_points_and_drop_nan():
+def test_runs_of_a_path_keep_lone_points_and_drop_nan() -> None:
     nan = complex(math.nan, math.nan)
     runs = drawn_once(np.array([nan, 1j, 2j, nan, nan, 5j, nan]), 0.05)
     assert [list(run) for run in runs] == [[1j, 2j], [5j]]
     assert drawn_once(np.array([nan, nan]), 0.05) == []
 
 
-def test_a_path_that_runs_back_over_itself_is_drawn_once():
+def test_a_path_that_runs_back_over_itself_is_drawn_once() -> None:
     out = np.linspace(0, 10, 41) + 0j
     there_and_back = np.concatenate((out, out[-2::-1]))
     runs = drawn_once(there_and_back, 0.05)
@@ -444,7 +464,7 @@ def test_a_path_that_runs_back_over_itself_is_drawn_once():
     assert len(whole) == 61
 
 
-def test_a_stretch_beyond_a_gap_is_not_drawn_over_the_one_before_it():
+def test_a_stretch_beyond_a_gap_is_not_drawn_over_the_one_before_it() -> None:
     out = np.linspace(0, 10, 41) + 0j
     nan = complex(math.nan, math.nan)
     lone = np.array([nan, 4 + 0j, nan, 4 + 3j])
@@ -453,7 +473,7 @@ def test_a_stretch_beyond_a_gap_is_not_drawn_over_the_one_before_it():
     assert runs[1][0] == 4 + 3j
 
 
-def test_a_path_of_tiny_steps_is_thinned_and_one_of_large_steps_is_not():
+def test_a_path_of_tiny_steps_is_thinned_and_one_of_large_steps_is_not() -> None:
     fine = np.exp(1j * np.linspace(0, 2, 100_001))
     few = thinned(fine, 0.01)
     assert 190 < len(few) < 210
@@ -466,14 +486,14 @@ def test_a_path_of_tiny_steps_is_thinned_and_one_of_large_steps_is_not():
     )
 
 
-def test_pictures_of_one_motion_share_their_sizes(four_bar):
+def test_pictures_of_one_motion_share_their_sizes(four_bar: Sample) -> None:
     motion = four_bar.motion()
     options = SceneOptions(within=reach_of(motion))
     scenes = [scene_of(four_bar.position(u), motion, options=options) for u in (0, 90, 200)]
     assert len({scene.measures for scene in scenes}) == 1
 
 
-def test_what_lies_on_top_comes_later(ternary):
+def test_what_lies_on_top_comes_later(ternary: Sample) -> None:
     layers = [p.role.layer for p in scene_of(ternary.position(50), ternary.motion()).primitives]
     assert layers == sorted(layers)
     assert Role.PLATE.layer < Role.LINK.layer < Role.PIN.layer < Role.LABEL.layer
@@ -481,7 +501,7 @@ def test_what_lies_on_top_comes_later(ternary):
     assert Role.CYLINDER.layer < Role.LINK.layer
 
 
-def test_the_box_holds_every_primitive(sample):
+def test_the_box_holds_every_primitive(sample: tuple[Sample, Position]) -> None:
     mechanism, position = sample
     scene = scene_of(position, mechanism.motion())
     for primitive in scene.primitives:
@@ -490,8 +510,13 @@ def test_the_box_holds_every_primitive(sample):
             assert scene.box.bottom <= y <= scene.box.top
 
 
-def test_a_scaled_mechanism_has_the_same_picture_scaled(ternary):
-    big = replace(ternary, at=lambda u: {n: 1000 * p for n, p in ternary.at(u).items()})
+def test_a_scaled_mechanism_has_the_same_picture_scaled(ternary: Sample) -> None:
+    def larger(value: float) -> Places:
+        places = ternary.at(value)
+        assert places is not None
+        return {n: 1000 * p for n, p in places.items()}
+
+    big = replace(ternary, at=larger)
     one, other = scene_of(ternary.position(50)), scene_of(big.position(50))
     assert len(one.primitives) == len(other.primitives)
     assert other.measures.stroke == pytest.approx(1000 * one.measures.stroke)
@@ -499,7 +524,7 @@ def test_a_scaled_mechanism_has_the_same_picture_scaled(ternary):
         np.testing.assert_allclose(1000 * np.array(p.outline), q.outline, rtol=1e-9, atol=1e-6)
 
 
-def test_a_spring_is_a_zigzag_from_point_to_point(four_bar):
+def test_a_spring_is_a_zigzag_from_point_to_point(four_bar: Sample) -> None:
     spring = Strut(name="return", between=("O4", "A"))
     skeleton = replace(four_bar.skeleton, springs=(spring,))
     lengths = []

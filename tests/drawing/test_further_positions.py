@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import linkwork as lw
 from linkwork.drawing import (
@@ -27,10 +29,12 @@ from linkwork.drawing import (
 from linkwork.drawing.captions import lines_within, reached_caption
 from linkwork.drawing.further_positions import driven_point, further_positions
 from linkwork.drawing.pose import Pose
-from linkwork.drawing.scene import text_width
+from linkwork.drawing.scene import Primitive, text_width
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import DrivenPart
 from linkwork.results.motion import Motion
+from linkwork.results.position import Position
+from tests.drawing.conftest import Sample
 from tests.drawing.mechanisms import five_bar_of
 from tests.drawing.pages import svg_texts
 
@@ -41,7 +45,7 @@ MECHANISMS = [
 SEVEN = SceneOptions(further=7)
 
 
-def z(point):
+def z(point: tuple[float, float]) -> complex:
     return complex(*point)
 
 
@@ -51,12 +55,12 @@ def with_limits(motion: Motion, **kinds: str) -> Motion:
     return replace(motion, limit=tuple(rows.get(k, "") for k in range(len(motion))))
 
 
-def faint(scene: Scene):
+def faint(scene: Scene) -> list[Primitive]:
     return [p for p in scene.primitives if p.fade]
 
 
 @pytest.fixture(params=MECHANISMS)
-def sample(request):
+def sample(request: pytest.FixtureRequest) -> tuple[Sample, Position]:
     found = request.getfixturevalue(request.param)
     return found, found.position(95.0 if request.param == "boom" else 51.0)
 
@@ -64,7 +68,9 @@ def sample(request):
 # ------------------------------------------------------------------ which positions
 
 
-def test_further_positions_are_rows_of_the_motion_as_they_are(sample):
+def test_further_positions_are_rows_of_the_motion_as_they_are(
+    sample: tuple[Sample, Position],
+) -> None:
     mechanism, position = sample
     motion = mechanism.motion()
     shown = further_positions(Pose.of(position, motion), motion, 7)
@@ -76,14 +82,16 @@ def test_further_positions_are_rows_of_the_motion_as_they_are(sample):
             assert place == motion.trace(name)[further.row]
 
 
-def test_seven_more_positions_of_a_crank_are_an_eighth_of_a_turn_apart(slider_crank):
+def test_seven_more_positions_of_a_crank_are_an_eighth_of_a_turn_apart(
+    slider_crank: Sample,
+) -> None:
     motion = slider_crank.motion()
     shown = further_positions(Pose.of(slider_crank.position(60), motion), motion, 7)
     turned = sorted((motion["crank"][[further.row for further in shown]] - 60) % 360)
     assert np.diff([0, *turned, 360]) == pytest.approx([45] * 8, abs=3)  # a row is 3 degrees
 
 
-def test_no_position_hides_behind_another(sample):
+def test_no_position_hides_behind_another(sample: tuple[Sample, Position]) -> None:
     mechanism, position = sample
     motion = mechanism.motion()
     shown = further_positions(Pose.of(position, motion), motion, 7)
@@ -96,20 +104,20 @@ def test_no_position_hides_behind_another(sample):
     assert min(gaps) >= nearest.max()
 
 
-def test_several_turns_show_no_position_twice(four_bar):
+def test_several_turns_show_no_position_twice(four_bar: Sample) -> None:
     turns = replace(four_bar, inputs=tuple(range(0, 1081, 3)))
     motion = turns.motion()
     shown = further_positions(Pose.of(turns.position(0), motion), motion, 7)
     assert len({round(motion["crank"][further.row] % 360) for further in shown} | {0}) == 8
 
 
-def test_fewer_positions_than_asked_are_all_there_is(four_bar):
+def test_fewer_positions_than_asked_are_all_there_is(four_bar: Sample) -> None:
     three = replace(four_bar, inputs=(0, 120, 240, 360)).motion()
     shown = further_positions(Pose.of(four_bar.position(0), three), three, 7)
     assert sorted(three["crank"][[further.row for further in shown]]) == [120, 240]
 
 
-def test_rows_that_were_not_found_are_not_shown(rocking_four_bar):
+def test_rows_that_were_not_found_are_not_shown(rocking_four_bar: Sample) -> None:
     motion = rocking_four_bar.motion()
     assert not motion.found.all()
     shown = further_positions(Pose.of(rocking_four_bar.position(21), motion), motion, 7)
@@ -118,7 +126,7 @@ def test_rows_that_were_not_found_are_not_shown(rocking_four_bar):
     assert further_positions(Pose.of(rocking_four_bar.position(21), nothing), nothing, 7) == []
 
 
-def test_every_limit_is_shown_besides_and_once(four_bar):
+def test_every_limit_is_shown_besides_and_once(four_bar: Sample) -> None:
     motion = with_limits(
         four_bar.motion(), row0="dead point", row40="change point", row120="dead point",
         row60="maximum of B.x",
@@ -133,7 +141,9 @@ def test_every_limit_is_shown_besides_and_once(four_bar):
 # ------------------------------------------------------------------ what is drawn
 
 
-def test_the_position_itself_is_drawn_as_without_the_motion_behind_it(sample):
+def test_the_position_itself_is_drawn_as_without_the_motion_behind_it(
+    sample: tuple[Sample, Position],
+) -> None:
     mechanism, position = sample
     motion = mechanism.motion()
     scene = scene_of(position, motion, labels=False, options=replace(SEVEN, arrows=False))
@@ -144,7 +154,9 @@ def test_the_position_itself_is_drawn_as_without_the_motion_behind_it(sample):
     assert len(faint(scene)) > 7
 
 
-def test_faint_parts_lie_below_everything_else_and_inside_the_picture(sample):
+def test_faint_parts_lie_below_everything_else_and_inside_the_picture(
+    sample: tuple[Sample, Position],
+) -> None:
     mechanism, position = sample
     scene = scene_of(position, mechanism.motion(), options=SEVEN)
     fades = [p.fade > 0 for p in scene.primitives]
@@ -161,7 +173,7 @@ def test_faint_parts_lie_below_everything_else_and_inside_the_picture(sample):
         assert scene.within.distance(disc.centre) == 0
 
 
-def test_what_stands_still_is_drawn_once(sample):
+def test_what_stands_still_is_drawn_once(sample: tuple[Sample, Position]) -> None:
     mechanism, position = sample
     parts = faint(scene_of(position, mechanism.motion(), options=SEVEN))
     assert not {p.role for p in parts} & {Role.GROUND, Role.HATCH, Role.TRACE, Role.LABEL}
@@ -173,7 +185,7 @@ def test_what_stands_still_is_drawn_once(sample):
     assert {p.of: [q.of for q in pins].count(p.of) for p in pins} == dict.fromkeys(moving, 7)
 
 
-def test_faint_colours_are_pale_and_hide_what_is_below_them(four_bar):
+def test_faint_colours_are_pale_and_hide_what_is_below_them(four_bar: Sample) -> None:
     scene = scene_of(four_bar.position(51), four_bar.motion(), options=SEVEN)
     for part in faint(scene):
         strong = replace(part, fade=0.0)
@@ -187,7 +199,7 @@ def test_faint_colours_are_pale_and_hide_what_is_below_them(four_bar):
                     assert now == pytest.approx(was + part.fade * (255 - was), abs=0.51)
 
 
-def test_only_a_motion_has_further_positions(four_bar):
+def test_only_a_motion_has_further_positions(four_bar: Sample) -> None:
     assert scene_of(four_bar.position(51), options=SEVEN) == scene_of(four_bar.position(51))
     motion = four_bar.motion()
     assert faint(scene_of(four_bar.position(51), motion)) == []
@@ -196,7 +208,7 @@ def test_only_a_motion_has_further_positions(four_bar):
 # ------------------------------------------------------------------ limits
 
 
-def test_a_dead_point_is_a_stop_across_the_path_of_what_is_driven(four_bar):
+def test_a_dead_point_is_a_stop_across_the_path_of_what_is_driven(four_bar: Sample) -> None:
     motion = with_limits(four_bar.motion(), row40="dead point")
     scene = scene_of(four_bar.position(51), motion, options=SEVEN)
     [stop] = scene.select(Polyline, Role.LIMIT)
@@ -211,7 +223,7 @@ def test_a_dead_point_is_a_stop_across_the_path_of_what_is_driven(four_bar):
     assert z(name.anchor) == tip
 
 
-def test_a_change_point_is_a_diamond(four_bar):
+def test_a_change_point_is_a_diamond(four_bar: Sample) -> None:
     motion = with_limits(four_bar.motion(), row60="change point")
     scene = scene_of(four_bar.position(51), motion, options=SEVEN)
     [diamond] = scene.select(Polygon, Role.LIMIT)
@@ -221,7 +233,7 @@ def test_a_change_point_is_a_diamond(four_bar):
     assert name.text == "change point 180°"
 
 
-def test_positions_at_limits_stand_out_among_the_faint_ones(four_bar):
+def test_positions_at_limits_stand_out_among_the_faint_ones(four_bar: Sample) -> None:
     motion = with_limits(four_bar.motion(), row40="dead point")
     scene = scene_of(four_bar.position(51), motion, options=SEVEN)
     cranks = scene.select(Polyline, Role.LINK, of="crank")
@@ -232,9 +244,9 @@ def test_positions_at_limits_stand_out_among_the_faint_ones(four_bar):
 
 
 def test_limits_are_marked_at_the_point_that_is_driven(
-    slope, boom, inverted_slider_crank, six_link
-):
-    def marked(mechanism, value):
+    slope: Callable[[float], Sample], boom: Sample, inverted_slider_crank: Sample, six_link: Sample
+) -> None:
+    def marked(mechanism: Sample, value: float) -> str:
         motion = mechanism.motion()
         return driven_point(Pose.of(mechanism.position(value), motion))
 
@@ -256,7 +268,7 @@ def test_limits_are_marked_at_the_point_that_is_driven(
         ("rapier-drive", []),
     ],
 )
-def test_the_limits_of_a_sweep_are_named_with_their_input(name, told):
+def test_the_limits_of_a_sweep_are_named_with_their_input(name: str, told: list[str]) -> None:
     mechanism = lw.example(name)
     scene = scene_of(mechanism.solve(), mechanism.sweep(), options=SEVEN)
     assert [text.text for text in scene.select(Text, Role.LIMIT_NAME)] == told
@@ -272,8 +284,10 @@ def test_the_limits_of_a_sweep_are_named_with_their_input(name, told):
 # ------------------------------------------------------------------ captions
 
 
-def test_the_caption_tells_the_start_and_the_range_behind_it(four_bar, rocking_four_bar, boom):
-    def caption(mechanism, value):
+def test_the_caption_tells_the_start_and_the_range_behind_it(
+    four_bar: Sample, rocking_four_bar: Sample, boom: Sample
+) -> None:
+    def caption(mechanism: Sample, value: float) -> str:
         return scene_of(mechanism.position(value), mechanism.motion(), options=SEVEN).caption
 
     assert caption(four_bar, 51) == "crank = 51°; faint: 0° to 360°"
@@ -281,24 +295,24 @@ def test_the_caption_tells_the_start_and_the_range_behind_it(four_bar, rocking_f
     assert caption(rocking_four_bar, 21) == "crank = 21°; faint: 0° to 69°, 291° to 360°"
 
 
-def test_a_lone_row_and_negative_values_are_told_as_they_are(four_bar):
+def test_a_lone_row_and_negative_values_are_told_as_they_are(four_bar: Sample) -> None:
     motion = replace(four_bar, inputs=(-30, -27, 0, 45)).motion()
     alone = tuple(Status.LOST if k == 2 else status for k, status in enumerate(motion.status))
     assert reached_caption(replace(motion, status=alone)) == "−30° to −27°, 45°"
 
 
-def test_further_branches_do_not_widen_the_range():
+def test_further_branches_do_not_widen_the_range() -> None:
     around = lw.example("rapier-drive-limited").sweep(through=True)
     assert reached_caption(around) == "0° to 149.617°, 201.32° to 360°"
     assert reached_caption(lw.example("rapier-drive-limited").sweep()) == reached_caption(around)
 
 
-def test_of_several_inputs_the_first_that_moves_is_told():
+def test_of_several_inputs_the_first_that_moves_is_told() -> None:
     five_bar = five_bar_of(left_stop=90)
     assert reached_caption(five_bar.sweep()) == "right 80° to 90°"
 
 
-def test_text_is_broken_into_lines_that_fit():
+def test_text_is_broken_into_lines_that_fit() -> None:
     text = "a mechanism of a very long name indeed and " + "w" * 40
     lines = lines_within(text, 12.0)
     assert "".join(lines).replace(" ", "") == text.replace(" ", "")
@@ -310,7 +324,7 @@ def test_text_is_broken_into_lines_that_fit():
 # ------------------------------------------------------------------ the page
 
 
-def test_an_svg_has_every_faint_part_and_names_the_limits():
+def test_an_svg_has_every_faint_part_and_names_the_limits() -> None:
     mechanism = lw.example("rapier-drive-limited")
     scene = scene_of(mechanism.solve(), mechanism.sweep(), options=SEVEN)
     svg = render(scene, "svg")
@@ -323,11 +337,12 @@ def test_an_svg_has_every_faint_part_and_names_the_limits():
 
 
 @pytest.mark.parametrize("name", ["jansen-leg", "rapier-drive-limited-links", "slider-input"])
-def test_nothing_of_a_sweep_is_cut_off(name):
+def test_nothing_of_a_sweep_is_cut_off(name: str) -> None:
     mechanism = lw.example(name)
     scene = scene_of(mechanism.solve(), mechanism.sweep(through=True), options=SEVEN)
     drawing = figure(scene)
     drawing.canvas.draw()
+    assert isinstance(drawing.canvas, FigureCanvasAgg)
     renderer = drawing.canvas.get_renderer()
     [ax] = drawing.axes
     extents = [

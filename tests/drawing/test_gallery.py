@@ -35,7 +35,7 @@ def assert_texts_are_apart(scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_names_cover_neither_each_other_nor_symbols(name):
+def test_names_cover_neither_each_other_nor_symbols(name: str) -> None:
     _, position = solved(name)
     scene = scene_of(position)
     assert_texts_are_apart(scene)
@@ -48,7 +48,7 @@ def test_names_cover_neither_each_other_nor_symbols(name):
 
 
 @pytest.mark.parametrize("name", NAMES[::5])
-def test_names_of_vectors_cover_neither_each_other_nor_pins(name):
+def test_names_of_vectors_cover_neither_each_other_nor_pins(name: str) -> None:
     mechanism, position = solved(name)
     if not mechanism.loop_equations.loops:
         pytest.skip("no loops: nothing but wheels or cams")

@@ -12,7 +12,7 @@ TEXT = 1.0  # of a point: a font of another version is as wide, about
 
 
 @pytest.mark.parametrize("name", GOLDEN)
-def test_a_drawing_is_the_one_that_was_looked_at(name):
+def test_a_drawing_is_the_one_that_was_looked_at(name: str) -> None:
     now, then = read(drawn(name)), read((FOLDER / f"{name}.svg").read_text(encoding="utf-8"))
     assert [(s.name, s.text) for s in now] == [(s.name, s.text) for s in then]
     for one, other in zip(now, then, strict=True):
@@ -21,11 +21,11 @@ def test_a_drawing_is_the_one_that_was_looked_at(name):
         np.testing.assert_allclose(one.points, other.points, rtol=0, atol=atol, err_msg=one.name)
 
 
-def test_every_golden_file_is_compared():
+def test_every_golden_file_is_compared() -> None:
     assert sorted(path.stem for path in FOLDER.glob("*.svg")) == sorted(GOLDEN)
 
 
-def test_golden_drawings_hold_lines_and_texts():
+def test_golden_drawings_hold_lines_and_texts() -> None:
     for name in GOLDEN:
         shapes = read((FOLDER / f"{name}.svg").read_text(encoding="utf-8"))
         roles = {shape.name.partition(":")[0] for shape in shapes}

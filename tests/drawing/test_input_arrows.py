@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import pytest
 
 import linkwork as lw
 from linkwork.drawing import Arc, Disc, Hatch, Polygon, Polyline, Role, Scene, scene_of
+from linkwork.drawing.scene import Primitive
+from tests.drawing.conftest import Sample
 
 
 def pushed_slide(foot: complex, which: lw.Input) -> lw.Mechanism:
@@ -49,13 +53,15 @@ MECHANISMS = {
 }
 
 
-def segments(part) -> list[tuple[complex, complex]]:
+def segments(part: Primitive) -> list[tuple[complex, complex]]:
     """The line pieces of a primitive, its arrow head included."""
     if isinstance(part, Hatch):
         return [(complex(*a), complex(*b)) for a, b in part.strokes]
+    no_head: tuple[tuple[float, float], ...] = ()
     if isinstance(part, Polygon):
-        line, head = (*part.points, part.points[0]), ()
+        line, head = (*part.points, part.points[0]), no_head
     else:
+        assert isinstance(part, Polyline | Arc)
         line, head = part.shaft, part.arrow_head
     pieces = [*pairwise(line), *pairwise((*head, *head[:1]))]
     return [(complex(*a), complex(*b)) for a, b in pieces]
@@ -99,7 +105,7 @@ def least_gap(scene: Scene) -> tuple[float, str]:
 
 
 @pytest.mark.parametrize("name", MECHANISMS)
-def test_an_input_arrow_lies_over_nothing(name):
+def test_an_input_arrow_lies_over_nothing(name: str) -> None:
     mechanism = MECHANISMS[name]()
     motion = mechanism.sweep(certify=False)
     values = next(iter(motion.inputs.values()))[motion.found]
@@ -108,7 +114,9 @@ def test_an_input_arrow_lies_over_nothing(name):
         assert gap > 0.3, (value, part)
 
 
-def test_a_slide_keeps_its_usual_arrow_where_nothing_is_in_the_way(slope):
+def test_a_slide_keeps_its_usual_arrow_where_nothing_is_in_the_way(
+    slope: Callable[[float], Sample],
+) -> None:
     for degrees in (0, 75, -40):
         mechanism = slope(degrees)
         scene = scene_of(mechanism.position(120), mechanism.motion())
@@ -119,7 +127,7 @@ def test_a_slide_keeps_its_usual_arrow_where_nothing_is_in_the_way(slope):
         assert abs(middle - sum(complex(*p) for p in block.points) / 4) == pytest.approx(height)
 
 
-def test_arrows_of_two_inputs_keep_clear_of_each_other():
+def test_arrows_of_two_inputs_keep_clear_of_each_other() -> None:
     both = lw.linkage(
         name="two cylinders on one pin",
         points={"O": (0, 0), "M": (80, 6), "K": (0, 18), "C": (120, -40), "A": (60, -50)},
@@ -140,7 +148,7 @@ def test_arrows_of_two_inputs_keep_clear_of_each_other():
     assert least_gap(scene)[0] > 0.3
 
 
-def test_an_arrow_ends_in_a_sharp_tip(four_bar):
+def test_an_arrow_ends_in_a_sharp_tip(four_bar: Sample) -> None:
     scene = scene_of(four_bar.position(50))
     [arrow] = scene.select(Arc, Role.INPUT)
     tip, end = complex(*arrow.arrow_head[0]), complex(*arrow.shaft[-1])
@@ -150,11 +158,12 @@ def test_an_arrow_ends_in_a_sharp_tip(four_bar):
     assert complex(*arrow.shaft[0]) == complex(*arrow.points[0])
     assert math.dist(arrow.shaft[-1], arrow.centre) == pytest.approx(arrow.radius)
     straight = Polyline(role=Role.INPUT, points=((0, 0), (10, 0)), head=2.0)
-    assert straight.shaft == ((0, 0), (pytest.approx(8.6), 0))
+    wanted: Any = ((0, 0), (pytest.approx(8.6), 0))
+    assert straight.shaft == wanted
     assert replace(straight, head=0.0).shaft == straight.points
 
 
-def test_an_arrow_goes_around_a_plate_that_fills_its_usual_place():
+def test_an_arrow_goes_around_a_plate_that_fills_its_usual_place() -> None:
     scene = scene_of(lw.example("double-butterfly").solve())
     [arrow] = scene.select(Arc, Role.INPUT)
     [crank] = scene.select(Polygon, Role.PLATE, of="crank")

@@ -8,6 +8,7 @@ import pytest
 
 from linkwork.drawing import Box, Disc, Polyline, Role, SceneOptions, Text, scene_of
 from linkwork.drawing.captions import printed_name
+from tests.drawing.conftest import Places, Sample
 
 MECHANISMS = [
     "four_bar", "slider_crank", "inverted_slider_crank", "collar", "six_link", "jansen", "flat",
@@ -16,12 +17,13 @@ MECHANISMS = [
 
 
 @pytest.fixture(params=MECHANISMS)
-def sample(request):
-    return request.getfixturevalue(request.param)
+def sample(request: pytest.FixtureRequest) -> Sample:
+    found: Sample = request.getfixturevalue(request.param)
+    return found
 
 
 @pytest.mark.parametrize("value", [0, 45, 100, 190, 280])
-def test_names_cover_neither_each_other_nor_pins(sample, value):
+def test_names_cover_neither_each_other_nor_pins(sample: Sample, value: float) -> None:
     if sample.at(value) is None:
         pytest.skip("no position at this input value")
     scene = scene_of(sample.position(value), sample.motion(), options=SceneOptions(link_names=True))
@@ -35,7 +37,7 @@ def test_names_cover_neither_each_other_nor_pins(sample, value):
 
 
 @pytest.mark.parametrize("value", [20, 70, 130])
-def test_names_of_points_keep_off_bars_where_there_is_room(four_bar, value):
+def test_names_of_points_keep_off_bars_where_there_is_room(four_bar: Sample, value: float) -> None:
     scene = scene_of(four_bar.position(value))
     for text in scene.select(Text, Role.LABEL):
         for bar in scene.select(Polyline, Role.LINK):
@@ -44,7 +46,7 @@ def test_names_of_points_keep_off_bars_where_there_is_room(four_bar, value):
             assert min(text.box.distance(p) for p in along) > 0, (text.of, bar.of)
 
 
-def test_every_drawn_point_has_its_name_near_it(sample):
+def test_every_drawn_point_has_its_name_near_it(sample: Sample) -> None:
     position = sample.position(50)
     scene = scene_of(position, sample.motion())
     names = {text.of: text for text in scene.select(Text, Role.LABEL)}
@@ -54,11 +56,11 @@ def test_every_drawn_point_has_its_name_near_it(sample):
         assert text.box.distance(text.anchor) < 7 * scene.measures.pin
 
 
-def test_names_can_be_left_out(four_bar):
+def test_names_can_be_left_out(four_bar: Sample) -> None:
     assert not scene_of(four_bar.position(50), labels=False).select(Text)
 
 
-def test_link_names_are_written_on_request_and_inside_plates(ternary):
+def test_link_names_are_written_on_request_and_inside_plates(ternary: Sample) -> None:
     position = ternary.position(50)
     assert not scene_of(position).select(Text, Role.LINK_NAME)
     scene = scene_of(position, options=SceneOptions(link_names=True))
@@ -68,9 +70,11 @@ def test_link_names_are_written_on_request_and_inside_plates(ternary):
     assert names["coupler"].box.distance((middle.real, middle.imag)) == 0
 
 
-def test_two_points_in_one_place_get_two_places_for_their_names(four_bar):
-    def at(value):
-        return {**four_bar.at(value), "P": four_bar.at(value)["B"]}
+def test_two_points_in_one_place_get_two_places_for_their_names(four_bar: Sample) -> None:
+    def at(value: float) -> Places:
+        places = four_bar.at(value)
+        assert places is not None
+        return {**places, "P": places["B"]}
 
     double = type(four_bar)(four_bar.name, four_bar.skeleton, at)
     scene = scene_of(double.position(50))
@@ -78,14 +82,14 @@ def test_two_points_in_one_place_get_two_places_for_their_names(four_bar):
     assert one.box.overlap(other.box) == 0
 
 
-def test_names_are_printed_with_greek_letters_and_lowered_numbers():
+def test_names_are_printed_with_greek_letters_and_lowered_numbers() -> None:
     assert printed_name("O2") == "O₂"
     assert printed_name("theta12") == "θ₁₂"
     assert printed_name("boom_pin") == "boom_pin"
     assert printed_name("A0'") == "A₀'"
 
 
-def test_boxes_measure_what_they_share():
+def test_boxes_measure_what_they_share() -> None:
     box = Box(0, 0, 2, 1)
     assert box.overlap(Box(1, 0.5, 3, 3)) == pytest.approx(0.5)
     assert box.overlap(Box(2, 0, 3, 1)) == 0

@@ -6,12 +6,17 @@ import re
 import sys
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
+from pathlib import Path
+from typing import NoReturn
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from linkwork.drawing import Disc, Polyline, Role, Text, figure, render, scene_of, write
+from linkwork.drawing import Disc, Polyline, Role, Scene, Text, figure, render, scene_of, write
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, MissingPackageError
+from tests.drawing.conftest import Sample
 
 MECHANISMS = [
     "four_bar", "slider_crank", "inverted_slider_crank", "six_link", "boom", "jansen", "flat",
@@ -22,13 +27,13 @@ NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
 
 
 @pytest.fixture
-def scene(four_bar):
+def scene(four_bar: Sample) -> Scene:
     return scene_of(four_bar.position(50), four_bar.motion())
 
 
-def centres(svg):
+def centres(svg: bytes) -> dict[str, list[Array]]:
     """The middle of the drawn outline of every group ``role:name`` in an SVG, in its pixels."""
-    found = {}
+    found: dict[str, list[Array]] = {}
     for group in ElementTree.fromstring(svg).iter(f"{SVG}g"):
         name = group.get("id", "")
         for path in group.iter(f"{SVG}path") if ":" in name else ():
@@ -39,7 +44,9 @@ def centres(svg):
 
 
 @pytest.mark.parametrize("name", MECHANISMS)
-def test_svg_coordinates_are_scene_coordinates_in_one_equal_scale(name, request):
+def test_svg_coordinates_are_scene_coordinates_in_one_equal_scale(
+    name: str, request: pytest.FixtureRequest
+) -> None:
     mechanism = request.getfixturevalue(name)
     scene = scene_of(mechanism.position(95 if name == "boom" else 50), mechanism.motion())
     drawn = centres(render(scene, "svg"))
@@ -56,7 +63,7 @@ def test_svg_coordinates_are_scene_coordinates_in_one_equal_scale(name, request)
     np.testing.assert_allclose(fitted, wanted, atol=1e-3)
 
 
-def test_every_bar_in_the_svg_runs_between_its_pins(scene):
+def test_every_bar_in_the_svg_runs_between_its_pins(scene: Scene) -> None:
     drawn = centres(render(scene, "svg"))
     for bar in scene.select(Polyline, Role.LINK):
         ends = [d.of for d in scene.select(Disc, Role.PIN) if d.centre in bar.points]
@@ -65,7 +72,7 @@ def test_every_bar_in_the_svg_runs_between_its_pins(scene):
 
 
 @pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
-def test_the_same_scene_gives_the_same_bytes(scene, kind, tmp_path):
+def test_the_same_scene_gives_the_same_bytes(scene: Scene, kind: str, tmp_path: Path) -> None:
     one = write(scene, tmp_path / f"one.{kind}").read_bytes()
     other = write(scene, tmp_path / f"other.{kind.upper()}").read_bytes()
     assert one == other
@@ -75,7 +82,7 @@ def test_the_same_scene_gives_the_same_bytes(scene, kind, tmp_path):
     assert b"/CreationDate" not in one
 
 
-def test_pictures_do_not_depend_on_the_users_settings(scene):
+def test_pictures_do_not_depend_on_the_users_settings(scene: Scene) -> None:
     import matplotlib
 
     before = render(scene, "svg")
@@ -84,19 +91,22 @@ def test_pictures_do_not_depend_on_the_users_settings(scene):
         assert matplotlib.rcParams["font.size"] == 30
 
 
-def test_resolution_is_a_choice(scene):
-    def width(page):
+def test_resolution_is_a_choice(scene: Scene) -> None:
+    def width(page: bytes) -> int:
         return int.from_bytes(page[16:20], "big")
 
     assert width(render(scene, "png", dpi=200)) == 2 * width(render(scene, "png", dpi=100))
 
 
 @pytest.mark.parametrize("name", MECHANISMS)
-def test_nothing_is_cut_off_and_names_fit_the_boxes_they_were_placed_with(name, request):
+def test_nothing_is_cut_off_and_names_fit_the_boxes_they_were_placed_with(
+    name: str, request: pytest.FixtureRequest
+) -> None:
     mechanism = request.getfixturevalue(name)
     scene = scene_of(mechanism.position(95 if name == "boom" else 50), mechanism.motion())
     drawing = figure(scene)
     drawing.canvas.draw()
+    assert isinstance(drawing.canvas, FigureCanvasAgg)
     renderer = drawing.canvas.get_renderer()
     page = drawing.bbox
     [ax] = drawing.axes
@@ -116,12 +126,12 @@ def test_nothing_is_cut_off_and_names_fit_the_boxes_they_were_placed_with(name, 
     boxes = {f"{t.role.name.lower()}:{t.of}": t.box for t in scene.select(Text)}
     for text in ax.texts:
         extent = text.get_window_extent(renderer).transformed(ax.transData.inverted())
-        box = boxes[text.get_gid()]
+        box = boxes[text.get_gid() or ""]
         slack = 0.05 * scene.measures.text
         assert box.left - slack <= extent.x0 < extent.x1 <= box.right + slack, text
 
 
-def test_axes_carry_the_length_unit_and_equal_scales(scene):
+def test_axes_carry_the_length_unit_and_equal_scales(scene: Scene) -> None:
     [ax] = figure(scene).axes
     assert ax.get_xlabel() == "x [mm]"
     assert ax.get_ylabel() == "y [mm]"
@@ -129,7 +139,7 @@ def test_axes_carry_the_length_unit_and_equal_scales(scene):
     assert np.diff(ax.get_xticks())[0] == np.diff(ax.get_yticks())[0]
 
 
-def test_a_scene_can_be_drawn_into_axes_of_the_caller(scene):
+def test_a_scene_can_be_drawn_into_axes_of_the_caller(scene: Scene) -> None:
     from matplotlib.figure import Figure
 
     own = Figure(figsize=(4, 4))
@@ -139,7 +149,7 @@ def test_a_scene_can_be_drawn_into_axes_of_the_caller(scene):
     assert ax.get_title() == f"{scene.title}\n{scene.caption}"
 
 
-def test_dollar_signs_in_names_are_printed_as_they_are(four_bar):
+def test_dollar_signs_in_names_are_printed_as_they_are(four_bar: Sample) -> None:
     odd = replace(four_bar, name="costs $5 and $6_{x}")
     page = figure(scene_of(odd.position(50)))
     page.canvas.draw()
@@ -147,7 +157,7 @@ def test_dollar_signs_in_names_are_printed_as_they_are(four_bar):
     assert not page.texts[0].get_parse_math()
 
 
-def test_an_unknown_suffix_is_refused_with_those_that_exist(scene, tmp_path):
+def test_an_unknown_suffix_is_refused_with_those_that_exist(scene: Scene, tmp_path: Path) -> None:
     with pytest.raises(InputError) as raised:
         write(scene, tmp_path / "picture.bmp")
     assert str(raised.value) == (
@@ -158,18 +168,20 @@ def test_an_unknown_suffix_is_refused_with_those_that_exist(scene, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_missing_folder_is_wrong_input(scene, tmp_path):
+def test_a_missing_folder_is_wrong_input(scene: Scene, tmp_path: Path) -> None:
     target = tmp_path / "nowhere" / "picture.svg"
     with pytest.raises(InputError) as raised:
         write(scene, target)
     assert str(raised.value) == f'cannot write "{target}": No such file or directory'
 
 
-def test_a_failed_write_leaves_the_old_file_and_nothing_else(scene, tmp_path, monkeypatch):
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(
+    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     target = tmp_path / "picture.svg"
     target.write_text("old")
 
-    def refuse(*_):
+    def refuse(*_: object) -> NoReturn:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("pathlib.Path.replace", refuse)
@@ -179,14 +191,16 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(scene, tmp_path, mo
     assert target.read_text() == "old"
 
 
-def test_without_matplotlib_the_message_names_the_command(scene, monkeypatch):
+def test_without_matplotlib_the_message_names_the_command(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(MissingPackageError) as raised:
         render(scene, "svg")
     assert str(raised.value) == "drawing needs Matplotlib: pip install matplotlib"
 
 
-def test_a_pdf_has_fonts_that_journals_accept(scene):
+def test_a_pdf_has_fonts_that_journals_accept(scene: Scene) -> None:
     page = render(scene, "pdf")
     assert b"/Subtype /Type3" not in page
     assert b"/FontFile2" in page or b"/TrueType" in page

@@ -5,18 +5,21 @@ from __future__ import annotations
 import math
 from functools import cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.drawing.charts.chart import Chart, Pen, Scale
+from linkwork.drawing.charts.chart import Chart, Curve, Pen, Scale
 from linkwork.drawing.charts.motion_chart import motion_chart
 from linkwork.drawing.charts.plotting import motion_plot
 from linkwork.drawing.charts.scales import across_step, angle_ends
 from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError
 
+ABOUT: Any = pytest.approx  # where it is a part of a tuple
 POINTS = {"O2": (0, 0), "A": (40, 0.01), "B": (120, 60), "O4": (100, 0)}
 LINKS = {
     "ground": ("O2", "O4"),
@@ -27,16 +30,16 @@ LINKS = {
 
 
 @cache
-def swept(name: str, **options: object) -> lw.Motion:
+def swept(name: str, **options: Any) -> lw.Motion:
     """The motion of a library mechanism, swept once."""
     return lw.example(name).sweep(certify=False, **options)
 
 
-def curves_of(chart: Chart):
+def curves_of(chart: Chart) -> list[Curve]:
     return [curve for panel in chart.panels for curve in panel.curves]
 
 
-def pieces(curve):
+def pieces(curve: Curve) -> list[Array]:
     """The drawn pieces of a curve, each (K, 2)."""
     points = np.stack([curve.x, curve.y], axis=1)
     found = np.isfinite(points).all(axis=1)
@@ -47,7 +50,7 @@ def pieces(curve):
 # ------------------------------------------------------------------ columns
 
 
-def test_columns_of_one_unit_share_a_panel_with_units_in_its_label():
+def test_columns_of_one_unit_share_a_panel_with_units_in_its_label() -> None:
     chart = motion_chart(swept("rapier-drive"))
     assert [panel.axis.label for panel in chart.panels] == ["θ₁₃, θ₁₄, θ₁₅ [deg]", "s₁₆ [mm]"]
     assert chart.axis.label == "θ₁₂ [deg]"
@@ -57,7 +60,7 @@ def test_columns_of_one_unit_share_a_panel_with_units_in_its_label():
     assert chart.legend == ("θ₁₃", "θ₁₄", "θ₁₅")
 
 
-def test_curves_are_the_columns_of_the_table():
+def test_curves_are_the_columns_of_the_table() -> None:
     motion = swept("four-bar")
     table = motion.table()
     names = [
@@ -84,30 +87,32 @@ def test_curves_are_the_columns_of_the_table():
     ]
 
 
-def test_any_spelling_is_found_and_drawn_once():
+def test_any_spelling_is_found_and_drawn_once() -> None:
     chart = motion_chart(swept("rapier-drive"), ["theta13", "θ13", "θ₁₃", "theta13.d1"])
     assert [panel.axis.label for panel in chart.panels] == ["θ₁₃ [deg]", "dθ₁₃/dθ₁₂ [rad/rad]"]
 
 
-def test_the_velocity_of_a_point_is_the_length_of_the_vector():
+def test_the_velocity_of_a_point_is_the_length_of_the_vector() -> None:
     motion = swept("four-bar")
     [curve] = curves_of(motion_chart(motion, ["A.velocity"]))
+    assert motion.speed is not None
     np.testing.assert_allclose(curve.y, 40 * motion.speed, rtol=1e-12)  # crank 40 mm
     assert curve.name == "|velocity of A|"
 
 
-def test_many_angles_are_spread_over_panels_with_a_colour_for_each():
+def test_many_angles_are_spread_over_panels_with_a_colour_for_each() -> None:
     chart = motion_chart(swept("dixon-one"), [*swept("dixon-one").unknowns, "a1b2"])
     sizes = [len(panel.curves) for panel in chart.panels]
     assert max(sizes) <= 6
     assert max(sizes) - min(sizes) <= 1
+    assert chart.legend is not None
     assert len({curve.tone for curve in curves_of(chart)}) == sum(sizes) == len(chart.legend)
     jansen = motion_chart(swept("jansen-leg"))
     # more names than its label has room for
     assert [panel.axis.label for panel in jansen.panels] == ["angle [deg]"]
 
 
-def test_evidence_has_its_own_scale():
+def test_evidence_has_its_own_scale() -> None:
     motion = swept("rapier-drive")
     chart = motion_chart(motion, ["residual", "iterations", "condition"])
     assert [p.axis.scale for p in chart.panels] == [Scale.ROUNDING, Scale.COUNT, Scale.LOG]
@@ -118,7 +123,7 @@ def test_evidence_has_its_own_scale():
 # ------------------------------------------------------------------ gaps and limits
 
 
-def test_nothing_is_drawn_where_there_is_no_position():
+def test_nothing_is_drawn_where_there_is_no_position() -> None:
     motion = swept("rapier-drive-limited")
     chart = motion_chart(motion, ["s16", "theta13", "s16.d1"])
     for curve in curves_of(chart):
@@ -127,7 +132,7 @@ def test_nothing_is_drawn_where_there_is_no_position():
         assert len(left) + len(right) in (motion.found.sum(), motion.found.sum() - 2)
 
 
-def test_dead_points_are_marked_on_values_and_ruled_where_there_is_none():
+def test_dead_points_are_marked_on_values_and_ruled_where_there_is_none() -> None:
     motion = swept("rapier-drive-limited")
     values, rates, condition = motion_chart(motion, ["s16", "s16.d1", "condition"]).panels
     at = sorted(limit.input for limit in motion.limits)
@@ -142,8 +147,9 @@ def test_dead_points_are_marked_on_values_and_ruled_where_there_is_none():
     assert not values.rules
 
 
-def test_a_rate_that_grows_beyond_bounds_leaves_its_panel():
+def test_a_rate_that_grows_beyond_bounds_leaves_its_panel() -> None:
     [rate] = motion_chart(swept("rapier-drive-limited", through=True), ["s16.d2"]).panels
+    assert rate.axis.ends
     low, high = rate.axis.ends
     [curve] = rate.curves
     assert np.nanmax(curve.y) - np.nanmin(curve.y) > 4 * (high - low)
@@ -151,7 +157,7 @@ def test_a_rate_that_grows_beyond_bounds_leaves_its_panel():
     assert inside.sum() > 0.8 * np.isfinite(curve.y).sum()
 
 
-def test_no_line_joins_two_branches():
+def test_no_line_joins_two_branches() -> None:
     motion = swept("rapier-drive-limited", through=True)
     [curve] = curves_of(motion_chart(motion, ["s16"]))
     parts = pieces(curve)
@@ -160,7 +166,7 @@ def test_no_line_joins_two_branches():
     assert sum(map(len, parts)) == motion.found.sum()
 
 
-def test_branches_that_meet_at_a_dead_point_are_not_joined_beyond_the_table():
+def test_branches_that_meet_at_a_dead_point_are_not_joined_beyond_the_table() -> None:
     motion = lw.example("slider-input").sweep(stop=158.5, step=0.5, through=True, certify=False)
     [change] = np.flatnonzero([a != b for a, b in pairwise(motion.branch)])
     assert motion["d"][change + 1] - motion["d"][change] < 0.5  # nearer than rows of the table
@@ -171,7 +177,7 @@ def test_branches_that_meet_at_a_dead_point_are_not_joined_beyond_the_table():
     assert len(beyond) == 1  # the other dead point lies outside the table
 
 
-def test_a_condition_at_a_dead_point_is_no_number_along_a_circuit_either():
+def test_a_condition_at_a_dead_point_is_no_number_along_a_circuit_either() -> None:
     motion = lw.example("rapier-drive-limited").circuits(certify=False)[0].motion
     at = motion.condition[[kind == "dead point" for kind in motion.limit]]
     assert at.min() > 1e12  # infinite, but for rounding
@@ -181,7 +187,7 @@ def test_a_condition_at_a_dead_point_is_no_number_along_a_circuit_either():
     assert {rule.kind for rule in panel.rules} == {"dead point"}
 
 
-def test_extremes_are_marked_on_their_own_curve_only():
+def test_extremes_are_marked_on_their_own_curve_only() -> None:
     motion = swept("rapier-drive-limited", through=True, limits_of=("s16",))
     chart = motion_chart(motion, ["s16", "theta13"])
     kinds = [{mark.kind for mark in panel.marks} for panel in chart.panels]
@@ -201,7 +207,7 @@ def turning_output() -> lw.Motion:
     ).sweep(certify=False)
 
 
-def test_an_output_that_jumps_by_a_turn_is_broken_there():
+def test_an_output_that_jumps_by_a_turn_is_broken_there() -> None:
     motion = turning_output()
     assert np.abs(np.diff(motion["direction"])).max() > 350
     [curve] = curves_of(motion_chart(motion, ["direction"]))
@@ -211,7 +217,7 @@ def test_an_output_that_jumps_by_a_turn_is_broken_there():
         assert np.abs(np.diff(part[:, 1])).max() < 2
 
 
-def test_a_gear_that_turns_far_between_two_rows_does_not_jump():
+def test_a_gear_that_turns_far_between_two_rows_does_not_jump() -> None:
     gear = lw.example("planetary-gear").sweep(step=216, certify=False)
     steps = np.abs(np.diff(gear["planet"]))
     assert steps.min() > 180
@@ -220,12 +226,13 @@ def test_a_gear_that_turns_far_between_two_rows_does_not_jump():
 
 
 @pytest.mark.parametrize("name", ["planetary-gear", "andrews-squeezer", "galloway", "four-bar"])
-def test_wrapped_angles_stay_within_one_turn_without_a_line_across(name):
+def test_wrapped_angles_stay_within_one_turn_without_a_line_across(name: str) -> None:
     motion = swept(name)
     angles = [n for n, s in motion.unknowns.items() if s.quantity.kind.value == "angle"]
     turn = motion.units.angle.turn
     chart = motion_chart(motion, angles, wrapped=True)
     for panel in chart.panels:
+        assert panel.axis.ends
         low, high = panel.axis.ends
         assert high - low <= turn * (1 + 1e-12)
         for curve in panel.curves:
@@ -237,7 +244,7 @@ def test_wrapped_angles_stay_within_one_turn_without_a_line_across(name):
     assert len(name_of) == len(angles)
 
 
-def test_a_wrapped_line_is_cut_as_often_as_it_passes_a_whole_turn():
+def test_a_wrapped_line_is_cut_as_often_as_it_passes_a_whole_turn() -> None:
     motion = swept("planetary-gear")  # planet: three turns backwards
     planet = curves_of(motion_chart(motion, ["planet"], wrapped=True))[0]
     assert len(pieces(planet)) - 1 == round(np.ptp(motion["planet"]) / 360)
@@ -258,7 +265,9 @@ def test_a_wrapped_line_is_cut_as_often_as_it_passes_a_whole_turn():
         (math.pi, AngleUnit.RADIAN, math.pi / 6),
     ],
 )
-def test_ticks_of_angles_stand_at_parts_of_a_turn(span, unit, step):
+def test_ticks_of_angles_stand_at_parts_of_a_turn(
+    span: float, unit: AngleUnit, step: float
+) -> None:
     assert across_step(span, unit) == pytest.approx(step)
 
 
@@ -272,13 +281,15 @@ def test_ticks_of_angles_stand_at_parts_of_a_turn(span, unit, step):
         ((90.0, 90.0 + 1e-12), (89, 91), 1),
     ],
 )
-def test_axes_of_angles_end_at_ticks(values, ends, step):
+def test_axes_of_angles_end_at_ticks(
+    values: tuple[float, float], ends: tuple[float, float], step: float
+) -> None:
     line = np.linspace(*values, 200)
     found, tick = angle_ends(line, AngleUnit.DEGREE)
-    assert (found, tick) == (pytest.approx(ends), pytest.approx(step))
+    assert (found, tick) == (ABOUT(ends), ABOUT(step))
 
 
-def test_a_curve_along_an_edge_moves_into_the_panel():
+def test_a_curve_along_an_edge_moves_into_the_panel() -> None:
     flat = np.concatenate([np.zeros(100), np.linspace(0, 90, 100)])
     (low, _), step = angle_ends(flat, AngleUnit.DEGREE)
     assert low == -step
@@ -287,7 +298,7 @@ def test_a_curve_along_an_edge_moves_into_the_panel():
 # ------------------------------------------------------------------ axes
 
 
-def test_rounding_is_not_magnified():
+def test_rounding_is_not_magnified() -> None:
     motion = swept("rapier-drive")
     spread = np.ptp(motion["E.y"])
     assert spread < 1e-9  # the rapier runs along a line, but for rounding
@@ -297,22 +308,23 @@ def test_rounding_is_not_magnified():
     assert (low, high) == (0.0, 0.0)
     [alone, slope] = motion_chart(motion, ["E.y", "E.y.d1"]).panels
     assert alone.axis.ends == pytest.approx((-572, -468))
+    assert slope.axis.ends
     low, high = slope.axis.ends
     assert low == -high
     assert high > 10
 
 
-def test_time_runs_while_the_input_turns():
+def test_time_runs_while_the_input_turns() -> None:
     motion = swept("four-bar")  # 25 rad/s
     chart = motion_chart(motion, ["B.x"], against="time")
     assert chart.axis.label == "time [s]"
-    assert chart.axis.ends == (0.0, pytest.approx(math.tau / 25))
+    assert chart.axis.ends == (0.0, ABOUT(math.tau / 25))
     [curve] = curves_of(chart)
     slope = np.gradient(curve.y, curve.x)[1:-1]
     np.testing.assert_allclose(slope, motion["B.x.velocity"][1:-1], atol=2.0)
 
 
-def test_columns_can_stand_over_each_other():
+def test_columns_can_stand_over_each_other() -> None:
     motion = swept("trotbot-leg")
     chart = motion_chart(motion, ["J7.y"], against="J7.x")
     [curve] = curves_of(chart)
@@ -322,12 +334,12 @@ def test_columns_can_stand_over_each_other():
 
 
 @pytest.mark.parametrize("against", ["residual", "iterations"])
-def test_nothing_joins_rows_over_what_is_scattered(against):
+def test_nothing_joins_rows_over_what_is_scattered(against: str) -> None:
     chart = motion_chart(swept("four-bar"), ["B.x"], against=against)
     assert [curve.pen for curve in curves_of(chart)] == [Pen.DOTS]
 
 
-def test_the_leading_input_is_the_one_that_moves():
+def test_the_leading_input_is_the_one_that_moves() -> None:
     motion = swept("three-rpr")
     moving = [name for name, values in motion.inputs.items() if np.ptp(values)]
     chart = motion_chart(motion)
@@ -393,14 +405,14 @@ def test_the_leading_input_is_the_one_that_moves():
     ],
 )  # fmt: skip
 def test_what_cannot_be_plotted_is_refused_with_what_to_do(
-    mechanism, names, options, error, message
-):
+    mechanism: str, names: list[str], options: dict[str, Any], error: type[Exception], message: str
+) -> None:
     with pytest.raises(error) as raised:
         motion_plot(swept(mechanism), names, **options)
     assert str(raised.value) == message
 
 
-def test_there_is_no_time_along_several_branches():
+def test_there_is_no_time_along_several_branches() -> None:
     fast = lw.example("rapier-drive-limited")
     [driven] = fast.description.inputs
     fast = fast.changed(inputs=(lw.Input(**{**vars(driven), "speed": "60 rpm"}),))
@@ -413,7 +425,7 @@ def test_there_is_no_time_along_several_branches():
     )
 
 
-def test_a_motion_without_positions_is_no_chart():
+def test_a_motion_without_positions_is_no_chart() -> None:
     motion = lw.linkage(
         name="Too short",
         points={"O2": (0, 0), "A": (10, 0), "B": (50, 0), "O4": (100, 0)},

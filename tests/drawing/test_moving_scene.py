@@ -10,6 +10,8 @@ from linkwork.drawing import SceneOptions, reach_of, scene_of
 from linkwork.drawing.moving_scene import moving_scene
 from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, Scene, Text
 from linkwork.drawing.shape_corners import corners
+from linkwork.mechanism.linkage import Linkage
+from tests.described import described_as
 from tests.thinned import thinned
 
 _DRAWN = [n for n in lw.examples() if lw.example(n).model.compiled.points.names]
@@ -81,7 +83,7 @@ def test_scene_drawn_like_another_is_the_one_drawn_afresh(
 ) -> None:
     mechanism = lw.example(name)
     before = moving_scene(mechanism.sweep(certify=False))
-    changed = mechanism.changed(lengths={**mechanism.description.lengths, **lengths})
+    changed = mechanism.changed(lengths={**described_as(Linkage, mechanism).lengths, **lengths})
     motion = changed.sweep(certify=False)
     quick, afresh = moving_scene(motion, like=before), moving_scene(motion)
     assert [part.frame for part in quick.parts] != []

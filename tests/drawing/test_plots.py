@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Iterator
 from functools import cache
 from itertools import combinations
+from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -19,11 +22,11 @@ from linkwork.drawing.charts.plotting import circuits_plot, motion_plot
 from linkwork.drawing.charts.theme import DARK_CHART, LIGHT_CHART, THEMES, ChartTheme
 from linkwork.foundation.errors import InputError, UnknownNameError
 from linkwork.foundation.showing import shower
-from tests.drawing.pages import assert_page_is_clear, svg_texts
+from tests.drawing.pages import assert_page_is_clear, left_title, svg_texts
 
 
 @pytest.fixture(autouse=True)
-def _no_window():
+def _no_window() -> Iterator[None]:
     """Figures without a window, all closed afterwards."""
     from matplotlib import pyplot
 
@@ -35,7 +38,7 @@ def _no_window():
 
 
 @cache
-def swept(name: str, **options: object) -> lw.Motion:
+def swept(name: str, **options: Any) -> lw.Motion:
     """The motion of a library mechanism, swept once."""
     return lw.example(name).sweep(certify=False, **options)
 
@@ -65,7 +68,9 @@ PLOTS = [
 
 @pytest.mark.parametrize(("name", "options"), PLOTS)
 @pytest.mark.parametrize("theme", THEMES.values(), ids=THEMES)
-def test_texts_are_on_the_page_and_keep_clear_of_each_other(name, options, theme):
+def test_texts_are_on_the_page_and_keep_clear_of_each_other(
+    name: str, options: dict[str, Any], theme: ChartTheme
+) -> None:
     options = dict(options)
     motion = swept(name, **{k: options.pop(k) for k in ("through",) if k in options})
     chart = motion_plot(motion, options.pop("names", ()), **options)
@@ -76,16 +81,16 @@ def test_texts_are_on_the_page_and_keep_clear_of_each_other(name, options, theme
     ("name", "of"),
     [("jansen-leg", ["foot"]), ("rapier-drive", ["s16", "θ13"]), ("slider-input", [])],
 )
-def test_small_multiples_keep_clear_of_each_other(name, of):
+def test_small_multiples_keep_clear_of_each_other(name: str, of: list[str]) -> None:
     assert_page_is_clear(chart_figure(circuits_plot(circuits_of(name), of, kind="branches"), LIGHT))
 
 
 @pytest.mark.parametrize("name", ["cam-roller-follower", "rapier-drive", "windscreen-wiper"])
-def test_angles_stand_around_a_polar_plot_clear_of_its_name(name):
+def test_angles_stand_around_a_polar_plot_clear_of_its_name(name: str) -> None:
     page = chart_figure(motion_plot(swept(name), kind="polar"), LIGHT)
     page.canvas.draw()
     for ax in page.axes:
-        texts = [*ax.get_xticklabels(), ax._left_title, *page.texts]
+        texts = [*ax.get_xticklabels(), left_title(ax), *page.texts]
         boxes = [text.get_window_extent() for text in texts if text.get_text()]
         assert len(boxes) >= 15
         for one, other in combinations(boxes, 2):
@@ -93,7 +98,7 @@ def test_angles_stand_around_a_polar_plot_clear_of_its_name(name):
         assert all(page.bbox.contains(*box.min) and page.bbox.contains(*box.max) for box in boxes)
 
 
-def test_stations_stand_inside_their_panel():
+def test_stations_stand_inside_their_panel() -> None:
     for name, kind in (("klann-leg", "path"), ("slider-crank-engine", "hodograph")):
         page = chart_figure(motion_plot(swept(name), kind=kind), LIGHT)
         page.canvas.draw()
@@ -106,7 +111,7 @@ def test_stations_stand_inside_their_panel():
                 assert inside.y0 <= box.y0 < box.y1 <= inside.y1
 
 
-def test_planes_are_drawn_to_one_scale():
+def test_planes_are_drawn_to_one_scale() -> None:
     page = chart_figure(motion_plot(swept("four-bar"), ["A"], kind="hodograph"), LIGHT)
     page.canvas.draw()
     for ax in page.axes:
@@ -114,7 +119,7 @@ def test_planes_are_drawn_to_one_scale():
         assert x1 - x0 == pytest.approx(y1 - y0, rel=1e-6)
 
 
-def test_large_numbers_are_written_with_powers_of_ten_along_the_whole_axis():
+def test_large_numbers_are_written_with_powers_of_ten_along_the_whole_axis() -> None:
     motion = swept("slider-crank-engine")
     texts = svg_texts(render(motion_plot(motion, ["s.acceleration"]), "svg"))
     assert {"−10⁶", "−5·10⁵", "0", "5·10⁵"} <= set(texts)
@@ -127,19 +132,19 @@ def test_large_numbers_are_written_with_powers_of_ten_along_the_whole_axis():
     assert {"−10⁵", "−5·10⁴", "0", "5·10⁴"} <= set(across)
 
 
-def test_a_lone_position_is_a_dot():
+def test_a_lone_position_is_a_dot() -> None:
     motion = swept("four-bar")
     alone = lw.example("four-bar").sweep(start=60, stop=60, step=1, certify=False)
     assert (len(alone), len(motion)) == (1, 361)
     page = chart_figure(motion_plot(alone, ["B.x"]), LIGHT)
     [ax] = page.axes
     dots = [line for line in ax.lines if str(line.get_gid()).startswith("alone:")]
-    assert [tuple(dot.get_xydata()[0]) for dot in dots] == [(60.0, alone["B.x"][0])]
+    assert [tuple(np.asarray(dot.get_xydata())[0]) for dot in dots] == [(60.0, alone["B.x"][0])]
     assert dots[0].get_marker() == "o"
 
 
 @pytest.mark.parametrize("kind", ["curves", "polar", "path", "hodograph", "transmission"])
-def test_the_same_plot_gives_the_same_bytes(kind):
+def test_the_same_plot_gives_the_same_bytes(kind: str) -> None:
     motion = swept("four-bar")
     names = ["A"] if kind in ("path", "hodograph") else []
     first, second = (render(motion_plot(motion, names, kind=kind), "svg") for _ in range(2))
@@ -162,21 +167,21 @@ def contrast(one: str, other: str) -> float:
 
 
 @pytest.mark.parametrize("theme", THEMES.values(), ids=THEMES)
-def test_texts_and_curves_stand_out_from_the_page(theme):
+def test_texts_and_curves_stand_out_from_the_page(theme: ChartTheme) -> None:
     assert contrast(theme.ink, theme.background) > 7
     assert contrast(theme.faint, theme.background) >= 4.5
     assert min(contrast(tone, theme.background) for tone in theme.tones) > 2
     assert len(set(theme.tones)) == 6
 
 
-def test_a_chart_takes_the_colours_that_go_with_those_of_a_drawing():
+def test_a_chart_takes_the_colours_that_go_with_those_of_a_drawing() -> None:
     assert ChartTheme.of(LIGHT) is LIGHT_CHART
     assert ChartTheme.of(DARK_CHART) is DARK_CHART
     page = chart_figure(motion_plot(swept("four-bar")), DARK_CHART)
     assert matplotlib.colors.to_hex(page.get_facecolor()).upper() == DARK_CHART.background
 
 
-def test_a_drawing_in_the_colours_of_a_chart_is_refused(tmp_path):
+def test_a_drawing_in_the_colours_of_a_chart_is_refused(tmp_path: Path) -> None:
     scene = scene_of(lw.example("four-bar").solve())
     with pytest.raises(InputError) as raised:
         write(scene, tmp_path / "x.png", theme=DARK_CHART)
@@ -188,7 +193,7 @@ def test_a_drawing_in_the_colours_of_a_chart_is_refused(tmp_path):
 # ------------------------------------------------------------------ plot
 
 
-def test_plot_returns_the_axes_of_a_figure_that_pyplot_knows():
+def test_plot_returns_the_axes_of_a_figure_that_pyplot_knows() -> None:
     from matplotlib import pyplot
 
     motion = swept("rapier-drive")
@@ -199,7 +204,7 @@ def test_plot_returns_the_axes_of_a_figure_that_pyplot_knows():
     np.testing.assert_array_equal(line.get_ydata(), motion["s16"])
 
 
-def test_plot_returns_axes_for_every_panel():
+def test_plot_returns_axes_for_every_panel() -> None:
     first, second = swept("rapier-drive").plot("θ13", "s16", theme="dark")
     assert (first.get_ylabel(), second.get_ylabel()) == ("θ₁₃ [deg]", "s₁₆ [mm]")
     assert matplotlib.colors.to_hex(first.get_facecolor()).upper() == DARK_CHART.background
@@ -209,14 +214,14 @@ def test_plot_returns_axes_for_every_panel():
     ]  # fmt: skip
 
 
-def test_circuits_are_plotted_in_axes_of_their_own_too():
+def test_circuits_are_plotted_in_axes_of_their_own_too() -> None:
     ax = circuits_of("rapier-drive").plot("s16")
     assert {line.get_gid() for line in ax.lines} == {
         "curve:circuit 1", "curve:circuit 2", "curve:circuit 3", "dead-point",
     }  # fmt: skip
 
 
-def test_plot_draws_into_given_axes_with_the_legend_above_them():
+def test_plot_draws_into_given_axes_with_the_legend_above_them() -> None:
     from matplotlib import pyplot
 
     _, ax = pyplot.subplots()
@@ -225,7 +230,7 @@ def test_plot_draws_into_given_axes_with_the_legend_above_them():
     ax.figure.canvas.draw()
     inside, legend = ax.get_window_extent(), ax.get_legend().get_window_extent()
     assert legend.y0 >= inside.y1 - 1
-    title = ax._left_title.get_window_extent()
+    title = left_title(ax).get_window_extent()
     assert title.y0 >= legend.y1 - 1
     assert [text.get_text() for text in ax.get_legend().get_texts()] == [
         "|velocity of A|", "|velocity of B|",
@@ -233,20 +238,20 @@ def test_plot_draws_into_given_axes_with_the_legend_above_them():
     assert ax.get_xlabel() == "time [s]"
 
 
-def test_plot_keeps_the_settings_of_the_caller():
+def test_plot_keeps_the_settings_of_the_caller() -> None:
     with matplotlib.rc_context({"axes.titlesize": 31.0}):
         swept("four-bar").plot("B.x")
         assert matplotlib.rcParams["axes.titlesize"] == 31.0
 
 
-def test_a_title_is_replaced_or_left_out():
+def test_a_title_is_replaced_or_left_out() -> None:
     own = swept("four-bar").plot("B.x", title="Pin B").figure
     assert [text.get_text() for text in own.texts] == ["Pin B", "0° to 360°"]
     none = swept("four-bar").plot("B.x", title="").figure
     assert [text.get_text() for text in none.texts] == []
 
 
-def test_too_few_axes_are_refused():
+def test_too_few_axes_are_refused() -> None:
     from matplotlib import pyplot
 
     _, ax = pyplot.subplots()
@@ -260,7 +265,7 @@ def test_too_few_axes_are_refused():
     assert swept("rapier-drive").plot("θ13", "s16", ax=pair) == tuple(pair)
 
 
-def test_a_polar_plot_wants_polar_axes_and_others_do_not():
+def test_a_polar_plot_wants_polar_axes_and_others_do_not() -> None:
     from matplotlib import pyplot
 
     motion = swept("cam-roller-follower")
@@ -275,18 +280,18 @@ def test_a_polar_plot_wants_polar_axes_and_others_do_not():
     assert motion.plot("s", kind="polar", ax=round_ax) is round_ax
 
 
-def test_an_unknown_theme_is_refused_with_those_that_exist():
+def test_an_unknown_theme_is_refused_with_those_that_exist() -> None:
     with pytest.raises(UnknownNameError) as raised:
         swept("four-bar").plot(theme="black")
     assert str(raised.value) == 'there is no theme "black" (themes: light, dark)'
 
 
-def test_nobody_shows_what_nobody_has_named():
+def test_nobody_shows_what_nobody_has_named() -> None:
     with pytest.raises(LookupError, match=r'^no function is named for "Motion.sing"$'):
         shower("Motion.sing")
 
 
-def test_matplotlib_is_loaded_by_the_first_plot_only():
+def test_matplotlib_is_loaded_by_the_first_plot_only() -> None:
     code = (
         "import sys, linkwork as lw; m = lw.example('four-bar').sweep(step=90, certify=False);"
         "assert 'matplotlib' not in sys.modules; m.plot('B.x'); assert 'matplotlib' in sys.modules"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,13 +14,14 @@ from linkwork.drawing import Polyline, Role, SceneOptions, reach_of, scene_of
 from linkwork.foundation.errors import InputError, UnknownNameError
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Bar, Skeleton
+from tests.drawing.conftest import Sample
 
 
-def message(raised):
+def message(raised: pytest.ExceptionInfo[Exception]) -> str:
     return str(raised.value)
 
 
-def test_a_position_that_was_not_found_is_refused_with_its_reason(rocking_four_bar):
+def test_a_position_that_was_not_found_is_refused_with_its_reason(rocking_four_bar: Sample) -> None:
     position = rocking_four_bar.position(180)
     with pytest.raises(InputError) as raised:
         scene_of(position)
@@ -28,7 +30,7 @@ def test_a_position_that_was_not_found_is_refused_with_its_reason(rocking_four_b
     )
 
 
-def test_a_mechanism_without_points_says_what_to_add(four_bar):
+def test_a_mechanism_without_points_says_what_to_add(four_bar: Sample) -> None:
     bare = replace(four_bar.position(50), points={}, skeleton=Skeleton())
     with pytest.raises(InputError) as raised:
         scene_of(bare)
@@ -38,7 +40,7 @@ def test_a_mechanism_without_points_says_what_to_add(four_bar):
     )
 
 
-def test_a_link_with_an_unknown_point_is_refused(four_bar):
+def test_a_link_with_an_unknown_point_is_refused(four_bar: Sample) -> None:
     skeleton = Skeleton(bars=(Bar(name="crank", points=("A", "X")),))
     with pytest.raises(InputError) as raised:
         scene_of(replace(four_bar.position(50), skeleton=skeleton))
@@ -47,7 +49,7 @@ def test_a_link_with_an_unknown_point_is_refused(four_bar):
     )
 
 
-def test_points_at_no_place_are_refused(four_bar):
+def test_points_at_no_place_are_refused(four_bar: Sample) -> None:
     position = four_bar.position(50)
     broken = replace(position, points={**position.points, "P": (np.nan, 0.0)})
     with pytest.raises(InputError) as raised:
@@ -55,7 +57,7 @@ def test_points_at_no_place_are_refused(four_bar):
     assert message(raised) == "points without coordinates cannot be drawn: P"
 
 
-def test_a_guide_between_two_equal_points_is_refused(slider_crank):
+def test_a_guide_between_two_equal_points_is_refused(slider_crank: Sample) -> None:
     position = slider_crank.position(50)
     broken = replace(position, points={**position.points, "T": position.points["S"]})
     with pytest.raises(InputError) as raised:
@@ -63,7 +65,7 @@ def test_a_guide_between_two_equal_points_is_refused(slider_crank):
     assert message(raised) == ('the line of "s" has no direction: points S and T coincide')
 
 
-def test_a_motion_of_another_mechanism_is_refused(four_bar, flat):
+def test_a_motion_of_another_mechanism_is_refused(four_bar: Sample, flat: Sample) -> None:
     with pytest.raises(InputError) as raised:
         scene_of(four_bar.position(50), flat.motion())
     assert message(raised) == (
@@ -73,13 +75,13 @@ def test_a_motion_of_another_mechanism_is_refused(four_bar, flat):
     )
 
 
-def test_an_unknown_trace_is_refused_with_what_exists(four_bar):
+def test_an_unknown_trace_is_refused_with_what_exists(four_bar: Sample) -> None:
     with pytest.raises(UnknownNameError) as raised:
         scene_of(four_bar.position(50), four_bar.motion(), traces=["Q"])
     assert message(raised) == 'there is no point "Q" to trace (points: O2, A, B, O4, P)'
 
 
-def test_a_trace_without_a_motion_is_refused(four_bar):
+def test_a_trace_without_a_motion_is_refused(four_bar: Sample) -> None:
     with pytest.raises(InputError) as raised:
         scene_of(four_bar.position(50), traces=["P"])
     assert message(raised) == (
@@ -87,10 +89,10 @@ def test_a_trace_without_a_motion_is_refused(four_bar):
     )
 
 
-def test_traces_are_those_of_the_mechanism_unless_named(four_bar):
+def test_traces_are_those_of_the_mechanism_unless_named(four_bar: Sample) -> None:
     position, motion = four_bar.position(50), four_bar.motion()
 
-    def traced(**options):
+    def traced(**options: Any) -> set[str]:
         return {p.of for p in scene_of(position, **options).select(Polyline, Role.TRACE)}
 
     assert traced() == set()
@@ -99,7 +101,9 @@ def test_traces_are_those_of_the_mechanism_unless_named(four_bar):
     assert traced(motion=motion, traces=[]) == set()
 
 
-def test_title_and_caption_name_the_mechanism_and_its_input_with_unit(four_bar, boom):
+def test_title_and_caption_name_the_mechanism_and_its_input_with_unit(
+    four_bar: Sample, boom: Sample
+) -> None:
     scene = scene_of(four_bar.position(50))
     assert (scene.title, scene.caption) == ("Four-bar, Norton example 4-1", "crank = 50°")
     assert scene_of(boom.position(95)).caption == "ram = 95 mm"
@@ -107,7 +111,7 @@ def test_title_and_caption_name_the_mechanism_and_its_input_with_unit(four_bar, 
     assert scene.unit == "mm"
 
 
-def test_the_reach_of_a_motion_holds_every_position(rocking_four_bar):
+def test_the_reach_of_a_motion_holds_every_position(rocking_four_bar: Sample) -> None:
     motion = rocking_four_bar.motion()
     box = reach_of(motion)
     xs = np.concatenate([motion[f"{p}.x"] for p in motion.points])
@@ -115,7 +119,7 @@ def test_the_reach_of_a_motion_holds_every_position(rocking_four_bar):
     assert box.right == np.nanmax(xs)
 
 
-def test_a_motion_without_positions_has_no_reach(four_bar):
+def test_a_motion_without_positions_has_no_reach(four_bar: Sample) -> None:
     motion = four_bar.motion()
     lost = replace(motion, status=(Status.LOST,) * len(motion))
     with pytest.raises(InputError) as raised:
@@ -125,13 +129,13 @@ def test_a_motion_without_positions_has_no_reach(four_bar):
     )
 
 
-def test_one_single_point_can_be_drawn(four_bar):
+def test_one_single_point_can_be_drawn(four_bar: Sample) -> None:
     position = replace(four_bar.position(50), points={"X": (1e6, 1e6)}, skeleton=Skeleton())
     scene = scene_of(position)
     assert scene.measures.size == 1.0
     assert scene.box.width > 0
 
 
-def test_scenes_need_no_matplotlib():
+def test_scenes_need_no_matplotlib() -> None:
     code = "import linkwork.drawing, sys; sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from matplotlib.figure import Figure
 
 import linkwork as lw
 from linkwork.drawing import LIGHT, Scene, Sheet, Text, configuration_sheet, render
 from linkwork.drawing.matplotlib_writer import _sheet_figure
 from linkwork.foundation.errors import InputError
+from tests.drawing.conftest import Sample
 from tests.drawing.mechanisms import five_bar_of
 from tests.drawing.pages import assert_page_is_clear, printed_texts, size_in_inches, svg_texts
 
@@ -30,12 +32,12 @@ def found_of(name: str) -> lw.Configurations:
     return _FOUND[name]
 
 
-def page_of(sheet: Sheet):
+def page_of(sheet: Sheet) -> Figure:
     return _sheet_figure(sheet, LIGHT)
 
 
 @pytest.mark.parametrize("name", DRAWN)
-def test_every_configuration_is_a_picture_with_its_name_in_the_order_of_the_list(name):
+def test_every_configuration_is_a_picture_with_its_name_in_the_order_of_the_list(name: str) -> None:
     found = found_of(name)
     sheet = configuration_sheet(found)
     assert [scene.title for scene in sheet.scenes] == list(found.names)
@@ -47,7 +49,7 @@ def test_every_configuration_is_a_picture_with_its_name_in_the_order_of_the_list
         assert all(position.points[point] == place for point, place in drawn.items())
 
 
-def test_the_caption_counts_them_and_says_where():
+def test_the_caption_counts_them_and_says_where() -> None:
     assert configuration_sheet(found_of("rapier-drive")).caption == "4 configurations at θ₁₂ = 60°"
     at = lw.example("slider-input").configurations(at=120)
     assert configuration_sheet(at).caption == "2 configurations at d = 120 mm"
@@ -58,7 +60,7 @@ def test_the_caption_counts_them_and_says_where():
     assert both.caption == "2 configurations at left = 90°, right = 90°"
 
 
-def test_one_configuration_is_not_many():
+def test_one_configuration_is_not_many() -> None:
     found = found_of("four-bar")
     sheet = configuration_sheet(replace(found, positions=found.positions[:1]))
     assert sheet.caption == "1 configuration at crank = 30.0294°"
@@ -66,7 +68,7 @@ def test_one_configuration_is_not_many():
     assert_page_is_clear(page_of(sheet))
 
 
-def test_nothing_to_draw_is_said():
+def test_nothing_to_draw_is_said() -> None:
     found = found_of("four-bar")
     with pytest.raises(InputError) as raised:
         configuration_sheet(replace(found, positions=(), message="it cannot be put together"))
@@ -87,14 +89,16 @@ def test_nothing_to_draw_is_said():
     ("count", "columns", "cell"),
     [(1, 1, 7.5), (2, 2, 3.75), (4, 2, 3.75), (5, 3, 2.5), (40, 4, 2.2)],
 )
-def test_pictures_stand_in_rows_of_at_most_four(four_bar, count, columns, cell):
+def test_pictures_stand_in_rows_of_at_most_four(
+    four_bar: Sample, count: int, columns: int, cell: float
+) -> None:
     sheet = configuration_sheet(found_of("four-bar"))
     many = replace(sheet, scenes=(sheet.scenes * count)[:count])
     assert (many.columns, many.cell) == (columns, cell)
 
 
 @pytest.mark.parametrize("name", DRAWN)
-def test_all_pictures_show_the_same_part_of_the_plane_and_nothing_is_cut_off(name):
+def test_all_pictures_show_the_same_part_of_the_plane_and_nothing_is_cut_off(name: str) -> None:
     sheet = configuration_sheet(found_of(name))
     page = page_of(sheet)
     page.canvas.draw()
@@ -114,7 +118,7 @@ def test_all_pictures_show_the_same_part_of_the_plane_and_nothing_is_cut_off(nam
 
 
 @pytest.mark.parametrize("name", DRAWN)
-def test_texts_keep_clear_of_each_other_and_of_the_pictures(name):
+def test_texts_keep_clear_of_each_other_and_of_the_pictures(name: str) -> None:
     sheet = configuration_sheet(found_of(name))
     page = page_of(sheet)
     assert_page_is_clear(page)
@@ -123,13 +127,13 @@ def test_texts_keep_clear_of_each_other_and_of_the_pictures(name):
 
 
 @pytest.mark.parametrize("name", DRAWN)
-def test_names_of_points_are_large_enough_to_read(name):
+def test_names_of_points_are_large_enough_to_read(name: str) -> None:
     page = page_of(configuration_sheet(found_of(name)))
-    sizes = [text.get_fontsize() for ax in page.axes for text in ax.texts]
+    sizes = [float(text.get_fontsize()) for ax in page.axes for text in ax.texts]
     assert 5.5 < min(sizes) <= max(sizes) < 12  # points
 
 
-def test_long_names_are_broken_at_their_hyphens():
+def test_long_names_are_broken_at_their_hyphens() -> None:
     sheet = configuration_sheet(found_of("jansen-leg"))
     long = "-".join(["crossed", "open"] * 4)
     renamed = [replace(scene, title=long) for scene in sheet.scenes]
@@ -143,14 +147,14 @@ def test_long_names_are_broken_at_their_hyphens():
         assert all(line.endswith("-") for line in name.split("\n")[:-1])
 
 
-def test_a_png_is_as_wide_as_a_page():
+def test_a_png_is_as_wide_as_a_page() -> None:
     page = render(configuration_sheet(found_of("rapier-drive")), "png", dpi=100)
     width, height = size_in_inches(page, 100)
     assert width == pytest.approx(7.65, abs=0.011)
     assert 3 < height < 8
 
 
-def test_an_svg_names_its_texts_and_parts():
+def test_an_svg_names_its_texts_and_parts() -> None:
     svg = render(configuration_sheet(found_of("four-bar")), "svg")
     texts = svg_texts(svg)
     for text in (
@@ -165,12 +169,12 @@ def test_an_svg_names_its_texts_and_parts():
 
 
 @pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
-def test_the_same_sheet_gives_the_same_bytes(kind):
+def test_the_same_sheet_gives_the_same_bytes(kind: str) -> None:
     sheet = configuration_sheet(found_of("four-bar"))
     assert render(sheet, kind) == render(configuration_sheet(found_of("four-bar")), kind)
 
 
-def test_symbols_of_small_pictures_are_larger_but_never_than_their_links_allow():
+def test_symbols_of_small_pictures_are_larger_but_never_than_their_links_allow() -> None:
     small: Scene = configuration_sheet(found_of("jansen-leg")).scenes[0]
     usual = lw.example("jansen-leg").scene()
     assert usual.measures.larger == 1.0

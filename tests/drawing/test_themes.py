@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 from linkwork.drawing import DARK, LIGHT, THEMES, Polyline, Role, theme_named
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import UnknownNameError
 
 SIGHT = {
@@ -41,12 +42,12 @@ SIGHT = {
 JUST_SEEN = 2.3  # the smallest difference of colours side by side (Mahy et al. 1994)
 
 
-def linear(colour):
+def linear(colour: str) -> Array:
     part = np.array([int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)])
     return np.where(part <= 0.04045, part / 12.92, ((part + 0.055) / 1.055) ** 2.4)
 
 
-def seen(colour, sight):
+def seen(colour: str, sight: str) -> Array:
     """L*, a*, b* of a colour as somebody sees it."""
     light = np.clip(np.array(SIGHT[sight]) @ linear(colour), 0.0, 1.0)
     to_xyz = [[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750],
@@ -58,7 +59,7 @@ def seen(colour, sight):
     return np.array([116 * y - 16, 500 * (x - y), 200 * (y - z)])
 
 
-def contrast(one, other):
+def contrast(one: str, other: str) -> float:
     """The ratio of luminances that the guidelines for web content count."""
     low, high = sorted(float(np.array([0.2126, 0.7152, 0.0722]) @ linear(c)) for c in (one, other))
     return (high + 0.05) / (low + 0.05)
@@ -66,7 +67,7 @@ def contrast(one, other):
 
 @pytest.mark.parametrize("sight", SIGHT)
 @pytest.mark.parametrize("theme", THEMES)
-def test_links_are_told_apart(theme, sight):
+def test_links_are_told_apart(theme: str, sight: str) -> None:
     colours = (THEMES[theme].driven, *THEMES[theme].tones)
     for one, other in combinations(colours, 2):
         distance = np.linalg.norm(seen(one, sight) - seen(other, sight))
@@ -75,7 +76,7 @@ def test_links_are_told_apart(theme, sight):
 
 @pytest.mark.parametrize("sight", SIGHT)
 @pytest.mark.parametrize("theme", THEMES)
-def test_velocities_and_accelerations_are_told_apart(theme, sight):
+def test_velocities_and_accelerations_are_told_apart(theme: str, sight: str) -> None:
     styles = THEMES[theme].styles
     one, other = (styles[role].line for role in (Role.VELOCITY, Role.ACCELERATION))
     assert np.linalg.norm(seen(one, sight) - seen(other, sight)) > 6 * JUST_SEEN
@@ -83,7 +84,7 @@ def test_velocities_and_accelerations_are_told_apart(theme, sight):
 
 @pytest.mark.parametrize("sight", SIGHT)
 @pytest.mark.parametrize("theme", THEMES)
-def test_the_lightness_of_the_colour_scale_goes_one_way(theme, sight):
+def test_the_lightness_of_the_colour_scale_goes_one_way(theme: str, sight: str) -> None:
     scale = THEMES[theme]
     levels = [seen(scale.at_level(k / 10), sight)[0] for k in range(11)]
     steps = [after - before for before, after in pairwise(levels)]
@@ -91,7 +92,7 @@ def test_the_lightness_of_the_colour_scale_goes_one_way(theme, sight):
 
 
 @pytest.mark.parametrize("theme", THEMES)
-def test_what_is_written_in_ink_is_read_easily(theme):
+def test_what_is_written_in_ink_is_read_easily(theme: str) -> None:
     chosen = THEMES[theme]
     for role in (Role.LABEL, Role.DIMENSION_NAME, Role.VELOCITY_NAME, Role.CENTRE_NAME,
                  Role.LIMIT_NAME, Role.SCALE_NAME):  # fmt: skip
@@ -101,7 +102,7 @@ def test_what_is_written_in_ink_is_read_easily(theme):
 
 
 @pytest.mark.parametrize("theme", THEMES)
-def test_every_role_has_a_style_that_is_seen(theme):
+def test_every_role_has_a_style_that_is_seen(theme: str) -> None:
     chosen = THEMES[theme]
     for role in Role:
         style = chosen.styles[role]
@@ -110,13 +111,13 @@ def test_every_role_has_a_style_that_is_seen(theme):
             assert colour in ("", "tone", "level") or (len(colour) == 7 and colour[0] == "#")
 
 
-def test_both_themes_draw_the_same_lines():
+def test_both_themes_draw_the_same_lines() -> None:
     for role in Role:
         one, other = LIGHT.styles[role], DARK.styles[role]
         assert (one.width, one.dashes, one.opacity) == (other.width, other.dashes, other.opacity)
 
 
-def test_a_place_on_the_scale_is_between_its_neighbours():
+def test_a_place_on_the_scale_is_between_its_neighbours() -> None:
     assert LIGHT.at_level(0.0) == LIGHT.scale[0]
     assert LIGHT.at_level(1.0) == LIGHT.scale[-1]
     assert LIGHT.at_level(7.0) == LIGHT.scale[-1]
@@ -124,7 +125,7 @@ def test_a_place_on_the_scale_is_between_its_neighbours():
     assert LIGHT.line(piece) == LIGHT.scale[1]
 
 
-def test_an_unknown_theme_is_refused_with_what_exists():
+def test_an_unknown_theme_is_refused_with_what_exists() -> None:
     with pytest.raises(UnknownNameError) as raised:
         theme_named("dusk")
     assert str(raised.value) == 'there is no theme "dusk" (themes: light, dark)'

@@ -7,27 +7,28 @@ from itertools import combinations
 import pytest
 
 import linkwork as lw
-from linkwork.drawing import Polyline, Role, SceneOptions, Text, scene_of
+from linkwork.drawing import Polyline, Role, Scene, SceneOptions, Text, scene_of
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.vector_polygon import polygon
 from linkwork.foundation.errors import InputError
 from linkwork.motion import vector_loops
 from linkwork.results.vector_loop import LoopVector, VectorLoop
+from tests.drawing.conftest import Sample
 
 
-def drawn(name, at=None):
+def drawn(name: str, at: float | None = None) -> tuple[lw.Position, tuple[VectorLoop, ...], Scene]:
     mechanism = lw.example(name)
     position = mechanism.solve(at)
     loops = vector_loops(mechanism.model, position)
     return position, loops, scene_of(position, options=SceneOptions(vectors=loops))
 
 
-def arrows(scene, tone):
+def arrows(scene: Scene, tone: int) -> list[Polyline]:
     return [p for p in scene.select(Polyline, Role.VECTOR) if p.tone == tone]
 
 
 @pytest.mark.parametrize("name", ["four-bar", "rapier-drive", "jansen-leg", "crank-shaper"])
-def test_every_vector_of_every_loop_is_an_arrow_of_its_length(name):
+def test_every_vector_of_every_loop_is_an_arrow_of_its_length(name: str) -> None:
     _, loops, scene = drawn(name)
     for tone, loop in enumerate(loops, 1):
         lengths = {}
@@ -40,7 +41,7 @@ def test_every_vector_of_every_loop_is_an_arrow_of_its_length(name):
 
 
 @pytest.mark.parametrize("value", [20, 100, 250])
-def test_the_vectors_of_a_four_bar_lie_over_its_links(value):
+def test_the_vectors_of_a_four_bar_lie_over_its_links(value: float) -> None:
     position, _, scene = drawn("four-bar", value)
     o2, a, b, o4 = (position.points[name] for name in ("O2", "A", "B", "O4"))
     ends = [arrow.points for arrow in arrows(scene, 1)]
@@ -50,7 +51,7 @@ def test_the_vectors_of_a_four_bar_lie_over_its_links(value):
                    for t, h in ends), (tail, tip)  # fmt: skip
 
 
-def test_a_vector_that_is_taken_off_points_its_own_way():
+def test_a_vector_that_is_taken_off_points_its_own_way() -> None:
     """-d1 leads from A0 to the left: the arrow of d1 leads back to A0."""
     position, _, scene = drawn("rapier-drive")
     [arrow] = [p for p in arrows(scene, 1) if p.of == "d1"]
@@ -59,7 +60,7 @@ def test_a_vector_that_is_taken_off_points_its_own_way():
 
 
 @pytest.mark.parametrize("name", ["four-bar", "jansen-leg", "rapier-drive", "windscreen-wiper"])
-def test_polygons_close_and_most_joints_are_points(name):
+def test_polygons_close_and_most_joints_are_points(name: str) -> None:
     mechanism = lw.example(name)
     position = mechanism.solve()
     pose = Pose.of(position, None)
@@ -73,7 +74,7 @@ def test_polygons_close_and_most_joints_are_points(name):
         assert sum(there) >= 0.7 * len(there)  # corners of right angles have no names
 
 
-def test_vectors_in_one_line_lie_side_by_side():
+def test_vectors_in_one_line_lie_side_by_side() -> None:
     """Both loops use d1, a1 and a5; s16 is a part of the line of d1."""
     _, _, scene = drawn("rapier-drive")
     lines = [tuple(complex(*end) for end in p.points) for p in scene.select(Polyline, Role.VECTOR)]
@@ -85,7 +86,7 @@ def test_vectors_in_one_line_lie_side_by_side():
         assert shared < 1e-6 * abs(tip - tail) or apart > scene.measures.pin
 
 
-def test_the_mechanism_is_faint_behind_its_vectors(four_bar):
+def test_the_mechanism_is_faint_behind_its_vectors(four_bar: Sample) -> None:
     loop = VectorLoop(label="O2 A", left=(LoopVector(name="a", value=40 + 0j),), right=())
     plain, behind = (
         scene_of(four_bar.position(50), options=SceneOptions(vectors=loops))
@@ -95,7 +96,7 @@ def test_the_mechanism_is_faint_behind_its_vectors(four_bar):
     assert min(p.fade for p in behind.select(Polyline, Role.LINK)) > 0.3
 
 
-def test_equations_without_points_are_drawn_as_vectors():
+def test_equations_without_points_are_drawn_as_vectors() -> None:
     mechanism = lw.loops(
         name="Bare",
         loops={"1": "a*e^(i*p) + b*e^(i*q) = c + d*e^(i*r)"},
@@ -110,14 +111,14 @@ def test_equations_without_points_are_drawn_as_vectors():
     assert {t.text for t in scene.select(Text)} == {"a∠p", "b∠q", "d∠r", "c", "loop 1"}
 
 
-def test_names_of_vectors_cover_neither_each_other_nor_vectors():
+def test_names_of_vectors_cover_neither_each_other_nor_vectors() -> None:
     for name in ("four-bar", "rapier-drive", "jansen-leg", "double-four-bar"):
         _, _, scene = drawn(name)
         for one, other in combinations(scene.select(Text), 2):
             assert one.box.overlap(other.box) == 0, (name, one.text, other.text)
 
 
-def test_a_long_loop_keeps_its_order():
+def test_a_long_loop_keeps_its_order() -> None:
     vectors = tuple(LoopVector(name=str(k), value=1j**k) for k in range(12))
     loop = VectorLoop(label="long", left=vectors, right=())
     pose = Pose.of(lw.example("four-bar").solve(), None)

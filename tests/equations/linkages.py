@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable
+from typing import Any
 
 import linkwork as lw
 
@@ -19,7 +20,7 @@ def _turn(link: str) -> tuple[lw.Input]:
     return (lw.Input(link=link, start=0, stop=360, step=3),)
 
 
-def _slider_crank(**slider: object) -> lw.Mechanism:
+def _slider_crank(**slider: Any) -> lw.Mechanism:
     """The block's own line B Q stands anywhere in the sketch; the slider says where it is."""
     return lw.linkage(
         points=_xy(O=0j, A=0.8 + 0.6j, B=3.6 + 0.9j, Q=4.4 + 1.4j, S=0.5 + 0.2j, T=5 + 0.7j),
@@ -30,7 +31,7 @@ def _slider_crank(**slider: object) -> lw.Mechanism:
             "block": ("B", "Q"),
         },
         lengths={"O A": 1, "A B": 3, "B Q": 0.9},
-        sliders=(lw.Slider(name="s", link="block", on="ground", line=("S", "T"), **slider),),  # type: ignore[arg-type]
+        sliders=(lw.Slider(name="s", link="block", on="ground", line=("S", "T"), **slider),),
         inputs=_turn("crank"),
     )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -139,7 +140,7 @@ def test_a_ring_that_rolls_around_a_circle_rests_where_it_touches() -> None:
 # ------------------------------------------------------------------ wheels: numbers of books
 
 
-def planetary(**gears: object) -> lw.Mechanism:
+def planetary(**gears: Any) -> lw.Mechanism:
     return lw.linkage(
         points=xy(O=0j, A=60 + 0j),
         links={"ground": ("O",), "carrier": ("O", "A"), "sun": ("O",), "planet": ("A",),
@@ -150,7 +151,7 @@ def planetary(**gears: object) -> lw.Mechanism:
             lw.Gear(name="outer", wheels=("planet", "ring"), centers=("A", "O"), arm="carrier",
                     teeth=(20, 80), internal=True),
         ),
-        **gears,  # type: ignore[arg-type]
+        **gears,
     )  # fmt: skip
 
 
@@ -326,7 +327,7 @@ def test_the_outline_that_a_motion_makes_makes_that_motion(contact_kind: str, sw
     """The error falls with the fourth power of the spacing, as that of a cubic spline does."""
     lift = 6.0
     # one turn of an analytic motion: h (1 - cos φ)/2
-    law = {
+    law: dict[str, Any] = {
         "segments": (
             lw.Segment(law="harmonic", over=180, lift=lift),
             lw.Segment(law="harmonic", over=180, lift=-lift),
@@ -334,13 +335,15 @@ def test_the_outline_that_a_motion_makes_makes_that_motion(contact_kind: str, sw
         "base": 40,
         "start": 37,
     }
-    size = {"radius": 8} if contact_kind == "roller" else {}
+    size: dict[str, Any] = {"radius": 8} if contact_kind == "roller" else {}
 
-    def cam(**shape: object) -> lw.Mechanism:
+    def cam(**shape: Any) -> lw.Mechanism:
         points = xy(O=0j, S=4 + 0j, T=4 + 100j, R=4 + 50j)
-        follower: dict[str, str] = {"slider": "s"}
+        follower: dict[str, Any] = {"slider": "s"}
         links = {"ground": ("O", "S", "T"), "cam": ("O",), "stem": ("R",)}
-        sliders = (lw.Slider(name="s", link="stem", points=("R",), on="ground", line=("S", "T")),)
+        sliders: tuple[lw.Slider, ...] = (
+            lw.Slider(name="s", link="stem", points=("R",), on="ground", line=("S", "T")),
+        )
         if swings:
             points = xy(O=0j, P=80 + 0j, R=17 + 42j)
             links = {"ground": ("O", "P"), "cam": ("O",), "arm": ("P", "R")}
@@ -352,7 +355,7 @@ def test_the_outline_that_a_motion_makes_makes_that_motion(contact_kind: str, sw
             sliders=sliders,
             cams=(
                 lw.Cam(name="law", cam="cam", center="O", contact=contact_kind, **follower,
-                       **size, **shape),  # type: ignore[arg-type]
+                       **size, **shape),
             ),
             inputs=(lw.Input(link="cam", start=0.37, stop=360.37, step=3.6),),
         )  # fmt: skip

@@ -23,6 +23,7 @@ def test_a_solved_position_solves_every_bilinear_system_and_comes_back(name: str
         assert isinstance(block.system, LoopTable)
         if block.system.functions or block.system.is_straight:
             continue  # cams, curves and racks have no directions
+        assert isinstance(block.system, LoopTable)
         form = direction_form(block.system)
         known = v[:, block.variables[n:]]
         left, off = form.closures(known, np.zeros_like(known))
@@ -49,6 +50,7 @@ def test_a_solved_position_solves_every_bilinear_system_and_comes_back(name: str
 def test_what_is_known_approximately_moves_the_closures_by_less_than_said() -> None:
     model = lw.example("jansen-leg").model
     block = model.compiled.solver.blocks[1]
+    assert isinstance(block.system, LoopTable)
     form = direction_form(block.system)
     n = len(block.unknowns)
     rng = np.random.default_rng(0)
@@ -100,6 +102,7 @@ def test_equations_without_the_form_say_why(
 ) -> None:
     mechanism = _with(equation, **guess)
     (block,) = mechanism.model.compiled.solver.blocks
+    assert isinstance(block.system, LoopTable)
     with pytest.raises(NoDirectionForm, match=f"^{re.escape(reason)}$"):
         direction_form(block.system)
     found = mechanism.configurations()

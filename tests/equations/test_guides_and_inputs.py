@@ -9,6 +9,8 @@ import numpy.typing as npt
 import pytest
 
 import linkwork as lw
+from linkwork.mechanism.linkage import Linkage
+from tests.described import described_as
 from tests.equations.linkages import LINKAGES, five_bar
 
 Array = npt.NDArray[np.float64]
@@ -185,7 +187,7 @@ def test_a_joint_is_driven_by_the_angle_between_its_links() -> None:
 
 def test_a_joint_on_the_ground_drives_the_moving_link() -> None:
     mechanism = LINKAGES["pin of three links"]()
-    links = dict(mechanism.description.links)  # type: ignore[attr-defined]
+    links = dict(described_as(Linkage, mechanism).links)
     links["ground"] = links.pop("ground")  # named last: still the one that stands still
     driven = mechanism.changed(links=links, inputs=(lw.Input(joint="O"),)).sweep()
     (values,) = driven.inputs.values()

@@ -227,7 +227,7 @@ def test_a_law_that_does_not_exist_is_refused_in_code_as_well() -> None:
             ),
             cams=(
                 lw.Cam(name="c", cam="cam", center="O", slider="s", base=4,
-                       segments=[lw.Segment(law="rest", over=360)]),  # type: ignore[arg-type]
+                       segments=[lw.Segment(law="rest", over=360)]),  # type: ignore[arg-type]  # a list
             ),
             inputs=(lw.Input(link="cam"),),
         )  # fmt: skip

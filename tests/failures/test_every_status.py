@@ -108,7 +108,7 @@ def start_singular() -> Reached:
         points={"O2": (0, 0), "A": (40, 0), "B": (160, 0), "T": (300, 0)},
         links={"ground": ["O2", "T"], "crank": ["O2", "A"], "rod": ["A", "B"], "block": ["B"]},
         sliders=[
-            lw.Slider(name="s", link="block", points=["B"], angle=0, on="ground", line=["O2", "T"])
+            lw.Slider(name="s", link="block", points=("B",), angle=0, on="ground", line=("O2", "T"))
         ],
         inputs=lw.Input(slider="s", start=160, stop=80, step=-5),
     )

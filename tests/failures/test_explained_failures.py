@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 
 import numpy as np
 import pytest
@@ -28,7 +29,7 @@ def needed_of(position: lw.Position) -> dict[str, float]:
 
 
 def diagonal(crank: float, ground: float, theta: float) -> float:
-    return abs(crank * np.exp(1j * theta) - ground)
+    return float(abs(crank * np.exp(1j * theta) - ground))
 
 
 @pytest.mark.parametrize("seed", range(25))
@@ -82,7 +83,7 @@ def slider_crank(rod: float, offset: float = 0.0) -> lw.Mechanism:
         links={"ground": ["O", "T"], "crank": ["O", "A"], "rod": ["A", "B"], "block": ["B"]},
         lengths={"O A": 40, "A B": rod},
         sliders=[
-            lw.Slider(name="s", link="block", points=["B"], on="ground", line=["O", "T"],
+            lw.Slider(name="s", link="block", points=("B",), on="ground", line=("O", "T"),
                       offset=offset)
         ],
         inputs=lw.Input(link="crank"),
@@ -259,7 +260,7 @@ def test_an_input_of_a_slider_says_the_length_that_can_be_reached() -> None:
         links={"ground": ["O", "T"], "crank": ["O", "A"], "rod": ["A", "B"], "block": ["B"]},
         lengths={"O A": 40, "A B": 120},
         sliders=[
-            lw.Slider(name="s", link="block", points=["B"], angle=0, on="ground", line=["O", "T"])
+            lw.Slider(name="s", link="block", points=("B",), angle=0, on="ground", line=("O", "T"))
         ],
         inputs=lw.Input(slider="s", start=100, stop=200, step=10),
     )
@@ -359,8 +360,8 @@ def test_a_position_other_than_the_one_beside_the_guess_is_found_and_says_so() -
     assert nearer.solve().failure is None
 
 
-def replace_values(guess: dict[str, float], values: object) -> dict[str, float]:
-    return {**guess, **dict(values)}  # type: ignore[call-overload]
+def replace_values(guess: dict[str, float], values: Mapping[str, float]) -> dict[str, float]:
+    return {**guess, **values}
 
 
 def test_library_mechanisms_find_the_position_beside_their_guess() -> None:

@@ -28,7 +28,7 @@ def count(step: float) -> int:
 
 
 def table(step: float) -> Angles:
-    return np.arange(count(step)) * step
+    return np.asarray(np.arange(count(step)) * step, dtype=float)
 
 
 def strictly_inside(angles: Angles, low: float, high: float) -> npt.NDArray[np.bool_]:
@@ -136,7 +136,7 @@ def slider_crank(form: SliderCrank, at: float, side: int) -> lw.Mechanism:
             "block": ["B"],
         },
         lengths={"O A": form.crank, "A B": form.rod},
-        sliders=[lw.Slider(name="s", link="block", points=["B"], on="ground", line=[start, "T"])],
+        sliders=[lw.Slider(name="s", link="block", points=("B",), on="ground", line=(start, "T"))],
         inputs=lw.Input(link="crank"),
     )
 
@@ -188,7 +188,7 @@ def test_a_slot_through_a_pivot_is_followed_all_around(ground: float, step: floa
         points={"O": (0, 0), "A": (a.real, a.imag), "Q": (ground, 0), "P": (end.real, end.imag)},
         links={"ground": ["O", "Q"], "crank": ["O", "A"], "rocker": ["Q", "P"]},
         lengths={"O A": 1},
-        slots=[lw.Slot(name="s", point="A", on="rocker", line=["Q", "P"])],
+        slots=[lw.Slot(name="s", point="A", on="rocker", line=("Q", "P"))],
         inputs=lw.Input(link="crank"),
     )
     motion = mechanism.sweep(step=step)

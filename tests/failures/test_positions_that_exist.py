@@ -109,7 +109,7 @@ def test_a_pin_that_meets_its_pivot_has_a_position_for_every_angle_and_none_is_c
         points={"O": (0, 0), "A": (a.real, a.imag), "Q": (1, 0), "P": (end.real, end.imag)},
         links={"ground": ["O", "Q"], "crank": ["O", "A"], "rocker": ["Q", "P"]},
         lengths={"O A": 1},
-        slots=[lw.Slot(name="s", point="A", on="rocker", line=["Q", "P"])],
+        slots=[lw.Slot(name="s", point="A", on="rocker", line=("Q", "P"))],
         inputs=lw.Input(link="crank"),
     )
     found = positions_elsewhere(mechanism.model, np.zeros(1))

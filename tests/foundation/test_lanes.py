@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 import operator
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import pytest
 
 from linkwork.expression.grammar import parse
+from linkwork.expression.tree import Node
 from linkwork.expression.values import value
 from linkwork.foundation import lanes
 from linkwork.foundation.angles import AngleUnit
@@ -20,7 +23,7 @@ RNG = np.random.default_rng(9)
 REAL = np.concatenate([RNG.normal(0, 3, 12), [0.0, -1.0, math.pi, -math.pi, 3 * math.pi, 7.5]])
 COMPLEX = REAL + 1j * np.roll(REAL, 5)
 
-FUNCTIONS = {
+FUNCTIONS: dict[str, tuple[Any, ...]] = {  # a function, and arrays
     "vector": (lanes.vector, REAL, np.roll(REAL, 1)),
     "phase": (lanes.phase, COMPLEX),
     "turn": (lanes.turn, REAL),
@@ -42,7 +45,7 @@ FUNCTIONS = {
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_functions_of_lanes_are_those_of_plain_numbers(name):
+def test_functions_of_lanes_are_those_of_plain_numbers(name: str) -> None:
     function, *given = FUNCTIONS[name]
     consensus = Consensus(len(given[0]))
     together = function(*(consensus.lanes(values) for values in given)).values
@@ -51,7 +54,7 @@ def test_functions_of_lanes_are_those_of_plain_numbers(name):
     assert consensus.agreeing.all()
 
 
-def test_the_leader_decides_and_lanes_of_another_mind_leave():
+def test_the_leader_decides_and_lanes_of_another_mind_leave() -> None:
     consensus = Consensus(4, leader=1)
     x = consensus.lanes(np.array([1.0, 2.0, 3.0, np.nan]))
     assert x < 2.5
@@ -60,7 +63,7 @@ def test_the_leader_decides_and_lanes_of_another_mind_leave():
     assert consensus.agreeing.tolist() == [False, True, False, False]
 
 
-def test_both_of_two_conditions_are_one_question():
+def test_both_of_two_conditions_are_one_question() -> None:
     consensus = Consensus(3)
     x = consensus.lanes(np.array([-1.0, 2.0, -3.0]))
     assert not (x < 0.0) & (x < -2.0)
@@ -69,7 +72,7 @@ def test_both_of_two_conditions_are_one_question():
     assert consensus.agreeing.tolist() == [True, True, False]
 
 
-def test_a_settled_number_sets_others_apart_without_making_them_leave():
+def test_a_settled_number_sets_others_apart_without_making_them_leave() -> None:
     consensus = Consensus(3)
     assert lanes.settled(consensus.lanes(np.array([2.0, 2.0, 3.0]))) == 2.0
     assert consensus.apart.tolist() == [False, False, True]
@@ -81,15 +84,17 @@ def test_a_settled_number_sets_others_apart_without_making_them_leave():
     [float, int, complex, math.sqrt, hash, np.array, np.sin, lambda x: np.ones(3) * x,
      lambda x: x * np.ones(3), lambda x: np.zeros(3).fill(x), list],
 )  # fmt: skip
-def test_what_wants_one_number_gets_none(use):
+def test_what_wants_one_number_gets_none(use: Callable[[Any], object]) -> None:
     with pytest.raises(NotElementwise):
         use(Consensus(3).lanes(np.array([1.0, 2.0, 3.0])))
 
 
-def test_numpy_scalars_compute_with_lanes():
+def test_numpy_scalars_compute_with_lanes() -> None:
     x = Consensus(2).lanes(np.array([1.0, 2.0]))
-    assert (np.float64(3.0) - x).values.tolist() == [2.0, 1.0]
-    assert (np.complex128(1j) * x).values.tolist() == [1j, 2j]
+    three: Any = np.float64(3.0)
+    unit: Any = np.complex128(1j)
+    assert (three - x).values.tolist() == [2.0, 1.0]
+    assert (unit * x).values.tolist() == [1j, 2j]
 
 
 FORMULAS = (
@@ -100,7 +105,7 @@ FORMULAS = (
 
 
 @pytest.mark.parametrize("text", FORMULAS)
-def test_formulas_have_the_values_and_the_errors_that_they_have_alone(text):
+def test_formulas_have_the_values_and_the_errors_that_they_have_alone(text: str) -> None:
     rows = [(1.0, 2.0), (2.5, -1.0), (-1.0, 0.5), (0.0, -2.0), (4.0, 0.0), (0.0, 0.0), (3.5, 3.0)]
     tree = parse(text)
     for leader in range(len(rows)):
@@ -120,36 +125,38 @@ def test_formulas_have_the_values_and_the_errors_that_they_have_alone(text):
                 assert together.values[k] == pytest.approx(told[k], rel=1e-15)
 
 
-def _outcome(tree, names, text):
+def _outcome(tree: Node, names: Mapping[str, Any], text: str) -> Any:
     try:
         return value(tree, names, AngleUnit.DEGREE, text)
     except ExpressionError as error:
         return str(error)
 
 
-def test_what_is_not_done_goes_on_with_the_leader_and_comes_back():
+def test_what_is_not_done_goes_on_with_the_leader_and_comes_back() -> None:
     consensus = Consensus(5, leader=1)
     x = consensus.lanes(np.array([1.0, 2.0, 3.0, 4.0, 5.0]))
     assert x < 4.5  # the last lane leaves
     rest = lanes.rest_of(x < 2.5)
+    assert rest is not None
     assert rest.lanes.tolist() == [1, 2, 3]
     part = rest.narrowed(x)
     assert part < 3.5  # and the fourth
     rest.leave()
-    assert rest.widened(x, 10.0 * part).values.tolist() == [1.0, 20.0, 30.0, 40.0, 5.0]
+    whole: Any = rest.widened(x, 10.0 * part)
+    assert whole.values.tolist() == [1.0, 20.0, 30.0, 40.0, 5.0]
     assert consensus.agreeing.tolist() == [True, True, True, False, False]
     assert rest.narrowed(7.0) == 7.0
     assert lanes.rest_of(True) is None
 
 
-def test_least_norm_solutions_in_lanes_are_those_of_each_lane():
+def test_least_norm_solutions_in_lanes_are_those_of_each_lane() -> None:
     matrices = RNG.normal(size=(6, 3, 5))
     matrices[2, 2] = matrices[2, 0] + matrices[2, 1]  # dependent rows
     right = RNG.normal(size=(6, 3))
     right[2, 2] = right[2, 0] + right[2, 1]
     consensus = Consensus(6)
     rows = [[consensus.lanes(matrices[:, i, j]) for j in range(5)] for i in range(3)]
-    found = least_norm(rows, [consensus.lanes(right[:, i]) for i in range(3)])
+    found: Sequence[Any] = least_norm(rows, [consensus.lanes(right[:, i]) for i in range(3)])
     for k in range(6):
         alone = least_norm(matrices[k].tolist(), right[k].tolist())
         np.testing.assert_allclose([x.values[k] for x in found], alone, rtol=1e-12, atol=1e-13)

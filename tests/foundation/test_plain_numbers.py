@@ -3,6 +3,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
@@ -50,7 +51,7 @@ def test_what_is_no_number_is_told_as_it_was_given(given: object, told: str) -> 
 
 @pytest.mark.parametrize(("given", "told"), NO_NUMBERS)
 def test_every_place_that_takes_a_number_refuses_it(given: object, told: str) -> None:
-    engine = lw.example("slider-crank-engine")
+    engine: Any = lw.example("slider-crank-engine")
 
     def refusal(of: str, ask: Callable[[], object]) -> None:
         with pytest.raises(lw.LinkworkError) as refused:

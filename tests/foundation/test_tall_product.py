@@ -19,5 +19,5 @@ def test_all_rows_are_multiplied(rows: int, inner: int, columns: int) -> None:
 def test_complex_numbers_and_slices_of_arrays() -> None:
     rng = np.random.default_rng(5)
     a = (rng.standard_normal((700, 9)) + 1j * rng.standard_normal((700, 9)))[::2, 1:6]
-    b = rng.standard_normal((5, 3)) + 0j
+    b = np.asarray(rng.standard_normal((5, 3)), dtype=complex)
     np.testing.assert_allclose(tall_product(a, b), np.dot(a, b), rtol=0, atol=1e-12)

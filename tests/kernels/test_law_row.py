@@ -194,7 +194,7 @@ def test_no_constant_of_a_proof_with_laws_is_too_small(seed: int) -> None:
     if abs(np.linalg.det(jacobian[0, :, :4])) < 1e-2:
         v[0, :2] += 0.7
         jacobian = table.jacobian(v)
-    matrix = np.linalg.inv(jacobian[:, :, :4])
+    matrix = np.asarray(np.linalg.inv(jacobian[:, :, :4]), dtype=float)
     spread = 10 ** (rng.uniform(-12, -1) if seed % 3 else rng.uniform(-0.3, 0.3))
     b = bounds(table, v, jacobian, matrix, np.array([[spread]]))
     balls, w = BallTable(table), table.variable_scale[:4]
@@ -237,7 +237,7 @@ def test_a_radius_with_laws_holds_a_root() -> None:
         v = np.array([[float(x.mid()) for x in root]])
         v[0, :4] += rng.normal(size=4) * 10 ** rng.uniform(-14, -5)
         jacobian = table.jacobian(v)
-        matrix = np.linalg.inv(jacobian[:, :, :4])
+        matrix = np.asarray(np.linalg.inv(jacobian[:, :, :4]), dtype=float)
         shift = arb(float(v[0, 4])) - root[4]
         found = radii(
             bounds(table, v, jacobian, matrix, np.abs([[float(shift)]])), table.variable_scale[:4]

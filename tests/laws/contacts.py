@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -139,8 +140,8 @@ def gear_moving_arm(rng: Rng) -> lw.Mechanism:
 
 def belt(rng: Rng, *, crossed: bool = False) -> lw.Mechanism:
     ratio = [(20, 10), (8, 24), (12, 12), (10, 15)][int(rng.integers(4))]
-    given = {"teeth": ratio} if rng.random() < 0.5 else {"radii": ratio}
-    part = lw.Belt(name="b", wheels=("left", "right"), centers=("O", "P"), crossed=crossed, **given)  # type: ignore[arg-type]
+    given: dict[str, Any] = {"teeth": ratio} if rng.random() < 0.5 else {"radii": ratio}
+    part = lw.Belt(name="b", wheels=("left", "right"), centers=("O", "P"), crossed=crossed, **given)
     return _five_bar(rng, belts=(part,))
 
 
@@ -343,10 +344,8 @@ KINDS: dict[str, Callable[[Rng], lw.Mechanism]] = {
     "rolling on a circle": lambda rng: rolling_circle(rng, inside=False),
     "rolling in a circle": lambda rng: rolling_circle(rng, inside=True),
     **{
-        f"cam by its {word}, {way} {contact}": (
-            lambda rng, make=make, contact=contact, swings=way == "swinging": make(  # type: ignore[misc]
-                rng, contact, swings=swings
-            )
+        f"cam by its {word}, {way} {contact}": partial(
+            make, contact=contact, swings=way == "swinging"
         )
         for word, make in (("follower", cam_program), ("outline", cam_outline))
         for way in ("sliding", "swinging")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -14,12 +14,16 @@ import linkwork as lw
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.mechanism.inversion import inverted
 from linkwork.mechanism.linkage import Linkage
+from tests.described import described_as
 from tests.laws.contacts import KINDS, contact
 from tests.laws.mechanisms import NAMES, mechanism_of, motion_of, size_of
 from tests.thinned import thinned
 
 CYLINDER = "is part of a cylinder: write it as two links with a slider"
 LINKED = tuple(name for name in NAMES if isinstance(mechanism_of(name).description, Linkage))
+
+
+linkage_of = partial(described_as, Linkage)
 
 
 def _seen_from(motion: lw.Motion, link: tuple[str, ...], point: str) -> ComplexArray:
@@ -36,7 +40,7 @@ def _seen_from(motion: lw.Motion, link: tuple[str, ...], point: str) -> ComplexA
 def _contact(kind: str) -> tuple[lw.Mechanism, lw.Motion]:
     """A mechanism with a weld, gear, cam ... whose unknowns are its outputs too, and its motion."""
     mechanism = contact(kind, 1)
-    wheels = [name for name in mechanism.description.links if name != "ground"]
+    wheels = [name for name in linkage_of(mechanism).links if name != "ground"]
     found = lw.Mechanism(
         replace(mechanism.description, outputs={f"{name}_seen": name for name in wheels})
     )
@@ -48,20 +52,20 @@ def test_wheels_cams_and_curves_move_alike_whatever_is_ground(kind: str) -> None
     """Every body as ground: points, turns against the old ground, displacements as before."""
     mechanism, motion = _contact(kind)
     assert motion.found.all()
-    widest = max(mechanism.description.links.values(), key=len)
+    widest = max(linkage_of(mechanism).links.values(), key=len)
     others = [entry for entry in mechanism.inversions() if entry.ground != "ground"]
     assert [entry.problem for entry in others] == [""] * len(others)
     for entry in others:
         other = mechanism.inversion(entry.ground).sweep(certify=False)
         assert other.found.all()
-        for point in mechanism.description.points:
+        for point in linkage_of(mechanism).points:
             before = _seen_from(motion, widest, point)
             after = _seen_from(other, widest, point)
             np.testing.assert_allclose(after, before, rtol=0, atol=1e-11 * size_of(mechanism))
         for output in mechanism.description.outputs:
             turns = np.exp(1j * np.radians(other[output] - motion[output]))
             np.testing.assert_allclose(turns, 1.0, rtol=0, atol=1e-11)
-        for slide in mechanism.description.sliders:
+        for slide in linkage_of(mechanism).sliders:
             np.testing.assert_allclose(
                 other[slide.name], motion[slide.name], rtol=0, atol=1e-11 * size_of(mechanism)
             )
@@ -70,7 +74,7 @@ def test_wheels_cams_and_curves_move_alike_whatever_is_ground(kind: str) -> None
 @pytest.mark.parametrize("name", thinned(LINKED, 2))
 def test_an_inversion_has_the_same_relative_motion(name: str) -> None:
     mechanism, motion = mechanism_of(name), motion_of(name)
-    links = mechanism.description.links
+    links = linkage_of(mechanism).links
     widest = max(links.values(), key=len)
     for entry in mechanism.inversions():
         if entry.ground == "ground":
@@ -81,16 +85,16 @@ def test_an_inversion_has_the_same_relative_motion(name: str) -> None:
         other = mechanism.inversion(entry.ground).sweep(certify=False)
         found = motion.found[motion.asked]
         np.testing.assert_array_equal(found, other.found[other.asked])
-        for point in mechanism.description.points:
+        for point in linkage_of(mechanism).points:
             before = _seen_from(motion, widest, point)
             after = _seen_from(other, widest, point)
             # 1e-12 of the longest link: both are solved to rounding, and Jansen's leg adds up
             np.testing.assert_allclose(after, before, rtol=0, atol=1e-12 * size_of(mechanism))
         for output in mechanism.description.outputs:
-            before = motion[output][motion.asked][found]
-            after = other[output][other.asked][found]
-            turns = (after - before + 180) % 360 - 180 if output == "mu" else after - before
-            size = 1 + np.max(np.abs(before))
+            early = motion[output][motion.asked][found]
+            late = other[output][other.asked][found]
+            turns = (late - early + 180) % 360 - 180 if output == "mu" else late - early
+            size = 1 + np.max(np.abs(early))
             np.testing.assert_allclose(turns, 0, atol=1e-12 * size)
 
 
@@ -100,11 +104,11 @@ def test_the_inversion_of_an_inversion_is_the_mechanism(name: str) -> None:
     mechanism, motion = mechanism_of(name), motion_of(name)
     # formulas grow with every change of ground
     mechanism = lw.Mechanism(replace(mechanism.description, outputs={}))
-    ground = mechanism.description.links["ground"]
+    ground = linkage_of(mechanism).links["ground"]
     entry = next(e for e in mechanism.inversions() if e.ground != "ground" and not e.problem)
     again = mechanism.inversion(entry.ground).inversion("frame")
-    back, back_ground = again.sweep(certify=False), again.description.links["ground"]
-    for point in mechanism.description.points:
+    back, back_ground = again.sweep(certify=False), linkage_of(again).links["ground"]
+    for point in linkage_of(mechanism).points:
         before = _seen_from(motion, ground, point)
         after = _seen_from(back, back_ground, point)
         np.testing.assert_allclose(after, before, rtol=0, atol=1e-12 * size_of(mechanism))
@@ -113,13 +117,13 @@ def test_the_inversion_of_an_inversion_is_the_mechanism(name: str) -> None:
 def test_the_new_ground_is_exact_and_keeps_its_formula() -> None:
     shaper = lw.example("inverted-slider-crank")
     whitworth = shaper.inversion("crank")
-    assert whitworth.description.links == {
+    assert linkage_of(whitworth).links == {
         "ground": ("O2", "A"),
         "frame": ("O2", "O4"),
         "lever": ("O4", "Q"),
     }
-    assert whitworth.description.points["A"] == ("r", 0.0)
-    assert whitworth.description.lengths["O2 O4"] == "d"
+    assert linkage_of(whitworth).points["A"] == ("r", 0.0)
+    assert linkage_of(whitworth).lengths["O2 O4"] == "d"
     wider = whitworth.with_dimensions(r=150).solve(at=40)
     known = shaper.with_dimensions(r=150).solve(at=-90 - 40)
     assert wider["s"] == pytest.approx(known["s"], rel=1e-13)
@@ -166,10 +170,10 @@ def test_an_angle_against_ground_keeps_its_value_as_output() -> None:
 def test_measured_lengths_are_written_down() -> None:
     """An assembled position is the new sketch: nothing is measured in it again."""
     bar = mechanism_of("link against link")
-    wanted = {" ".join(entry.points): entry.length for entry in bar.description.shapes.measured}
+    wanted = {" ".join(entry.points): entry.length for entry in linkage_of(bar).shapes.measured}
     assert list(wanted) == ["A P", "B P"]
-    turned = bar.inversion("rocker").description
-    named = bar.changed(configuration="open").driven_by(link="crank").description
+    turned = linkage_of(bar.inversion("rocker"))
+    named = linkage_of(bar.changed(configuration="open").driven_by(link="crank"))
     for other in (turned, named):
         assert other.shapes.measured == ()
         assert {key: other.lengths[key] for key in wanted} == wanted
@@ -267,7 +271,7 @@ def test_a_ground_of_one_point_gets_a_mark_that_shows_its_direction() -> None:
         inputs=lw.Input(link="lever"),
     )
     turned = lever.inversion("lever")
-    assert turned.description.links == {"ground": ("O", "A"), "frame": ("O", "ground_mark")}
+    assert linkage_of(turned).links == {"ground": ("O", "A"), "frame": ("O", "ground_mark")}
     position = turned.solve(at=-30)
     assert position.points["ground_mark"] == pytest.approx(
         (math.cos(math.radians(30)), -math.sin(math.radians(30))), abs=1e-15
@@ -277,7 +281,7 @@ def test_a_ground_of_one_point_gets_a_mark_that_shows_its_direction() -> None:
 def test_a_wheel_of_one_point_as_ground_keeps_the_ratio_of_teeth() -> None:
     """Sun fixed: the carrier turns by 1 / (1 + ring / sun) of the ring."""
     gears = lw.example("planetary-gear")
-    fixed = gears.inversion("sun").description
+    fixed = linkage_of(gears.inversion("sun"))
     assert fixed.links["ground"] == ("O", "sun_mark")
     before, after = gears.sweep(), gears.inversion("sun").sweep()
     turn = before["carrier"] - before["sun"]

@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import brentq, root
 
 import linkwork as lw
+from linkwork.foundation.arrays import ComplexArray
 from tests.library.laws import degrees, law, motion_of, same
 from tests.oracles.circles import Jansen, circles_meet
 from tests.oracles.four_bar import FourBar
@@ -27,7 +28,9 @@ def test_klann_foot_makes_the_patents_stride_of_1() -> None:
     motion = motion_of("klann-leg")
     a = complex(1.599, 0.75) + 0.268 * np.exp(1j * degrees(motion, "crank"))
 
-    def dyad(first: np.ndarray, second: np.ndarray, ra: complex, rb: complex, side: int):
+    def dyad(
+        first: np.ndarray, second: np.ndarray, ra: complex, rb: complex, side: int
+    ) -> ComplexArray:
         return circles_meet(first, abs(ra), second, abs(rb), side)
 
     fixed = np.full(a.shape, complex(1.009, 0.574))

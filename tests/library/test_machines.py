@@ -246,7 +246,7 @@ def test_scissor_lift_is_two_stages_high() -> None:
 def test_excavator_angles_follow_from_its_cylinders() -> None:
     """Law of cosines at O, B and R, then the bucket's four-bar."""
     motion = motion_of("excavator")
-    zero = np.zeros(len(motion))
+    zero = np.zeros(len(motion), dtype=complex)
     root = circles_meet(zero + complex(60, -40), motion["boom_ram"], zero, 265, -1)
     boom = root / 265 * np.exp(-1j * math.radians(13))
     hinge, lug = 560 * boom, 310 * boom * np.exp(1j * math.radians(15))
@@ -279,7 +279,7 @@ def test_wiper_blades_stay_parallel_over_the_sweep_of_the_law_of_cosines() -> No
 def test_landing_gear_leg_follows_from_its_cylinder() -> None:
     """The leg's angle from the triangle S H N, the brace's knee on two circles."""
     motion = motion_of("landing-gear")
-    zero = np.zeros(len(motion))
+    zero = np.zeros(len(motion), dtype=complex)
     horn = circles_meet(zero + complex(100, 30), motion["actuator"], zero, 30, -1)
     leg = horn / 30 * np.exp(-1j * math.radians(120))
     same(motion.trace("W"), 120 * leg, 120)

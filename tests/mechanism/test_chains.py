@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from itertools import pairwise
+from typing import Any
 
 import networkx
 import pytest
@@ -12,6 +13,8 @@ import linkwork as lw
 from linkwork.mechanism.chain import Chain, Joint, JointKind
 from linkwork.mechanism.chain_graph import orbits, same_inversion
 from linkwork.mechanism.chain_names import chain_name, eight_link_chains, inversion_name
+from linkwork.mechanism.linkage import Linkage
+from tests.described import described_as
 from tests.oracles.chains import canonical_graph6, kinematic_chains, link_classes
 
 R, P = JointKind.REVOLUTE, JointKind.PRISMATIC
@@ -65,17 +68,18 @@ def test_a_chain_has_its_name_whatever_its_links_are_called(seed: int) -> None:
             order = rng.sample(sorted(graph), n)
             other = networkx.relabel_nodes(graph, dict(zip(sorted(graph), order, strict=True)))
             edges = [
-                rng.sample(edge, 2) for edge in rng.sample(list(other.edges), len(other.edges))
+                tuple(rng.sample(edge, 2))
+                for edge in rng.sample(list(other.edges), len(other.edges))
             ]
             assert chain_name(_chain(*edges)) == chain_name(_of(graph))
 
 
 def test_the_table_of_eight_links_is_what_counting_gives() -> None:
-    found = []
+    found: list[tuple[int, int, int, str, Any]] = []
     for graph in kinematic_chains(8):
         degrees = [degree for _, degree in graph.degree()]
-        counts = tuple(degrees.count(k) for k in (4, 3, 2))
-        found.append((*counts, canonical_graph6(graph), link_classes(graph)))
+        four, three, two = (degrees.count(k) for k in (4, 3, 2))
+        found.append((four, three, two, canonical_graph6(graph), link_classes(graph)))
     found.sort(key=lambda row: (row[0], row[3].encode("ascii")))
     table = [
         (
@@ -195,7 +199,7 @@ def test_links_that_are_welded_are_one() -> None:
 
 
 def test_a_chain_is_read_with_every_kind_of_joint() -> None:
-    described = lw.linkage(
+    mechanism = lw.linkage(
         points={
             "O": (0, 0),
             "M": (1.5, -0.5),
@@ -208,8 +212,8 @@ def test_a_chain_is_read_with_every_kind_of_joint() -> None:
         slots=[lw.Slot(name="y", point="H", on="ground", line=("S", "T"))],
         cylinders=[lw.Cylinder(name="ram", between=("M", "N"))],
         inputs=lw.Input(cylinder="ram", start=1.2, stop=2.0, step=0.1),
-    ).description
-    chain = Chain.of(described)
+    )
+    chain = Chain.of(described_as(Linkage, mechanism))
     assert chain.links == ("ground", "boom", "rod", "ram barrel", "ram rod")
     joints = {joint.name: (joint.kind.letter, joint.links) for joint in chain.joints}
     assert joints == {
@@ -220,7 +224,7 @@ def test_a_chain_is_read_with_every_kind_of_joint() -> None:
         "y": ("RP", ("rod", "ground")),
     }
     blocks = chain.with_blocks()
-    assert (chain.mobility, blocks.mobility, blocks.blocks) == (1, 1, {"y"})
+    assert (chain.mobility, blocks.mobility, blocks.blocks) == (1, 1, frozenset({"y"}))
     added = {joint.name: (joint.kind.letter, joint.links) for joint in blocks.joints}
     assert (added["H"], added["y"]) == (("R", ("rod", "y")), ("P", ("y", "ground")))
     assert chain_name(chain) == "six-link chain, 2 prismatic joints, 1 multiple pin"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,7 +28,7 @@ def _classified(mechanism: lw.Mechanism) -> lw.Classification:
 
 
 def _four_bar(
-    ground: float, driven: float, coupler: float, output: float, **what: object
+    ground: float, driven: float, coupler: float, output: float, **what: Any
 ) -> lw.Mechanism:
     """A sketch is enough: the type is read off the lengths."""
     return lw.linkage(
@@ -143,7 +144,8 @@ def test_a_type_is_told_with_its_margin(lengths: tuple[float, ...], text: str) -
 def test_a_four_bar_driven_elsewhere_than_at_ground_has_no_barker_code(
     lengths: tuple[float, ...],
 ) -> None:
-    for what in ({"joint": "B"}, {"link": "coupler"}):
+    driven: tuple[dict[str, Any], ...] = ({"joint": "B"}, {"link": "coupler"})
+    for what in driven:
         loop = _classified(_four_bar(*lengths, **what)).loop
         assert loop is not None
         assert (loop.name, loop.barker) == ("crank-rocker", "")

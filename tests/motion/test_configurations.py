@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -442,7 +443,8 @@ def test_solve_takes_a_configuration_by_name() -> None:
 
 
 def test_a_configuration_has_no_steps_from_the_guess() -> None:
-    for option in ({"from_guess": True}, {"with_steps": True}):
+    options: tuple[dict[str, Any], ...] = ({"from_guess": True}, {"with_steps": True})
+    for option in options:
         with pytest.raises(lw.InputError, match=r"^a configuration has no steps from the guess"):
             lw.example("four-bar").solve(60, configuration="open", **option)
 
@@ -486,8 +488,8 @@ def test_two_solutions_that_settle_on_one_position_make_no_claim(
     once = positions_at(bar, np.array([1.0]))
     settled = assembling._settled
 
-    def merged(*arguments: object) -> tuple[np.ndarray, ...]:
-        end, good, iterations = settled(*arguments)  # type: ignore[arg-type]
+    def merged(*arguments: Any) -> tuple[np.ndarray, ...]:
+        end, good, iterations = settled(*arguments)
         end[1] = end[0]
         return end, good, iterations
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -82,12 +83,12 @@ def test_far_values_of_geared_wheels_leave_out_the_laps_that_bring_both_back() -
     ],
 )
 def test_sizes_in_a_ratio_of_whole_numbers_tie_angles_by_these(
-    sizes: dict[str, tuple[float, float]], weights: tuple[float, float]
+    sizes: dict[str, Any], weights: tuple[float, float]
 ) -> None:
     mechanism = lw.linkage(
         points=xy(O=0j, P=60 + 0j, A=10 + 0j, B=60 + 12j),
         links={"ground": ("O", "P"), "left": ("O", "A"), "right": ("P", "B")},
-        belts=(lw.Belt(name="b", wheels=("left", "right"), centers=("O", "P"), **sizes),),  # type: ignore[arg-type]
+        belts=(lw.Belt(name="b", wheels=("left", "right"), centers=("O", "P"), **sizes),),
         inputs=(lw.Input(link="left"),),
     )
     (line,) = mechanism.loop_equations.linear

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +14,7 @@ from flint import arb, ctx
 from scipy.optimize import minimize_scalar
 
 import linkwork as lw
+from linkwork.foundation.arrays import BoolArray, IndexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from tests.oracles.four_bar import FourBar, random_crank_rockers
@@ -23,7 +26,7 @@ RAPIER = (149.617278637485, -158.679899604109)
 TINY = math.degrees(1e-12)
 
 
-def four_bar(bar: FourBar, at: float, side: int = 1, **table: float) -> lw.Mechanism:
+def four_bar(bar: FourBar, at: float, side: int = 1, **table: Any) -> lw.Mechanism:
     return lw.linkage(
         name="four-bar",
         points=bar.points(math.radians(at), side),
@@ -42,7 +45,7 @@ def limit_rows(motion: lw.Motion, kind: str) -> list[int]:
     return [k for k, limit in enumerate(motion.limit) if limit == kind]
 
 
-def on_assembly(motion: lw.Motion, bar: FourBar, rows: Array, side: int) -> float:
+def on_assembly(motion: lw.Motion, bar: FourBar, rows: IndexArray | BoolArray, side: int) -> float:
     """Largest distance of the rows' B from the closed form."""
     b = bar.coupler_end(np.radians(motion["crank"][rows]), side)
     return float(np.abs(motion.trace("B")[rows] - b).max())
@@ -420,8 +423,12 @@ def test_brackets_hold_the_exact_extremes_of_rockers() -> None:
         exact = [
             side * x + turn for x in exact_extremes(bar) for side in (1, -1) for turn in (0, 360)
         ]
+
+        def off(value: float, x: arb) -> float:
+            return abs(float(x) - value)
+
         for extreme in motion.output_limits:
-            true = min(exact, key=lambda x, at=extreme.input: abs(float(x) - at))
+            true = min(exact, key=partial(off, extreme.input))
             assert extreme.bracket[0] < true < extreme.bracket[1], bar
             assert extreme.bracket[1] - extreme.bracket[0] < 1e-10
 
@@ -455,7 +462,10 @@ def test_extremes_beside_a_dead_point_are_found_on_every_branch(side: int) -> No
             ends = bar.crank_end(theta), bar.coupler_end(theta, assembly)
             return np.asarray((ends[0] + (ends[1] - ends[0]) * tip).real)
 
-        x = min((height(s) for s in (1, -1)), key=lambda h, v=extreme.value: abs(h[1] - v))
+        def off(h: Array, wanted: float = extreme.value) -> float:
+            return float(abs(h[1] - wanted))
+
+        x = min((height(s) for s in (1, -1)), key=off)
         assert x[1] == pytest.approx(extreme.value, abs=1e-9)
         assert sign * x[1] < sign * x[0]
         assert sign * x[1] < sign * x[2]
@@ -511,14 +521,15 @@ def test_limits_are_named_by_the_inputs_of_their_rows() -> None:
     for start in (0, 360, -720):
         table = {"start": start, "stop": start + 360, "step": 10}
         motion = four_bar(FOLDING, 90, **table).sweep(through=True, limits_of=["coupler"])
-        rows = {limit: set() for limit in motion.limit}
+        rows: dict[str, set[float]] = {limit: set() for limit in motion.limit}
         for limit, value in zip(motion.limit, motion["crank"], strict=True):
             rows[limit].add(float(value))
         assert {limit.input for limit in motion.limits} <= rows["dead point"]
         assert all(start <= limit.input <= start + 360 for limit in motion.limits)
         for extreme in motion.output_limits:
             assert extreme.input in rows[f"{extreme.kind} of coupler"]
-        for told in (*motion.limits, *motion.output_limits):
+        every: list[Any] = [*motion.limits, *motion.output_limits]
+        for told in every:
             assert told.bracket[0] <= told.input <= told.bracket[1]
             assert told.bracket[1] - told.bracket[0] < 1e-10
 

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -38,8 +39,8 @@ def used(monkeypatch: pytest.MonkeyPatch) -> list[by_kernels.KernelRows | None]:
     """What the kernels found, call by call."""
     own, found = by_kernels.kernel_rows, []
 
-    def seen(*arguments: object) -> by_kernels.KernelRows | None:
-        found.append(own(*arguments))  # type: ignore[arg-type]
+    def seen(*arguments: Any) -> by_kernels.KernelRows | None:
+        found.append(own(*arguments))
         return found[-1]
 
     monkeypatch.setattr(by_kernels, "kernel_rows", seen)
@@ -51,8 +52,8 @@ def taken(monkeypatch: pytest.MonkeyPatch) -> list[bool]:
     """Whether what they found was taken, call by call."""
     own, found = by_kernels.KernelRows.put_into, []
 
-    def seen(self: by_kernels.KernelRows, *arguments: object) -> bool:
-        found.append(own(self, *arguments))  # type: ignore[arg-type]
+    def seen(self: by_kernels.KernelRows, *arguments: Any) -> bool:
+        found.append(own(self, *arguments))
         return found[-1]
 
     monkeypatch.setattr(by_kernels.KernelRows, "put_into", seen)
@@ -63,12 +64,12 @@ def taken(monkeypatch: pytest.MonkeyPatch) -> list[bool]:
 def both(monkeypatch: pytest.MonkeyPatch, used: list[by_kernels.KernelRows | None]) -> Sweep:
     """A sweep without kernels, and one with them wherever they serve."""
 
-    def sweep(mechanism: lw.Mechanism, **options: object) -> tuple[lw.Motion, lw.Motion]:
+    def sweep(mechanism: lw.Mechanism, **options: Any) -> tuple[lw.Motion, lw.Motion]:
         motions = []
         for wanted in (False, True):
             pay = (lambda model, rows, certify: by_kernels.are_served(model)) if wanted else _never
             monkeypatch.setattr(by_kernels, "kernels_pay", pay)
-            motions.append(mechanism.sweep(**options))  # type: ignore[arg-type]
+            motions.append(mechanism.sweep(**options))
             assert bool(used) or not wanted
         return motions[0], motions[1]
 
@@ -184,9 +185,9 @@ def spoilt(monkeypatch: pytest.MonkeyPatch, both: Sweep) -> Callable[..., tuple[
     """Both sweeps of a four-bar, with what the kernels find changed before it is used."""
     own = by_kernels.kernel_rows
 
-    def sweep(change: Change, **options: object) -> tuple[lw.Motion, ...]:
-        def changed(*arguments: object) -> by_kernels.KernelRows:
-            rows = own(*arguments)  # type: ignore[arg-type]
+    def sweep(change: Change, **options: Any) -> tuple[lw.Motion, ...]:
+        def changed(*arguments: Any) -> by_kernels.KernelRows:
+            rows = own(*arguments)
             assert rows is not None
             return change(rows)
 
@@ -196,7 +197,7 @@ def spoilt(monkeypatch: pytest.MonkeyPatch, both: Sweep) -> Callable[..., tuple[
     return sweep
 
 
-def with_value(array: np.ndarray, where: object, value: float) -> np.ndarray:
+def with_value(array: np.ndarray, where: Any, value: float) -> np.ndarray:
     copy = array.copy()
     copy[where] = value
     return copy

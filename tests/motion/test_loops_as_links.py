@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -140,7 +141,7 @@ def test_what_is_read_off_loops_moves_as_they_do(name: str) -> None:
         assert gap.max() < 1e-9 * size, column
 
 
-def _loops(*equations: str, unknowns: str, driven: str, **what: object) -> lw.Mechanism:
+def _loops(*equations: str, unknowns: str, driven: str, **what: Any) -> lw.Mechanism:
     """Loops with links 1 to 5 long; angles and lengths are told apart by where they stand."""
     numbers = {"a": 1, "b": 4, "c": 3, "d": 3.5, "g": 2}
     guess = dict.fromkeys([*unknowns.split(), driven], 1.0)
@@ -150,7 +151,7 @@ def _loops(*equations: str, unknowns: str, driven: str, **what: object) -> lw.Me
         loops={f"L{k}": text for k, text in enumerate(equations, 1)},
         guess=guess,
         inputs=lw.Input(variable=driven, start=0.5, stop=1.0, step=0.1),
-        **what,  # type: ignore[arg-type]
+        **what,
     )
 
 

@@ -12,7 +12,9 @@ from hypothesis import strategies as st
 
 import linkwork as lw
 from linkwork.foundation.certification import Certification
+from linkwork.mechanism.linkage import Linkage
 from linkwork.motion import renewed
+from tests.described import described_as
 
 
 def four_bar(**lengths: float) -> lw.Mechanism:
@@ -73,7 +75,7 @@ def test_dead_points_move_with_a_dimension_as_following_finds_them(
     base = lw.example(name)
 
     def design(size: float) -> lw.Mechanism:
-        return base.changed(lengths={**base.description.lengths, length: float(size)})
+        return base.changed(lengths={**described_as(Linkage, base).lengths, length: float(size)})
 
     cycle = design(sizes[0]).sweep()
     bounded = 0
@@ -158,7 +160,7 @@ def test_what_closes_has_no_gap(name: str) -> None:
 
 def test_later_loops_are_closed_though_an_earlier_one_is_open() -> None:
     leg = lw.example("jansen-leg")
-    broken = leg.changed(lengths={**leg.description.lengths, "A C": 5.0})
+    broken = leg.changed(lengths={**described_as(Linkage, leg).lengths, "A C": 5.0})
     nearest = broken.nearest_assembly()
     gaps = {loop: math.hypot(*vector) for loop, vector in nearest.gaps.items()}
     assert gaps["O A B P"] < 1e-9

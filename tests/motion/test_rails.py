@@ -9,9 +9,11 @@ import linkwork as lw
 from linkwork.drawing import Disc, Hatch, Polygon, Role, scene_of
 from linkwork.drawing.attachment import Frame
 from linkwork.drawing.moving_scene import moving_scene
+from linkwork.foundation.arrays import ComplexArray
 from linkwork.mechanism.skeleton import Rail
 
-FOUND = {
+Where = complex | tuple[str, tuple[str, str]]
+FOUND: dict[str, list[tuple[str, tuple[str, ...], Where]]] = {
     "rapier-drive": [("s16", ("D", "E"), -1)],
     "coupled-six-link": [("s6", ("D",), 1), ("s4", ("A",), ("rod", ("C", "D")))],
     "crank-slider": [("d", ("B",), 1)],
@@ -26,7 +28,7 @@ def test_rails_of_the_library(name: str) -> None:
     assert rails == tuple(_rail(*expected) for expected in FOUND[name])
 
 
-def _rail(variable: str, points: tuple[str, ...], where: complex | tuple) -> Rail:
+def _rail(variable: str, points: tuple[str, ...], where: Where) -> Rail:
     if isinstance(where, tuple):
         return Rail(name=variable, points=points, on=where[0], line=where[1])
     return Rail(name=variable, points=points, along=where)
@@ -39,7 +41,8 @@ def test_points_stay_on_their_rail_as_far_as_the_variable_says(name: str) -> Non
     for rail in mechanism.model.skeleton.rails:
         for point in rail.points:
             way = motion.trace(point)[motion.found]
-            along, from_ = rail.along, way[0]
+            along: complex | ComplexArray = rail.along
+            from_ = way[0]
             if rail.line is not None:
                 foot, tip = (motion.trace(end)[motion.found] for end in rail.line)
                 along, from_ = (tip - foot) / abs(tip - foot), foot

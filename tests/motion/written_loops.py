@@ -6,6 +6,7 @@ import random
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import linkwork as lw
 from linkwork.equations.frames import Frames
@@ -58,7 +59,7 @@ def as_loops(
         )
         for which in linkage.inputs
     ]
-    drawing = {}
+    drawing: dict[str, Any] = {}
     if drawn:
         points = dict(_points(equations))
         drawing = {"points": points, "links": {f"{n}_": p for n, p in linkage.links.items()}}
@@ -73,10 +74,10 @@ def as_loops(
 def _along(linkage: Linkage, around: list[str]) -> Iterator[Term]:
     """The vectors of a loop from point to point, beginning behind ground if it touches it."""
     frames = Frames.of(linkage, Problems())
-    bodies = []
+    bodies: list[str] = []
     steps = list(pairwise([*around, around[0]]))
-    for start, end in steps:
-        carrying = [b for b in frames.bodies if {start, end} <= frames.places[b].keys()]
+    for one, other in steps:
+        carrying = [b for b in frames.bodies if {one, other} <= frames.places[b].keys()]
         carrying = [b for b in carrying if b not in bodies]
         bodies.append(carrying[-1] if len(around) == 2 and len(bodies) else carrying[0])
     first = bodies.index(GROUND) if GROUND in bodies else 0

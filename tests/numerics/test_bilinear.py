@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -34,7 +36,7 @@ def test_jacobian_is_the_derivative_of_the_residual() -> None:
     rng = np.random.default_rng(1)
     x = rng.normal(size=(2, 8)) + 1j * rng.normal(size=(2, 8))
     for k in range(8):
-        step = np.zeros(8)
+        step = np.zeros(8, dtype=complex)
         step[k] = 1e-6
         for one in (system, mixed):
             ahead, behind = (one.residual_and_jacobian(x + s * step)[0] for s in (1, -1))
@@ -98,7 +100,8 @@ def test_a_root_that_is_wrong_is_not_proved() -> None:
     system, t = random_triad(1)
     x = real_solution(t)[None, :]
     assert proved_roots(system, x, _exact(system)).real.all()
-    assert not proved_roots(system, x + 0.1, _exact(system)).holds.any()
+    wrong = np.asarray(x + 0.1, dtype=complex)
+    assert not proved_roots(system, wrong, _exact(system)).holds.any()
     # coefficients known to 1e-3 only: the root may be elsewhere
     assert not proved_roots(system, x, _exact(system) + 1e-1).holds.any()
 
@@ -153,8 +156,8 @@ def test_solutions_missing_at_first_are_looked_for_again(monkeypatch: pytest.Mon
     system, _ = random_triad(8)
     followed, calls = generic_roots._followed, []
 
-    def careless(*arguments: object, **options: object) -> object:
-        ends = followed(*arguments, **options)  # type: ignore[arg-type]
+    def careless(*arguments: Any, **options: Any) -> Any:
+        ends = followed(*arguments, **options)
         calls.append(options)
         if len(calls) == 1:  # as if a path had run to infinity by mistake
             ends.regular[2], ends.infinite[2] = False, True

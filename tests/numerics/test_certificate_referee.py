@@ -107,7 +107,7 @@ def test_a_geared_link_after_many_turns_is_known_as_badly_as_its_angle(weight: f
             continue
         v = np.array([float(x.mid()) for x in root])[None, :]
         j = gears.jacobian(v)
-        inverse = np.linalg.inv(j[:, :, :2])
+        inverse = np.asarray(np.linalg.inv(j[:, :, :2]), dtype=float)
         b = bounds(gears, v, j, inverse, np.zeros((1, 1)))
         balls = BallTable(gears)
         true_y = balls.reduced_residual(exactly(v[0]), inverse[0])

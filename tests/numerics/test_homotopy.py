@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
+from linkwork.foundation.arrays import AnyArray, Array, ComplexArray
 from linkwork.numerics.homotopy import (
     ARRIVED,
     BOLD,
@@ -15,14 +18,18 @@ from linkwork.numerics.homotopy import (
     track,
 )
 
+Right = Callable[[Array], tuple[AnyArray, AnyArray]]  # real or complex
+
 
 class Power:
     """wᵏ = c(σ), one equation; solutions at σ = 1 are the k-th roots of c(1)."""
 
-    def __init__(self, k: int, right) -> None:  # type: ignore[no-untyped-def]
+    def __init__(self, k: int, right: Right) -> None:
         self.k, self.right = k, right
 
-    def evaluate(self, w, sigma):  # type: ignore[no-untyped-def]
+    def evaluate(
+        self, w: ComplexArray, sigma: Array
+    ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         value, rate = self.right(sigma)
         return (
             w**self.k - value[:, None],
@@ -32,7 +39,7 @@ class Power:
 
 
 def _roots(k: int) -> np.ndarray:
-    return np.exp(2j * np.pi * np.arange(k) / k)[:, None]
+    return np.asarray(np.exp(2j * np.pi * np.arange(k) / k)[:, None])
 
 
 @pytest.mark.parametrize("options", [TrackOptions(), BOLD, CAREFUL])

@@ -9,6 +9,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.equations.directions import direction_form
+from linkwork.kernels.loop_table import LoopTable
 from linkwork.numerics import laman_number as module
 from linkwork.numerics.bilinear_family import Structure, structure_of
 from linkwork.numerics.column_sums import Columns, column_ranks, random_closures
@@ -22,6 +23,7 @@ from tests.oracles.trusses import FIVE_LINKS, NINE_LINKS, SEVEN_LINKS, edges_of,
 def columns_of_truss(graph: str) -> Columns:
     """The columns of a truss's closures."""
     (block,) = truss(graph, np.random.default_rng(0)).model.compiled.solver.blocks
+    assert isinstance(block.system, LoopTable)
     form = direction_form(block.system)
     nothing = np.zeros((1, 0))
     return structure_of(form.system(form.closures(nothing, nothing)[0][0])).columns

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import fields, replace
 
 import numpy as np
@@ -179,15 +180,15 @@ def test_no_angle_turns_further_than_the_limit_and_the_direction_is_kept() -> No
     bare: list[Array] = []
     short: list[Array] = []
 
-    def keep(into: list[Array]) -> object:
+    def keep(into: list[Array]) -> Callable[[int, Array, Array, Array | None], None]:
         def watch(k: int, v: Array, f: Array, change: Array | None) -> None:
             if change is not None:
                 into.append(change[0].copy())
 
         return watch
 
-    newton(table, start, NewtonOptions(largest_turn=math.inf), keep(bare))  # type: ignore[arg-type]
-    newton(table, start, NewtonOptions(), keep(short))  # type: ignore[arg-type]
+    newton(table, start, NewtonOptions(largest_turn=math.inf), keep(bare))
+    newton(table, start, NewtonOptions(), keep(short))
     assert np.abs(bare[0]).max() > 1.5 * limit  # the limit matters here
     assert np.abs(short[0]).max() == pytest.approx(limit, rel=1e-14)
     assert max(np.abs(change).max() for change in short) <= limit * (1 + 1e-14)

@@ -104,8 +104,8 @@ class BallTable:
             if length >= 0:
                 slope[row][length] += z
         lines = [[arb(0)] * self.variables for _ in self.constants]
-        for r, k, w in self.lines:
-            lines[r][k] += w
+        for r, k, weight in self.lines:
+            lines[r][k] += weight
         for law in self.laws:
             row_of_law = [arb(0)] * self.variables
             steep = ball_jet(law.law, _argument(law, v))[1]
@@ -233,9 +233,9 @@ class BallTable:
                         row[k] += abs(z) * size * angle.sin() * arb(w)
                 if 0 <= length < n:
                     row[length] -= abs(z) * angle.cos()
-            for r, k, w in self.lines:
+            for r, k, weight in self.lines:
                 if k < n:
-                    row[k] -= arb(float(matrix[i, 2 * self.loops + r])) * w
+                    row[k] -= arb(float(matrix[i, 2 * self.loops + r])) * weight
             product.append(row)
         return [
             sum((abs(x) * w for x, w in zip(row, self.weights, strict=False)), arb(0))

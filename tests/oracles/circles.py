@@ -11,10 +11,13 @@ import numpy.typing as npt
 __all__ = ["Jansen", "SliderCrank", "circles_meet"]
 
 Angles = npt.NDArray[np.floating]
+Lengths = npt.NDArray[np.float64]
 Points = npt.NDArray[np.complex128]
 
 
-def circles_meet(a: Points, ra: float, b: Points, rb: float, side: int) -> Points:
+def circles_meet(
+    a: Points, ra: float | Lengths, b: Points, rb: float | Lengths, side: int
+) -> Points:
     """The point at distances ra from a and rb from b, left (+1) or right (-1) of a → b; NaN: none.
 
     x = (d² + ra² - rb²)/2d along the line of centres, √(ra² - x²) beside it.

@@ -21,6 +21,15 @@ _TOKEN = re.compile(
     r"|(?P<name>[^\W\d][\w.]*)|(?P<sign><=|>=|<>|[-+*/^(){};,<>=]))"
 )
 _CELL = re.compile(r"(\$?)([A-Z]+)(\$?)(\d+)")
+
+
+def _parts(cell: str) -> tuple[str, str, str, str]:
+    """The marks of what is fixed, each before the column and the row of a cell."""
+    found = _CELL.fullmatch(cell)
+    assert found is not None, cell
+    return found[1], found[2], found[3], found[4]
+
+
 _FUNCTIONS: dict[str, Any] = {
     "COS": math.cos, "SIN": math.sin, "TAN": math.tan, "ASIN": math.asin, "ACOS": math.acos,
     "ATAN": math.atan, "ATAN2": lambda x, y: math.atan2(y, x), "RADIANS": math.radians,
@@ -54,7 +63,7 @@ class Spreadsheet:
             sheet, cell = place
             written = self.book[sheet][cell].value
             formula = isinstance(written, str) and written.startswith("=")
-            row = int(_CELL.fullmatch(cell)[4])  # type: ignore[index]
+            row = int(_parts(cell)[3])
             self._known[place] = (
                 _Formula(self, sheet, row, written[1:]).value() if formula else written
             )
@@ -145,7 +154,7 @@ class _Formula:
 
     def named(self, name: str) -> Any:
         sheet, cell = self.book.names[name.casefold()].split("!")
-        fixed_column, letters, fixed_row, number = _CELL.fullmatch(cell).groups()  # type: ignore[union-attr]
+        fixed_column, letters, fixed_row, number = _parts(cell)
         assert fixed_column == "$", cell
         row = int(number) if fixed_row else int(number) + self.row - 1
         return self.book[sheet, f"{letters}{row}"]
@@ -156,10 +165,7 @@ class _Formula:
         first, _, last = area.replace("$", "").partition(":")
         if not last:
             return self.book[sheet, first]
-        (_, left, _, top), (_, right, _, bottom) = (
-            _CELL.fullmatch(corner).groups()  # type: ignore[union-attr]
-            for corner in (first, last)
-        )
+        (_, left, _, top), (_, right, _, bottom) = (_parts(corner) for corner in (first, last))
         columns = range(column_index_from_string(left), column_index_from_string(right) + 1)
         return np.array(
             [

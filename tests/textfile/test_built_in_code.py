@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 
@@ -22,8 +23,9 @@ def test_a_dimension_that_is_no_number_is_refused(number: float, shown: str) -> 
 
 
 def test_an_angle_unit_that_does_not_exist_is_refused() -> None:
+    unit: Any = "grad"
     with pytest.raises(MechanismError) as caught:
-        PlainEquations(equations={"f": "x = 1"}, guess={"x": 1}, angle="grad")  # type: ignore[arg-type]
+        PlainEquations(equations={"f": "x = 1"}, guess={"x": 1}, angle=unit)
     assert caught.value.problems[0].message == 'must be "deg" or "rad", got "grad"'
 
 

@@ -6,6 +6,7 @@ import os
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,7 +17,7 @@ _NAMES = ("chromium", "chromium-browser", "google-chrome")
 
 
 @pytest.fixture(scope="session")
-def browser(request: pytest.FixtureRequest) -> object:
+def browser(request: pytest.FixtureRequest) -> Any:
     """A headless Chromium. Where there is none the test is skipped, but never in CI."""
     program = next(filter(None, map(shutil.which, _NAMES)), None)
     if program is None:
@@ -25,29 +26,29 @@ def browser(request: pytest.FixtureRequest) -> object:
         pytest.skip(f"none of {', '.join(_NAMES)} is on the PATH (apt-get install chromium)")
     from playwright.sync_api import sync_playwright
 
-    config = request.config  # a process can start Playwright once only
+    config: Any = request.config  # a process can start Playwright once only
     if not hasattr(config, "linkwork_browser"):
         playwright = sync_playwright().start()
         found = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        config.linkwork_browser = found  # type: ignore[attr-defined]
+        config.linkwork_browser = found
         config.add_cleanup(playwright.stop)
         config.add_cleanup(found.close)
-    return config.linkwork_browser  # type: ignore[attr-defined]
+    return config.linkwork_browser
 
 
 @pytest.fixture
-def open_page(browser: object, tmp_path: Path) -> Iterator[Callable[..., object]]:
+def open_page(browser: Any, tmp_path: Path) -> Iterator[Callable[..., Any]]:
     """Opens an offline page from a file, without a network; fails on any message of the console."""
     said: list[str] = []
     contexts = []
 
-    def opened(motions: dict[str, lw.Motion], **options: object) -> object:
+    def opened(motions: dict[str, lw.Motion], **options: Any) -> Any:
         target = tmp_path / "page.html"
         own = ("equations", "loops", "forces")
         shown = {key: options.pop(key) for key in own if key in options}
-        target.write_text(offline_page(motion_page(motions, **shown)), "utf-8")  # type: ignore[arg-type]
+        target.write_text(offline_page(motion_page(motions, **shown)), "utf-8")
         settings = {"reduced_motion": "reduce", "viewport": {"width": 1280, "height": 800}}
-        context = browser.new_context(offline=True, **(settings | options))  # type: ignore[attr-defined]
+        context = browser.new_context(offline=True, **(settings | options))
         contexts.append(context)
         page = context.new_page()
         page.on("console", lambda message: said.append(f"{message.type}: {message.text}"))

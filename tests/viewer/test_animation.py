@@ -20,6 +20,11 @@ from linkwork.viewer import FilmOptions, animation, check_animation
 _FEW = FilmOptions(rows=6, fps=20, dpi=40)
 
 
+def frames_of(film: Image.Image) -> int:
+    found: int = getattr(film, "n_frames")  # noqa: B009 - films have it only
+    return found
+
+
 @pytest.fixture(scope="module")
 def motion() -> lw.Motion:
     return lw.example("four-bar").sweep(certify=False)
@@ -51,7 +56,7 @@ def test_arrows_of_inputs_point_the_way_they_run(
 @pytest.mark.parametrize("kind", ["gif", "apng", "webp"])
 def test_films_repeat_one_cycle(kind: str, motion: lw.Motion) -> None:
     film = Image.open(io.BytesIO(animation({"motion": motion}, kind, options=_FEW)))
-    assert film.n_frames == 6
+    assert frames_of(film) == 6
     assert film.info["loop"] == 0
     pictures = []
     for frame in range(6):
@@ -74,7 +79,7 @@ def test_mp4_is_written_by_ffmpeg(motion: lw.Motion) -> None:
 def test_an_open_motion_is_shown_to_and_fro() -> None:
     part = lw.example("four-bar").sweep(stop=90, certify=False)
     film = Image.open(io.BytesIO(animation({"motion": part}, "gif", options=_FEW)))
-    assert film.n_frames == 10  # six there, four back
+    assert frames_of(film) == 10  # six there, four back
 
 
 def test_progress_is_told(motion: lw.Motion) -> None:
@@ -125,7 +130,7 @@ def test_a_mechanism_that_never_closes_has_nothing_to_show(motion: lw.Motion) ->
     with pytest.raises(lw.InputError, match="no position was found"):
         animation({"motion": apart.sweep()}, "gif", options=_FEW)
     both = animation({"apart": apart.sweep(), "whole": motion}, "gif", options=_FEW)
-    assert Image.open(io.BytesIO(both)).n_frames == 6
+    assert frames_of(Image.open(io.BytesIO(both))) == 6
 
 
 def test_a_motion_writes_itself(tmp_path: Path) -> None:

@@ -16,11 +16,13 @@ import linkwork as lw
 from linkwork.drawing import render
 from linkwork.drawing.moving_scene import moving_scene
 from linkwork.drawing.scene import Disc, Role
+from linkwork.mechanism.linkage import Linkage
 from linkwork.results.force import Force
 from linkwork.viewer import drawn_page, motion_page, offline_page
 from linkwork.viewer.offline_page import page_json
 from linkwork.viewer.packing import unpressed
 from linkwork.viewer.play_order import play_order
+from tests.described import described_as
 
 Open = Callable[..., Any]
 
@@ -53,11 +55,12 @@ def _number(text: str) -> float:
 
 
 def _cells(page: Any, name: str) -> list[str]:
-    return (
+    found: list[str] = (
         page.locator("tr", has=page.get_by_role("rowheader", name=name, exact=True))
         .first.locator("td")
         .all_inner_texts()
     )
+    return found
 
 
 def _pin(page: Any, name: str, motion: lw.Motion) -> tuple[float, float]:
@@ -466,7 +469,7 @@ def test_names_of_a_mechanism_cannot_break_the_page(open_page: Open) -> None:
 def test_other_data_take_the_place_of_the_old_ones(open_page: Open, jansen: lw.Motion) -> None:
     page = open_page({"motion": jansen})
     page.evaluate("linkwork.goToRow(50)")
-    lengths = {**lw.example("jansen-leg").description.lengths, "O A": 14.0}
+    lengths = {**described_as(Linkage, lw.example("jansen-leg")).lengths, "O A": 14.0}
     changed = lw.example("jansen-leg").changed(lengths=lengths).cycle()
     drawn = moving_scene(changed, like=moving_scene(jansen))
     data = drawn_page({"motion": changed}, [drawn], pack=unpressed)

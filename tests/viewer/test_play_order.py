@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.mechanism.linkage import Linkage
 from linkwork.viewer.play_order import falling, play_order
+from tests.described import described_as
 
 
 def _steps(motion: lw.Motion, order: np.ndarray, closed: bool) -> np.ndarray:
     places = np.stack([motion.trace(name) for name in motion.points], axis=1)[order]
     way = np.concatenate((places, places[:1])) if closed else places
-    return np.abs(np.diff(way, axis=0)).max(axis=1)
+    return np.asarray(np.abs(np.diff(way, axis=0)).max(axis=1))
 
 
 def test_a_full_turn_is_closed_and_its_last_row_not_passed_twice() -> None:
@@ -23,6 +25,7 @@ def test_a_full_turn_is_closed_and_its_last_row_not_passed_twice() -> None:
 
 def test_time_runs_forward_where_the_speed_is_against_the_table() -> None:
     motion = lw.example("crank-slider").sweep()
+    assert motion.speed is not None
     assert motion.speed < 0 < motion["θ2"][1]
     order, closed = play_order(motion)
     assert closed
@@ -61,7 +64,7 @@ def test_a_circuit_with_dead_points_is_passed_without_a_jump() -> None:
 
 def test_a_range_with_a_gap_is_passed_from_dead_point_to_dead_point() -> None:
     jansen = lw.example("jansen-leg")
-    motion = jansen.changed(lengths={**jansen.description.lengths, "O A": 22}).sweep()
+    motion = jansen.changed(lengths={**described_as(Linkage, jansen).lengths, "O A": 22}).sweep()
     order, closed = play_order(motion)
     assert not closed
     limits = [row for row, what in enumerate(motion.limit) if what]

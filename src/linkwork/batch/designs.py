@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Protocol
 
 import numpy as np
 
 from linkwork.batch.building import Builder, built, family_base
-from linkwork.foundation.arrays import AnyArray, Array, ComplexArray, IndexArray
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.plain_numbers import as_told
@@ -90,7 +90,7 @@ class Designs:
             f"{bad} with a problem>"
         )
 
-    def take(self, index: IndexArray | slice) -> Designs:
+    def take(self, index: Sequence[int] | IndexArray | BoolArray | slice) -> Designs:
         """Some of the designs, in the order of ``index`` (integers, a mask or a slice)."""
         rows: dict[str, AnyArray] = {
             part.name: array[index]

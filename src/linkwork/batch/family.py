@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from linkwork.batch.designs import Designs, designs_of
 from linkwork.batch.family_motion import FamilyMotion
 from linkwork.batch.lane_rows import design_rows
 from linkwork.batch.reductions import REDUCTIONS
-from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import whole_number
 from linkwork.foundation.sharing import cores
@@ -52,7 +52,7 @@ class Family:
         """What varies, (D,) each, everyday units."""
         return self.designs.dimensions
 
-    def take(self, index: IndexArray | slice) -> Family:
+    def take(self, index: Sequence[int] | IndexArray | BoolArray | slice) -> Family:
         """Some of the designs (integers, a mask or a slice)."""
         return Family(self.designs.take(index))
 

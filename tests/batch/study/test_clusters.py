@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -34,9 +34,9 @@ def _start(folder: Path, *words: str) -> subprocess.Popen[bytes]:
     )
 
 
-def _until(there: object, seconds: float = 60.0) -> None:
+def _until(there: Callable[[], bool], seconds: float = 60.0) -> None:
     end = time.monotonic() + seconds
-    while not there():  # type: ignore[operator]
+    while not there():
         assert time.monotonic() < end
         time.sleep(0.02)
 

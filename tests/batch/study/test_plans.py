@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
 
@@ -12,7 +13,7 @@ import jsonschema
 import numpy as np
 import pytest
 
-from linkwork.batch import from_table, grid, latin_hypercube, random
+from linkwork.batch import Plan, from_table, grid, latin_hypercube, random
 from linkwork.batch.sampling import CHUNK, Normal
 from linkwork.batch.study import read_plan, read_plan_text
 from linkwork.batch.study.choosing import Choice, Triangular, values_between
@@ -231,7 +232,7 @@ def test_the_schema_accepts_plans_and_refuses_wrong_structure() -> None:
     }  # fmt: skip
 
 
-DIMENSIONS = {
+DIMENSIONS: dict[str, tuple[str, str, Callable[[], Plan]]] = {
     "grid": (
         '"O2 A" = [40, 38]\n"A B" = { from = 110, to = 130, levels = 3 }\n"O4 B" = 81\n',
         "",

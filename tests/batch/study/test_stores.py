@@ -20,7 +20,7 @@ import xarray
 import linkwork as lw
 from linkwork.batch import Family
 from linkwork.batch.family_motion import FamilyMotion
-from linkwork.batch.study import crew, ledger, run_study, summary_of
+from linkwork.batch.study import crew, run_study, summary_of
 from linkwork.batch.study.job import Job, computed
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.status import Status
@@ -148,7 +148,7 @@ def test_a_run_killed_at_any_write_goes_on_to_the_same_store(
         replace(old, new)
 
     monkeypatch.setattr(Path, "write_bytes", torn)
-    monkeypatch.setattr(ledger.os, "replace", renamed)
+    monkeypatch.setattr("linkwork.batch.study.ledger.os.replace", renamed)
     store = tmp_path / "out.zarr"
     deaths = 0
     for at in range(1, 10_000):
@@ -281,13 +281,13 @@ def test_a_worker_that_dies_is_replaced(
     asked = crew._Processes._asked
     deaths = 0
 
-    def dying(self: crew._Processes, process: subprocess.Popen[bytes], values: object) -> object:
+    def dying(self: crew._Processes, process: subprocess.Popen[bytes], values: Any) -> Any:
         nonlocal deaths
         deaths += 1
         if deaths in (1, 4):
             process.kill()
             process.wait()
-        return asked(self, process, values)  # type: ignore[arg-type]
+        return asked(self, process, values)
 
     monkeypatch.setattr(crew._Processes, "_asked", dying)
     run_study(study(), tmp_path / "out.zarr", workers=2)
@@ -416,10 +416,10 @@ def test_a_store_that_was_taken_away_meanwhile_is_not_written_to(
     store, lock = tmp_path / "out.zarr", fcntl.flock
     run_study(study(*FEW), store, workers=1)
 
-    def late(file: object, how: int) -> None:
+    def late(file: int, how: int) -> None:
         monkeypatch.setattr(fcntl, "flock", lock)
         run_study(study(*FEW, ("seed = 1", "seed = 2")), store, workers=1, fresh=True)
-        lock(file, how)  # type: ignore[arg-type]
+        lock(file, how)
 
     monkeypatch.setattr(fcntl, "flock", late)
     with pytest.raises(InputError, match=r"^another run is writing to"):

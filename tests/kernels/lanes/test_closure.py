@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from linkwork.foundation.arrays import BoolArray
 from linkwork.kernels.lanes.closure import BlockPart, Closure, solved
 from linkwork.kernels.lanes.recorder import Recorder, Value
 from linkwork.kernels.loop_table import LoopTable
@@ -98,7 +99,7 @@ def test_weights_of_one_variable_are_added_only_where_that_rounds_nothing() -> N
 # ------------------------------------------------------------------ linear systems
 
 
-def solutions(matrices: Array, sides: Array, structural: Array) -> tuple[Array, Array]:
+def solutions(matrices: Array, sides: Array, structural: BoolArray) -> tuple[Array, Array]:
     """X (M, n, s) and det (M,) by the recorded solver; ``structural`` (n, n): known zeros."""
     n = matrices.shape[1]
     rec = Recorder()
@@ -114,8 +115,8 @@ def solutions(matrices: Array, sides: Array, structural: Array) -> tuple[Array, 
         [[rec.input(f"b{s},{i}") for i in range(n)] for s in range(sides.shape[2])],
     )
     for s, column in enumerate(answer.columns):
-        for i, x in enumerate(column):
-            rec.write(f"x{s},{i}", x)
+        for i, value in enumerate(column):
+            rec.write(f"x{s},{i}", value)
     rec.write("det", answer.determinant)
     found = ran(rec, given)
     x = np.stack(
@@ -124,7 +125,9 @@ def solutions(matrices: Array, sides: Array, structural: Array) -> tuple[Array, 
     return x, found["det"]
 
 
-def assert_solved(matrices: Array, sides: Array, structural: Array, growth: float = 30.0) -> None:
+def assert_solved(
+    matrices: Array, sides: Array, structural: BoolArray, growth: float = 30.0
+) -> None:
     """As good as NumPy's, in proportion to the condition."""
     x, det = solutions(matrices, sides, structural)
     true, true_det = np.linalg.solve(matrices, sides), np.linalg.det(matrices)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
@@ -41,7 +42,7 @@ def triples() -> tuple[Array, Array, Array]:
     return a.ravel(), b.ravel(), c.ravel()
 
 
-MEANING = {
+MEANING: dict[Op, tuple[int, Callable[..., Array]]] = {
     Op.COPY: (1, lambda a: a),
     Op.ADD: (2, np.add),
     Op.SUB: (2, np.subtract),
@@ -73,8 +74,7 @@ def test_operations_do_what_numpy_does_with_odd_numbers_too(op: Op) -> None:
     ],
     ids=["FMA", "FMS", "FNMA"],
 )
-def test_products_in_sums_round_once_or_twice(op: Op, meaning: object) -> None:
-    assert callable(meaning)
+def test_products_in_sums_round_once_or_twice(op: Op, meaning: Callable[..., Array]) -> None:
     rng = np.random.default_rng(1)
     a, b, c = rng.normal(size=(3, 1000))
     size = np.abs(a * b) + np.abs(c)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -94,12 +94,13 @@ def test_dividing_constants_by_zero_gives_what_a_lane_gives() -> None:
 
 
 def test_a_product_used_once_is_fused_into_its_sum() -> None:
-    for make, op in (
+    made: tuple[tuple[Callable[[Value, Value, Value], Value], Op], ...] = (
         (lambda a, b, c: a * b + c, Op.FMA),
         (lambda a, b, c: c + a * b, Op.FMA),
         (lambda a, b, c: a * b - c, Op.FMS),
         (lambda a, b, c: c - a * b, Op.FNMA),
-    ):
+    )
+    for make, op in made:
         rec = Recorder()
         a, b, c = (rec.input(name) for name in "abc")
         rec.write("d", make(a, b, c))

@@ -141,7 +141,7 @@ def test_no_position_has_no_rates_and_a_singular_one_has_none_that_is_finite() -
         np.zeros((ROWS, DESIGNS), dtype=np.int32),
     )
     assert np.isnan(rates[:, 0, 3]).all()
-    bad = ~np.isfinite(rates).all(axis=0)
+    bad = np.asarray(~np.isfinite(rates).all(axis=0))
     assert bad[0, 3]
     assert np.abs(rates[:2, 1, 4]).max() > 1e12 or bad[1, 4]
     assert np.count_nonzero(bad) <= 2

@@ -11,6 +11,8 @@ from typing import Any
 import pytest
 
 import linkwork as lw
+from linkwork.mechanism.linkage import Linkage
+from tests.described import described_as
 from tests.viewer.conftest import browser as browser  # the fixture, for this folder too
 from tests.viewer.live.conftest import FOUR_BAR, Served
 
@@ -248,11 +250,11 @@ def test_a_point_is_added_from_the_palette_and_removed_again(
     piece.get_by_role("button", name="Add point").click()
     page.locator(".lw-drawing text[data-of=Q]").wait_for()
     mechanism = lw.loads(served.workbench.text)
-    assert "Q" in mechanism.description.links["rocker"]
+    assert "Q" in described_as(Linkage, mechanism).links["rocker"]
     page.locator(".lw-group summary", has_text="Remove").click()
     page.get_by_role("button", name="Remove point Q").click()
     page.locator(".lw-drawing text[data-of=Q]").wait_for(state="detached")
-    assert "Q" not in lw.loads(served.workbench.text).description.points
+    assert "Q" not in described_as(Linkage, lw.loads(served.workbench.text)).points
 
 
 def test_a_belt_is_added_and_removed_with_its_wheel(open_live: Open, served: Served) -> None:
@@ -306,7 +308,7 @@ def test_a_part_is_added_from_the_palette(open_live: Open, served: Served) -> No
     piece.get_by_role("button", name="Add gear pair").click()
     page.get_by_role("button", name="Make 2 as one").click()
     page.get_by_role("button", name="Remove mesh").wait_for()
-    (gear,) = lw.loads(served.workbench.text).description.gears
+    (gear,) = described_as(Linkage, lw.loads(served.workbench.text)).gears
     assert (gear.name, gear.wheels, gear.radii) == ("mesh", ("crank", "wheel"), (70, 30))
 
 

@@ -228,5 +228,6 @@ def test_an_event_says_what_it_is_and_what_it_answers() -> None:
 
 
 def test_no_event_leaves_with_a_number_that_is_none() -> None:
+    none: Any = math.nan
     with pytest.raises(ValueError, match="Out of range float values"):
-        encoded(Refused(message=math.nan))  # type: ignore[arg-type]
+        encoded(Refused(message=none))

@@ -69,7 +69,7 @@ def test_any_requests_are_answered_and_the_file_is_left_alone(
             assert encoded(event)
     state = bench.opened()[0]
     assert isinstance(state, tell.FileState)
-    assert lw.loads(state.text)  # what is kept is always a mechanism
+    assert isinstance(lw.loads(state.text), lw.Mechanism)  # what is kept is always a mechanism
     assert path.read_text(encoding="utf-8") == FOUR_BAR
     steps = 0
     while not isinstance(bench.handle(ask.Undo())[0], tell.Refused):

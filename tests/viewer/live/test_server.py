@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
+from typing import Any
 
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
@@ -342,7 +343,7 @@ def test_only_the_latest_place_of_a_slider_is_solved(served: Served) -> None:
         for k in range(60):
             ask(page, "set_number", id=k, name="A B", value=120 + k / 10, live=True)
         ask(page, "set_number", id=60, name="A B", value=126)
-        answers = []
+        answers: list[int] = []
         while not answers or answers[-1] != 60:
             answers.append(told(page, "motion_found")["answers"])
         assert answers == sorted(answers)
@@ -425,7 +426,9 @@ def begun(path: Path, *options: str) -> tuple[subprocess.Popen[str], str]:
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_the_command_ends_cleanly_and_keeps_what_is_unsaved(path: Path, number: int) -> None:
     process, address = begun(path)
-    served = Served(_AsPrinted(address), None, path)  # type: ignore[arg-type]
+    server: Any = _AsPrinted(address)
+    workbench: Any = None  # in the process of the command
+    served = Served(server, workbench, path)
     with served.connect() as page:
         told(page, "motion_found")
         ask(page, "set_number", name="a", value=42)

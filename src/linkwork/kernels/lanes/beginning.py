@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 
+from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.kernels.lanes.compiling import compiled_for, types
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.trial import (
     GOOD,
     LIVE,
     TOPOLOGY,
+    Topology,
     all_loaded,
     copied,
     solved_slowly,
@@ -25,7 +27,9 @@ _PLAIN = types.Array(types.float64, 2, "C")
 @compiled_for(
     types.void(TOPOLOGY, _PLAIN, _PLAIN, _PLAIN, _PLAIN, types.Array(types.boolean, 1, "C"))
 )
-def begin(topology, w, design, guess, node, found):  # type: ignore[no-untyped-def]
+def begin(
+    topology: Topology, w: Array, design: Array, guess: Array, node: Array, found: BoolArray
+) -> None:
     """Solve every mechanism at its guess's input value.
 
     Parameters

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from importlib.util import find_spec
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 from linkwork.foundation.errors import InputError, MissingPackageError
 
 __all__ = ["graphics_card", "kernel", "name_of", "numba_cuda", "on_device"]
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
 
 
 def numba_cuda() -> Any:
@@ -48,13 +51,14 @@ def name_of(card: Any) -> str:
     return name.decode() if isinstance(name, bytes) else str(name)
 
 
-def on_device(function: Callable[..., Any]) -> Any:
+def on_device(function: Callable[_P, _R]) -> Callable[_P, _R]:
     """A function that kernels call; it becomes a part of them, so that arrays of a thread that are
     addressed by constants stay in registers.
     """
     cuda = numba_cuda()
     inlined = {} if _simulated() else {"forceinline": True}
-    return cuda.jit(device=True, **inlined)(function)
+    placed: Callable[_P, _R] = cuda.jit(device=True, **inlined)(function)
+    return placed
 
 
 def kernel(function: Callable[..., Any]) -> Any:

@@ -18,8 +18,10 @@ loads numba.cuda.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
+from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.kernels.lanes import sine, stepping
 from linkwork.kernels.lanes.device_compiling import kernel, numba_cuda, on_device
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
@@ -53,10 +55,10 @@ class Sections(NamedTuple):
     its proof.
     """
 
-    predict: Any
-    correct: Any
-    correct_slowly: Any
-    judge: Any
+    predict: Callable[[Array], None]
+    correct: Callable[[Array], None]
+    correct_slowly: Callable[[Array], None]
+    judge: Callable[[Array], None]
 
 
 class Start(NamedTuple):
@@ -64,10 +66,10 @@ class Start(NamedTuple):
     ``options`` (O,).
     """
 
-    member: Any
-    design: Any
-    options: Any
-    node: Any
+    member: int
+    design: Array
+    options: Array
+    node: Array
 
 
 class Shape(NamedTuple):
@@ -86,27 +88,27 @@ class Shape(NamedTuple):
 
 
 @on_device
-def _weights(shape):  # type: ignore[no-untyped-def]
+def _weights(shape: Shape) -> int:
     return ROLES * shape.size
 
 
 @on_device
-def _good(shape):  # type: ignore[no-untyped-def]
+def _good(shape: Shape) -> int:
     return ROLES * shape.size + 2 * NODES
 
 
 @on_device
-def _radius(shape):  # type: ignore[no-untyped-def]
+def _radius(shape: Shape) -> int:
     return ROLES * shape.size + 2 * NODES + 1
 
 
 @on_device
-def _live(shape):  # type: ignore[no-untyped-def]
+def _live(shape: Shape) -> int:
     return ROLES * shape.size + 2 * NODES + 2
 
 
 @on_device
-def _load(shape, w, start):  # type: ignore[no-untyped-def]
+def _load(shape: Shape, w: Array, start: Start) -> None:
     """A mechanism, with all nodes where it starts."""
     first = _live(shape) + shape.blocks
     for j in range(shape.coefficients):
@@ -119,7 +121,7 @@ def _load(shape, w, start):  # type: ignore[no-untyped-def]
 
 
 @on_device
-def _weigh(shape, w, t, times, known):  # type: ignore[no-untyped-def]
+def _weigh(shape: Shape, w: Array, t: float, times: Array, known: int) -> None:
     """The weights of the prediction at t from the ``known`` last nodes."""
     used = _trusted(t, times, known)
     for i in range(NODES):
@@ -131,7 +133,7 @@ def _weigh(shape, w, t, times, known):  # type: ignore[no-untyped-def]
 
 
 @on_device
-def _choose(shape, w, times, step, known, spacing):  # type: ignore[no-untyped-def]
+def _choose(shape: Shape, w: Array, times: Array, step: float, known: int, spacing: Array) -> None:
     """The weights of the prediction, computed anew where the spacing has changed.
 
     ``times``: of the last nodes.
@@ -147,7 +149,9 @@ def _choose(shape, w, times, step, known, spacing):  # type: ignore[no-untyped-d
 
 
 @on_device
-def begin(sections, shape, w, start, node, begun):  # type: ignore[no-untyped-def]
+def begin(
+    sections: Sections, shape: Shape, w: Array, start: Start, node: Array, begun: BoolArray
+) -> None:
     """From a guess to a position, with small steps and its own proof; see
     :func:`linkwork.kernels.lanes.trial.solved_slowly`.
 
@@ -175,7 +179,7 @@ def begin(sections, shape, w, start, node, begun):  # type: ignore[no-untyped-de
 
 
 @on_device
-def _first_row(rows, t, way):  # type: ignore[no-untyped-def]
+def _first_row(rows: Array, t: float, way: int) -> int:
     """The first row ahead of t, or at t where the way leads upwards."""
     low, high = 0, rows.shape[0]
     while low < high:
@@ -188,7 +192,7 @@ def _first_row(rows, t, way):  # type: ignore[no-untyped-def]
 
 
 @on_device
-def _note(shape, w, row, found):  # type: ignore[no-untyped-def]
+def _note(shape: Shape, w: Array, row: int, found: Found) -> None:
     """A row is reached."""
     found.reached[row, found.first] = True
     for j in range(shape.unknowns):
@@ -198,7 +202,7 @@ def _note(shape, w, row, found):  # type: ignore[no-untyped-def]
 
 
 @on_device
-def _stop(shape, w, way, found):  # type: ignore[no-untyped-def]
+def _stop(shape: Shape, w: Array, way: int, found: Found) -> None:
     """A mechanism goes no further: its last node and the one before."""
     size = shape.size
     found.end[way, found.first] = w[2 * size - 1]
@@ -207,7 +211,9 @@ def _stop(shape, w, way, found):  # type: ignore[no-untyped-def]
 
 
 @on_device
-def follow(sections, shape, w, start, way, table, found):  # type: ignore[no-untyped-def]
+def follow(
+    sections: Sections, shape: Shape, w: Array, start: Start, way: int, table: Table, found: Found
+) -> None:
     """Follow a mechanism from row to row, upwards (way 1) or downwards (0).
 
     Parameters

@@ -11,6 +11,7 @@ from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.kernels.lanes.compiling import compiled
 from linkwork.kernels.lanes.fold_programs import FoldPrograms, fold_programs
 from linkwork.kernels.lanes.machine import LANES, run
+from linkwork.kernels.lanes.program import Code
 from linkwork.kernels.loop_table import LoopTable
 
 __all__ = ["Folds", "LastNodes", "dead_points"]
@@ -196,12 +197,14 @@ class _Runner:
         """Registers (W, D) when the dead points are found, and the arcs to them tried in one."""
         programs = self.programs
         out = np.empty((len(wanted), self.given.shape[1]))
+        live, seeking = self.registers.all_of(["live", "seeking"])
         _search(
             programs.iterate.code,
             programs.move.code,
             programs.prove.code,
             self.space,
-            *self.registers.all_of(["live", "seeking"]),
+            live,
+            seeking,
             self.registers.all_of(wanted),
             self.places,
             self.given,
@@ -230,13 +233,16 @@ class _Runner:
         """Whether so many parts prove the arcs, (D,)."""
         programs = self.programs
         proved = np.zeros(self.given.shape[1], dtype=bool)
+        live, good, along = self.registers.all_of(["live", "good", "along"])
         _prove_in_parts(
             programs.between.code,
             programs.iterate.code,
             programs.prove.code,
             programs.advance.code,
             self.space,
-            *self.registers.all_of(["live", "good", "along"]),
+            live,
+            good,
+            along,
             self.places,
             self.given,
             parts,
@@ -246,7 +252,7 @@ class _Runner:
 
 
 @compiled
-def _solve(iterate, w, live):  # type: ignore[no-untyped-def]
+def _solve(iterate: Code, w: Array, live: int) -> None:
     w[live, :] = 1.0
     for _ in range(_STEPS):
         run(iterate, w)
@@ -258,7 +264,7 @@ def _solve(iterate, w, live):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _load(w, places, given, base):  # type: ignore[no-untyped-def]
+def _load(w: Array, places: IndexArray, given: Array, base: int) -> None:
     """The designs from ``base`` on; the last one in lanes that are left."""
     for lane in range(LANES):
         member = min(base + lane, given.shape[1] - 1)
@@ -267,9 +273,18 @@ def _load(w, places, given, base):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _search(  # type: ignore[no-untyped-def]
-    iterate, move, prove, w, live, seeking, wanted, places, given, out
-):
+def _search(
+    iterate: Code,
+    move: Code,
+    prove: Code,
+    w: Array,
+    live: int,
+    seeking: int,
+    wanted: IndexArray,
+    places: IndexArray,
+    given: Array,
+    out: Array,
+) -> None:
     """LANES designs at a time: secant steps along the curve, a last solution, the proof."""
     count = given.shape[1]
     for base in range(0, count, LANES):
@@ -306,9 +321,20 @@ def _beside(  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _prove_in_parts(  # type: ignore[no-untyped-def]
-    between, iterate, prove, advance, w, live, good, along, places, given, parts, proved
-):
+def _prove_in_parts(
+    between: Code,
+    iterate: Code,
+    prove: Code,
+    advance: Code,
+    w: Array,
+    live: int,
+    good: int,
+    along: int,
+    places: IndexArray,
+    given: Array,
+    parts: int,
+    proved: BoolArray,
+) -> None:
     """Places between node and dead point, each proved to lie on the curve of the one before."""
     count = given.shape[1]
     for base in range(0, count, LANES):

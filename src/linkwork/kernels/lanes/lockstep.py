@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.kernels.lanes.compiling import (
     compiled,
     compiled_for,
@@ -21,11 +22,12 @@ from linkwork.kernels.lanes.compiling import (
 )
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
-from linkwork.kernels.lanes.tasks import FOUND, TABLE, TASKS
+from linkwork.kernels.lanes.tasks import FOUND, TABLE, TASKS, Found, Table, Tasks
 from linkwork.kernels.lanes.trial import (
     GOOD,
     RADIUS,
     TOPOLOGY,
+    Topology,
     all_loaded,
     chosen,
     settled,
@@ -39,7 +41,16 @@ _WORTH = LANES // 2  # with fewer lanes left each goes on by itself
 
 
 @uncounted
-def _left(lane, member, way, topology, turn, w, tasks, count):  # type: ignore[no-untyped-def]
+def _left(
+    lane: int,
+    member: int,
+    way: int,
+    topology: Topology,
+    turn: int,
+    w: Array,
+    tasks: Tasks,
+    count: int,
+) -> int:
     """A lane goes on by itself from its last node; how many tasks there are now."""
     tasks.member[count], tasks.way[count] = member, way
     nodes = topology.nodes
@@ -49,7 +60,15 @@ def _left(lane, member, way, topology, turn, w, tasks, count):  # type: ignore[n
 
 
 @uncounted
-def _weighted(w, topology, turn, steps, together, spacing, times):  # type: ignore[no-untyped-def]
+def _weighted(
+    w: Array,
+    topology: Topology,
+    turn: int,
+    steps: int,
+    together: bool,
+    spacing: Array,
+    times: Array,
+) -> None:
     """The weights of the prediction: for each lane by itself until all have the same nodes behind.
 
     ``together``: whether they have started at the same t. ``spacing`` (4,): of the trial and the
@@ -71,13 +90,13 @@ def _weighted(w, topology, turn, steps, together, spacing, times):  # type: igno
 
 
 @uncounted
-def _address(array, j, row, first):  # type: ignore[no-untyped-def]
+def _address(array: Array, j: int, row: int, first: int) -> int:
     strides = array.strides
     return array.ctypes.data + j * strides[0] + row * strides[1] + first * strides[2]
 
 
 @uncounted
-def _fetched(first, width, row, table, found):  # type: ignore[no-untyped-def]
+def _fetched(first: int, width: int, row: int, table: Table, found: Found) -> None:
     """The places of a row are brought near while the row is computed."""
     target = found.unknowns
     for j in range(table.unknowns):
@@ -87,7 +106,18 @@ def _fetched(first, width, row, table, found):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def _kept(first, width, row, topology, turn, w, standing, all_stand, table, found):  # type: ignore[no-untyped-def]
+def _kept(
+    first: int,
+    width: int,
+    row: int,
+    topology: Topology,
+    turn: int,
+    w: Array,
+    standing: Array,
+    all_stand: bool,
+    table: Table,
+    found: Found,
+) -> None:
     """A row is reached by the lanes that stand."""
     target, radius, reached = found.unknowns, found.radius, found.reached
     place, error = topology.nodes, topology.noted[RADIUS]
@@ -116,7 +146,18 @@ def _kept(first, width, row, topology, turn, w, standing, all_stand, table, foun
 
 
 @uncounted
-def _set_out(base, way, topology, w, begun, node, rows, standing, tasks, count):  # type: ignore[no-untyped-def]
+def _set_out(
+    base: int,
+    way: int,
+    topology: Topology,
+    w: Array,
+    begun: BoolArray,
+    node: Array,
+    rows: Array,
+    standing: Array,
+    tasks: Tasks,
+    count: int,
+) -> tuple[int, bool, int]:
     """Who goes in this direction, and who has to go alone.
 
     Returns
@@ -149,7 +190,17 @@ def _set_out(base, way, topology, w, begun, node, rows, standing, tasks, count):
 
 
 @uncounted
-def _aimed(base, width, row, topology, turn, w, standing, table, found):  # type: ignore[no-untyped-def]
+def _aimed(
+    base: int,
+    width: int,
+    row: int,
+    topology: Topology,
+    turn: int,
+    w: Array,
+    standing: Array,
+    table: Table,
+    found: Found,
+) -> tuple[float, int]:
     """The trial's t: of the row, or on the way to it. How far the row is; in how many steps, -1
     where a step would be lost in rounding.
     """
@@ -169,7 +220,18 @@ def _aimed(base, width, row, topology, turn, w, standing, table, found):  # type
 
 
 @compiled
-def _one_way(base, way, topology, w, begun, node, table, tasks, count, found):  # type: ignore[no-untyped-def]
+def _one_way(
+    base: int,
+    way: int,
+    topology: Topology,
+    w: Array,
+    begun: BoolArray,
+    node: Array,
+    table: Table,
+    tasks: Tasks,
+    count: int,
+    found: Found,
+) -> int:
     """64 mechanisms in one direction; how many tasks there are now."""
     width, standing = min(LANES, node.shape[1] - base), np.zeros(LANES)
     spacing, times = np.full(NODES, np.inf), np.zeros(NODES)
@@ -216,7 +278,16 @@ def _one_way(base, way, topology, w, begun, node, table, tasks, count, found):  
         types.Array(types.boolean, 1, "C"), TABLE, TASKS, FOUND,
     )
 )  # fmt: skip
-def in_step(topology, w, design, node, begun, table, tasks, found):  # type: ignore[no-untyped-def]
+def in_step(
+    topology: Topology,
+    w: Array,
+    design: Array,
+    node: Array,
+    begun: BoolArray,
+    table: Table,
+    tasks: Tasks,
+    found: Found,
+) -> int:
     """Lead mechanisms through the rows of the table as far as they go together.
 
     Parameters

@@ -92,7 +92,8 @@ class _Lowering:
             for product, other, op in ((b, a, Op.FNMA), (a, b, Op.FMS)):
                 if rec.ops[product] is Op.MUL and uses[product] == 1:
                     kind = Op.FMA if rec.ops[k] is Op.ADD else op
-                    found[k] = (kind, (*rec.arguments[product], other))  # type: ignore[assignment]
+                    one, two = rec.arguments[product]
+                    found[k] = (kind, (one, two, other))
                     self.swallowed.add(product)
                     break
         return found

@@ -13,15 +13,17 @@ import math
 
 import numpy as np
 
+from linkwork.foundation.arrays import Array
 from linkwork.kernels.lanes.compiling import compiled_for, types, uncounted
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
 from linkwork.kernels.lanes.stepping import GROWTH
-from linkwork.kernels.lanes.tasks import FOUND, TABLE, TASKS
+from linkwork.kernels.lanes.tasks import FOUND, TABLE, TASKS, Found, Table, Tasks
 from linkwork.kernels.lanes.trial import (
     GOOD,
     RADIUS,
     TOPOLOGY,
+    Topology,
     chosen,
     copied,
     loaded,
@@ -32,7 +34,16 @@ __all__ = ["march"]
 
 
 @uncounted
-def _noted(w, lane, topology, turn, row, member, unknowns, found):  # type: ignore[no-untyped-def]
+def _noted(
+    w: Array,
+    lane: int,
+    topology: Topology,
+    turn: int,
+    row: int,
+    member: int,
+    unknowns: int,
+    found: Found,
+) -> None:
     """A row is reached."""
     place = found.first + member
     found.reached[row, place] = True
@@ -43,7 +54,9 @@ def _noted(w, lane, topology, turn, row, member, unknowns, found):  # type: igno
 
 
 @uncounted
-def _stopped(w, lane, topology, turn, way, member, found):  # type: ignore[no-untyped-def]
+def _stopped(
+    w: Array, lane: int, topology: Topology, turn: int, way: int, member: int, found: Found
+) -> None:
     """A mechanism goes no further."""
     nodes = topology.nodes
     size, place = nodes.shape[1], found.first + member
@@ -59,7 +72,15 @@ def _stopped(w, lane, topology, turn, way, member, found):  # type: ignore[no-un
         types.Array(types.float64, 2, "C"), TABLE, TASKS, types.int64, FOUND,
     )
 )  # fmt: skip
-def march(topology, w, design, table, tasks, count, found):  # type: ignore[no-untyped-def]
+def march(
+    topology: Topology,
+    w: Array,
+    design: Array,
+    table: Table,
+    tasks: Tasks,
+    count: int,
+    found: Found,
+) -> None:
     """Go all ways that are asked for.
 
     Parameters

@@ -12,6 +12,7 @@ from linkwork.foundation.arrays import Array, IndexArray, TurnArray
 from linkwork.foundation.sharing import shared_out
 from linkwork.kernels.lanes.compiling import compiled, compiled_for, types
 from linkwork.kernels.lanes.machine import LANES, run
+from linkwork.kernels.lanes.program import Code
 from linkwork.kernels.lanes.rate_programs import PlaceProgram
 
 __all__ = ["along_rows", "at_places"]
@@ -125,7 +126,9 @@ class _Ready:
         types.Array(types.int64, 1, "C"), types.Array(types.float64, 2, "C"),
     )
 )  # fmt: skip
-def _follow(code, w, variables, v, wanted, found):  # type: ignore[no-untyped-def]
+def _follow(
+    code: Code, w: Array, variables: IndexArray, v: Array, wanted: IndexArray, found: Array
+) -> None:
     """LANES rows at a time."""
     rows = v.shape[1]
     for base in range(0, rows, LANES):
@@ -140,9 +143,18 @@ def _follow(code, w, variables, v, wanted, found):  # type: ignore[no-untyped-de
 
 
 @compiled
-def _evaluate(  # type: ignore[no-untyped-def]
-    code, w, places, design, variables, v, inputs, turns, wanted, found
-):
+def _evaluate(
+    code: Code,
+    w: Array,
+    places: IndexArray,
+    design: Array,
+    variables: IndexArray,
+    v: Array,
+    inputs: Array,
+    turns: TurnArray,
+    wanted: IndexArray,
+    found: Array,
+) -> None:
     """LANES designs at a time, row by row."""
     unknowns, rows, count = v.shape
     for base in range(0, count, LANES):

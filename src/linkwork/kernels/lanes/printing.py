@@ -9,15 +9,11 @@ import math
 from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import ROLES
-from linkwork.kernels.lanes.program import Op
+from linkwork.kernels.lanes.program import Code, Op
 
-__all__ = ["Body", "Code", "trial_source"]
-
-Code = np.ndarray[tuple[int, int], np.dtype[np.uint32]]
+__all__ = ["Body", "trial_source"]
 
 _STATEMENT = {
     Op.COPY: "{a}",

@@ -10,18 +10,25 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import TypeVar
 
 import numpy as np
 
 from linkwork.foundation.aligned import aligned
 from linkwork.foundation.arrays import Array, IndexArray
 
-__all__ = ["SOURCES", "Op", "Program", "Registers"]
+__all__ = ["SOURCES", "Code", "Op", "Program", "Registers"]
+
+#: Instructions, (K, 5) uint32; see :class:`Program`.
+Code = np.ndarray[tuple[int, int], np.dtype[np.uint32]]
+
+_Key = TypeVar("_Key", str, float)
 
 
 class Op(IntEnum):
     """What an instruction does with the registers a, b, c; masks are 1.0 and 0.0."""
 
+    # The numbers stay: kernels that an earlier process has compiled know them.
     COPY = 0  # a
     ADD = 1  # a + b
     SUB = 2  # a - b
@@ -71,10 +78,10 @@ class Registers:
         """The register of a constant."""
         return self._in(self.constants, value)
 
-    def _in(self, table: dict[str, int] | dict[float, int], key: str | float) -> int:
-        found = table.get(key)  # type: ignore[arg-type]
+    def _in(self, table: dict[_Key, int], key: _Key) -> int:
+        found = table.get(key)
         if found is None:
-            found = table[key] = self.count  # type: ignore[index]
+            found = table[key] = self.count
             self.count += 1
         return found
 
@@ -104,5 +111,5 @@ class Program:
         How many registers a workspace needs.
     """
 
-    code: np.ndarray[tuple[int, int], np.dtype[np.uint32]]
+    code: Code
     height: int

@@ -13,15 +13,17 @@ import math
 
 import numpy as np
 
+from linkwork.foundation.arrays import AnyArray, Array, CountArray
 from linkwork.kernels.lanes.compiling import compiled, compiled_for, types, uncounted
 from linkwork.kernels.lanes.machine import LANES
 from linkwork.kernels.lanes.march_programs import NODES, ROLES
 from linkwork.kernels.lanes.stepping import GROWTH, SAME
-from linkwork.kernels.lanes.tasks import FOUND, TABLE
+from linkwork.kernels.lanes.tasks import FOUND, TABLE, Found, Table
 from linkwork.kernels.lanes.trial import (
     GOOD,
     RADIUS,
     TOPOLOGY,
+    Topology,
     chosen,
     met,
     proved,
@@ -46,9 +48,9 @@ _ROUGH = 0.03  # and what rates do not explain, of the way and of as much for a 
 
 
 @uncounted
-def _gap(rows):  # type: ignore[no-untyped-def]
+def _gap(rows: Array) -> float:
     """From row to row; 0 where it is not the same everywhere."""
-    gap = (rows[-1] - rows[0]) / (len(rows) - 1)
+    gap: float = (rows[-1] - rows[0]) / (len(rows) - 1)
     for k in range(len(rows)):
         if abs(rows[k] - (rows[0] + k * gap)) > SAME * gap:
             return 0.0
@@ -56,7 +58,7 @@ def _gap(rows):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def _set_out(topology, w, node):  # type: ignore[no-untyped-def]
+def _set_out(topology: Topology, w: Array, node: Array) -> None:
     """A node (S,) into the first lane, as the only one."""
     for role in range(1, ROLES):
         for j in range(len(node)):
@@ -64,14 +66,14 @@ def _set_out(topology, w, node):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def _noted(topology, turn, w, lane, node):  # type: ignore[no-untyped-def]
+def _noted(topology: Topology, turn: int, w: Array, lane: int, node: Array) -> None:
     """The trial of a lane as a node (S,)."""
     for j in range(len(node)):
         node[j] = w[topology.nodes[-turn % ROLES, j], lane]
 
 
 @compiled
-def _started(topology, w, guess, scale, node):  # type: ignore[no-untyped-def]
+def _started(topology: Topology, w: Array, guess: Array, scale: Array, node: Array) -> bool:
     """The position at a guess (n + 1,) close to it, into ``node`` (S,); whether it is close."""
     nodes, n, last = topology.nodes, len(scale), topology.nodes.shape[1] - 1
     for role in range(1, ROLES):
@@ -89,7 +91,9 @@ def _started(topology, w, guess, scale, node):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _scouted(topology, w, turn, known, end, steps, enough):  # type: ignore[no-untyped-def]
+def _scouted(
+    topology: Topology, w: Array, turn: int, known: int, end: float, steps: Array, enough: int
+) -> tuple[int, int]:
     """In the first lane to ``end``, or until ``enough`` nodes are behind: how often roles have
     moved on, and how many nodes there are; none where it does not get there.
     """
@@ -115,7 +119,7 @@ def _scouted(topology, w, turn, known, end, steps, enough):  # type: ignore[no-u
 
 
 @compiled
-def _ready(topology, w, node, row, table):  # type: ignore[no-untyped-def]
+def _ready(topology: Topology, w: Array, node: Array, row: int, table: Table) -> tuple[int, int]:
     """Nodes from a node to a row and some behind that; the same as :func:`_scouted`."""
     rows, steps = table.rows, table.steps
     _set_out(topology, w, node)
@@ -126,7 +130,7 @@ def _ready(topology, w, node, row, table):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def _all_good(topology, w, lanes):  # type: ignore[no-untyped-def]
+def _all_good(topology: Topology, w: Array, lanes: int) -> bool:
     good, bad = topology.noted[GOOD], 0
     for i in range(lanes):
         bad += not w[good, i] > 0.5
@@ -134,7 +138,7 @@ def _all_good(topology, w, lanes):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def _weighed(times, count, t, lanes, cells):  # type: ignore[no-untyped-def]
+def _weighed(times: AnyArray, count: int, t: AnyArray, lanes: int, cells: Array) -> None:
     """Weights at t (lanes,) of values and derivatives at ``count`` times, (2 count, lanes), in
     Hermite's polynomial.
     """
@@ -157,7 +161,9 @@ def _weighed(times, count, t, lanes, cells):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _from_nodes(topology, turn, w, lanes, used, unknowns, cells):  # type: ignore[no-untyped-def]
+def _from_nodes(
+    topology: Topology, turn: int, w: Array, lanes: int, used: int, unknowns: int, cells: Array
+) -> None:
     """Guesses for the first rows by the polynomial through the nodes behind them, which are the
     same in all lanes, in the place of the oldest one.
 
@@ -185,7 +191,7 @@ def _from_nodes(topology, turn, w, lanes, used, unknowns, cells):  # type: ignor
 
 
 @compiled
-def _knots(width):  # type: ignore[no-untyped-def]
+def _knots(width: int) -> CountArray:
     """The lanes of so many rows from which the next rows are predicted, the last one first."""
     count = min(_KNOTS, width)
     knots = np.empty(count, np.int64)
@@ -195,7 +201,15 @@ def _knots(width):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def _predicted(topology, turn, w, lanes, knots, cells, unknowns):  # type: ignore[no-untyped-def]
+def _predicted(
+    topology: Topology,
+    turn: int,
+    w: Array,
+    lanes: int,
+    knots: CountArray,
+    cells: Array,
+    unknowns: int,
+) -> None:
     """Guesses by the polynomial through rows before, in the place of the oldest node."""
     nodes = topology.nodes
     for k in range(unknowns):
@@ -210,7 +224,17 @@ def _predicted(topology, turn, w, lanes, knots, cells, unknowns):  # type: ignor
 
 
 @uncounted
-def _smooth(topology, turn, w, lanes, before, is_first, scale, gap, largest):  # type: ignore[no-untyped-def]
+def _smooth(
+    topology: Topology,
+    turn: int,
+    w: Array,
+    lanes: int,
+    before: Array,
+    is_first: bool,
+    scale: Array,
+    gap: float,
+    largest: float,
+) -> bool:
     """Whether rows follow from the rates of the rows before them, and det J keeps its sign.
 
     ``before`` (S,): the row before the first lane, unless that is the first one of all.
@@ -234,7 +258,9 @@ def _smooth(topology, turn, w, lanes, before, is_first, scale, gap, largest):  #
 
 
 @uncounted
-def _kept(topology, turn, w, lanes, row, unknowns, found):  # type: ignore[no-untyped-def]
+def _kept(
+    topology: Topology, turn: int, w: Array, lanes: int, row: int, unknowns: int, found: Found
+) -> None:
     """The lanes are rows, from that one on."""
     m, trial = found.first, -turn % ROLES
     for j in range(unknowns):
@@ -244,7 +270,19 @@ def _kept(topology, turn, w, lanes, row, unknowns, found):  # type: ignore[no-un
 
 
 @compiled
-def _stretch(topology, w, first, width, before, table, scale, gap, trusting, found, counts):  # type: ignore[no-untyped-def]
+def _stretch(
+    topology: Topology,
+    w: Array,
+    first: int,
+    width: int,
+    before: Array,
+    table: Table,
+    scale: Array,
+    gap: float,
+    trusting: bool,
+    found: Found,
+    counts: CountArray,
+) -> int:
     """From a row on, as far as it goes well with so many rows at once: the first row not found.
 
     ``before`` (S,): the start, or the row before the first one; set to the last row.
@@ -293,7 +331,16 @@ def _stretch(topology, w, first, width, before, table, scale, gap, trusting, fou
 
 
 @uncounted
-def _linked(topology, w, first, table, scale, standing, found, counts):  # type: ignore[no-untyped-def]
+def _linked(
+    topology: Topology,
+    w: Array,
+    first: int,
+    table: Table,
+    scale: Array,
+    standing: Array,
+    found: Found,
+    counts: CountArray,
+) -> bool:
     """Prove rows from one on, each from the one before it; whether that is done.
 
     While that one's error is not known it is taken to be :data:`_FAR`, and looked at afterwards.
@@ -328,7 +375,15 @@ def _linked(topology, w, first, table, scale, standing, found, counts):  # type:
 
 
 @uncounted
-def _joined(topology, w, start, rows, scale, found, standing):  # type: ignore[no-untyped-def]
+def _joined(
+    topology: Topology,
+    w: Array,
+    start: Array,
+    rows: Array,
+    scale: Array,
+    found: Found,
+    standing: Array,
+) -> bool:
     """Whether the start (S,) is proved to lie on the branch of the row next to it."""
     nodes, n = topology.nodes, len(scale)
     last = nodes.shape[1] - 1
@@ -340,11 +395,19 @@ def _joined(topology, w, start, rows, scale, found, standing):  # type: ignore[n
         w[nodes[1, 2 * n + k], 0] = _FAR * scale[k]
     w[nodes[0, last], 0], w[nodes[1, last], 0] = start[-1], rows[row]
     settled(topology, 0, w, standing, False, 1)
-    return w[topology.noted[GOOD], 0] > 0.5
+    return bool(w[topology.noted[GOOD], 0] > 0.5)
 
 
 @compiled
-def _proved(topology, w, start, table, scale, found, counts):  # type: ignore[no-untyped-def]
+def _proved(
+    topology: Topology,
+    w: Array,
+    start: Array,
+    table: Table,
+    scale: Array,
+    found: Found,
+    counts: CountArray,
+) -> bool:
     """Whether all rows are proved, and to be on the branch of the start."""
     for j in range(len(topology.weights)):
         for i in range(LANES):  # the guess: the node before the last
@@ -363,7 +426,18 @@ def _proved(topology, w, start, table, scale, found, counts):  # type: ignore[no
         types.Array(types.float64, 1, "C"), FOUND, types.Array(types.int64, 1, "C"),
     )
 )  # fmt: skip
-def by_rows(topology, scout, w, own, begin, solved, table, scale, found, counts):  # type: ignore[no-untyped-def]
+def by_rows(
+    topology: Topology,
+    scout: Topology,
+    w: Array,
+    own: Array,
+    begin: Array,
+    solved: bool,
+    table: Table,
+    scale: Array,
+    found: Found,
+    counts: CountArray,
+) -> int:
     """One mechanism through all rows.
 
     Parameters

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from linkwork.foundation.arrays import Array
 from linkwork.kernels.lanes.compiling import uncounted
 
 __all__ = ["GROWTH", "SAME", "START_STEPS", "STEPS", "hermite", "trusted"]
@@ -14,7 +15,7 @@ _FAR = 2.5  # times the step before: further ahead fewer nodes are trusted
 
 
 @uncounted
-def trusted(t, times, known):  # type: ignore[no-untyped-def]
+def trusted(t: float, times: Array, known: int) -> int:
     """How many of the ``known`` last nodes, at ``times`` (4,), predict well at t."""
     step, used = abs(t - times[0]), min(known, len(times))
     for k in range(len(times) - 1, 0, -1):
@@ -24,7 +25,7 @@ def trusted(t, times, known):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def hermite(t, times, i, count):  # type: ignore[no-untyped-def]
+def hermite(t: float, times: Array, i: int, count: int) -> tuple[float, float]:
     """Weights at t of the i-th of ``count`` nodes' value and derivative in Hermite's polynomial."""
     basis, slope = 1.0, 0.0
     for j in range(len(times)):

@@ -11,10 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linkwork.foundation.arrays import IndexArray
+from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.kernels.lanes.compiling import call_at, compiled, named_tuple, types, uncounted
 from linkwork.kernels.lanes.machine import LANES, run_part
 from linkwork.kernels.lanes.march_programs import ROLES
+from linkwork.kernels.lanes.program import Code
 from linkwork.kernels.lanes.stepping import SAME, START_STEPS, STEPS, hermite, trusted
 
 __all__ = [
@@ -62,7 +63,7 @@ class Topology(NamedTuple):
         :func:`linkwork.kernels.lanes.printing.trial_source`; 0 where the machine does it
     """
 
-    code: np.ndarray[tuple[int, int], np.dtype[np.uint32]]
+    code: Code
     length: int
     spans: IndexArray
     weights: IndexArray
@@ -90,24 +91,24 @@ TOPOLOGY = named_tuple(
 
 
 @uncounted
-def _one(topology, turn, w, number, lanes):  # type: ignore[no-untyped-def]
+def _one(topology: Topology, turn: int, w: Array, number: int, lanes: int) -> None:
     first, spans = turn * topology.length, topology.spans
     run_part(topology.code, first + spans[number, 0], first + spans[number, 1], w, lanes)
 
 
 @uncounted
-def _blocks(topology):  # type: ignore[no-untyped-def]
+def _blocks(topology: Topology) -> int:
     return len(topology.noted) - LIVE
 
 
 @uncounted
-def proved(topology):  # type: ignore[no-untyped-def]
+def proved(topology: Topology) -> bool:
     """Whether its trials are proved."""
     return len(topology.spans) > BLOCKS + 3 * _blocks(topology)
 
 
 @uncounted
-def _any(w, row, standing, lanes):  # type: ignore[no-untyped-def]
+def _any(w: Array, row: int, standing: Array, lanes: int) -> bool:
     """Whether a mask holds in a lane that counts."""
     found = 0
     for i in range(lanes):
@@ -116,7 +117,7 @@ def _any(w, row, standing, lanes):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def _any_live(topology, w, standing, lanes):  # type: ignore[no-untyped-def]
+def _any_live(topology: Topology, w: Array, standing: Array, lanes: int) -> bool:
     """Whether a lane that counts has not converged."""
     found = False
     for k in range(_blocks(topology)):
@@ -125,7 +126,16 @@ def _any_live(topology, w, standing, lanes):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def _iterate(topology, turn, w, program, live, most, standing, lanes):  # type: ignore[no-untyped-def]
+def _iterate(
+    topology: Topology,
+    turn: int,
+    w: Array,
+    program: int,
+    live: int,
+    most: int,
+    standing: Array,
+    lanes: int,
+) -> int:
     """Newton-Raphson of one block until no lane iterates; how many corrections that took."""
     for k in range(most):
         if not _any(w, live, standing, lanes):
@@ -135,7 +145,7 @@ def _iterate(topology, turn, w, program, live, most, standing, lanes):  # type: 
 
 
 @uncounted
-def judged(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
+def judged(topology: Topology, turn: int, w: Array, lanes: int) -> None:
     """Proofs, if there are any, and the judgement."""
     for program in range(BLOCKS + 3 * _blocks(topology), len(topology.spans)):
         _one(topology, turn, w, program, lanes)
@@ -143,7 +153,7 @@ def judged(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def _by_written(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
+def _by_written(topology: Topology, turn: int, w: Array, lanes: int) -> None:
     place, first = 8 * LANES * topology.nodes.shape[1], w.ctypes.data
     call_at(
         topology.trial,
@@ -158,7 +168,7 @@ def _by_written(topology, turn, w, lanes):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def _given(topology, turn, w, together, lanes):  # type: ignore[no-untyped-def]
+def _given(topology: Topology, turn: int, w: Array, together: bool, lanes: int) -> None:
     """What is given at the trial."""
     shared = topology.shared
     if together and len(shared):
@@ -170,7 +180,9 @@ def _given(topology, turn, w, together, lanes):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def settled(topology, turn, w, standing, together, lanes):  # type: ignore[no-untyped-def]
+def settled(
+    topology: Topology, turn: int, w: Array, standing: Array, together: bool, lanes: int
+) -> int:
     """From the prediction to the judgement; how many corrections the block with most of them took.
 
     Parameters
@@ -206,7 +218,7 @@ def settled(topology, turn, w, standing, together, lanes):  # type: ignore[no-un
 
 
 @uncounted
-def met(topology, turn, w, standing, lanes, unknowns):  # type: ignore[no-untyped-def]
+def met(topology: Topology, turn: int, w: Array, standing: Array, lanes: int, unknowns: int) -> int:
     """From a guess in the place of the oldest node, the only one that has weight, to a position:
     how many corrections that took, 0 if not all lanes have converged. The judgement is made, but
     need not be good.
@@ -228,7 +240,7 @@ def met(topology, turn, w, standing, lanes, unknowns):  # type: ignore[no-untype
 
 
 @compiled
-def solved_slowly(topology, w, lanes):  # type: ignore[no-untyped-def]
+def solved_slowly(topology: Topology, w: Array, lanes: int) -> None:
     """From a guess in role 1 to a position, with small steps; its own proof.
 
     The first proof knows nothing of the node it compares with, the second that it is this position.
@@ -249,7 +261,7 @@ def solved_slowly(topology, w, lanes):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def all_loaded(w, registers, data, base, count):  # type: ignore[no-untyped-def]
+def all_loaded(w: Array, registers: IndexArray, data: Array, base: int, count: int) -> None:
     """Columns of data from ``base`` on into the lanes; behind the last one it stands again."""
     for j in range(len(registers)):
         register = registers[j]
@@ -259,21 +271,21 @@ def all_loaded(w, registers, data, base, count):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def loaded(w, lane, registers, data, member):  # type: ignore[no-untyped-def]
+def loaded(w: Array, lane: int, registers: IndexArray, data: Array, member: int) -> None:
     """One column of data into a lane."""
     for j in range(len(registers)):
         w[registers[j], lane] = data[j, member]
 
 
 @uncounted
-def copied(w, lane, to, source):  # type: ignore[no-untyped-def]
+def copied(w: Array, lane: int, to: IndexArray, source: IndexArray) -> None:
     """Registers of one lane into others."""
     for j in range(len(to)):
         w[to[j], lane] = w[source[j], lane]
 
 
 @uncounted
-def tangent(w, lane, weights, h):  # type: ignore[no-untyped-def]
+def tangent(w: Array, lane: int, weights: IndexArray, h: float) -> None:
     """Predict from the last node alone."""
     for j in range(len(weights)):
         w[weights[j], lane] = 0.0
@@ -282,7 +294,9 @@ def tangent(w, lane, weights, h):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def extrapolated(w, lane, weights, t, times, known):  # type: ignore[no-untyped-def]
+def extrapolated(
+    w: Array, lane: int, weights: IndexArray, t: float, times: Array, known: int
+) -> None:
     """Predict at t by the polynomial through the last nodes with their derivatives.
 
     Parameters
@@ -299,7 +313,9 @@ def extrapolated(w, lane, weights, t, times, known):  # type: ignore[no-untyped-
 
 
 @uncounted
-def chosen(w, lane, weights, times, step, known, spacing):  # type: ignore[no-untyped-def]
+def chosen(
+    w: Array, lane: int, weights: IndexArray, times: Array, step: float, known: int, spacing: Array
+) -> bool:
     """The weights of a lane's prediction, computed anew where its spacing has changed; whether it
     has.
 

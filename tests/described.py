@@ -1,0 +1,19 @@
+"""Descriptions by their form, for tests that know which one a mechanism has."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+from linkwork.everyday.solvable import SolvableMechanism
+from linkwork.mechanism.description import Description
+
+__all__ = ["described_as"]
+
+_Form = TypeVar("_Form", bound=Description)
+
+
+def described_as(form: type[_Form], mechanism: SolvableMechanism) -> _Form:
+    """A mechanism's description, which has that form."""
+    description = mechanism.description
+    assert isinstance(description, form)
+    return description
