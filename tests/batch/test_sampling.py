@@ -203,3 +203,14 @@ def test_csv_files_are_refused_with_the_line(tmp_path: Path, text: str, told: st
     path.write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match=told):
         from_table(path)
+
+
+def test_a_deviation_of_minus_zero_is_none() -> None:
+    plan = random(4, {"a": Normal(2.0, -0.0)}, seed=1)
+    np.testing.assert_array_equal(plan.chunk(0)["a"], 2.0)
+
+
+def test_a_range_wider_than_numbers_are_is_refused() -> None:
+    for draw in (random, latin_hypercube):
+        with pytest.raises(InputError, match='"a" needs a range from low to high'):
+            draw(4, {"a": (-1e308, 1e308)}, seed=1)

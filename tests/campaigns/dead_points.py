@@ -12,9 +12,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from flint import arb, ctx  # type: ignore[import-untyped]
+from flint import arb, ctx
 
 import linkwork as lw
+from linkwork.mechanism.loops import Loops
+from tests.described import described_as
 
 __all__ = ["NearChangePoint", "dead_point_campaign"]
 
@@ -213,7 +215,7 @@ def _family(bars: list[NearChangePoint], counts: Counter[str], certify: bool) ->
     columns = {
         name: np.array([getattr(bar, name) for bar in bars]) for name in ("g", "a", "b", "c")
     }
-    guesses = [text.description.guess for text in texts]
+    guesses = [described_as(Loops, text).guess for text in texts]
     columns |= {n: np.array([g[n] for g in guesses]) for n in guesses[0]}
     table = lw.loads(bars[0].text(bars[0].start + 2.0 * math.pi, _ROWS))
     motion = table.family(columns).sweep(certify=certify)

@@ -82,7 +82,7 @@ class Normal:
             )
 
     def __call__(self, generator: np.random.Generator, count: int) -> Array:
-        return generator.normal(self.mean, self.deviation, count)
+        return generator.normal(self.mean, abs(self.deviation), count)  # -0.0 is not 0.0 there
 
 
 class Plan(Mapping[str, Array]):
@@ -336,7 +336,7 @@ def _range(name: str, given: object) -> Range:
     if ends.shape != (2,) or ends.dtype.kind not in "iuf":
         raise InputError(f'"{name}" needs a range (low, high), got {as_told(given)}')
     low, high = map(float, ends)
-    if not (math.isfinite(low) and math.isfinite(high) and low <= high):
+    if not (math.isfinite(high - low) and low <= high):
         raise InputError(f'"{name}" needs a range from low to high, got {low:g} to {high:g}')
     return low, high
 

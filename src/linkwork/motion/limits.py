@@ -37,7 +37,7 @@ __all__ = [
     "ends_of",
 ]
 
-_UNIT = np.finfo(float).eps
+_UNIT = float(np.finfo(float).eps)
 _MOVES = 1e-7  # weighted: a direction along which the input moves at all
 _SOUND = 1e4  # condition up to which a node is as good as any
 _TOUCHING = 1e-12  # residual at a located crossing, where Newton-Raphson must not take a step

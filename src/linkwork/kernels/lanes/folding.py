@@ -221,7 +221,7 @@ class _Runner:
             programs.iterate.code,
             programs.prove.code,
             self.space,
-            *self.registers.all_of(["live"]),
+            self.registers.named["live"],
             self.registers.all_of(wanted),
             self.places,
             self.given,
@@ -305,9 +305,17 @@ def _search(
 
 
 @compiled
-def _beside(  # type: ignore[no-untyped-def]
-    aside, iterate, prove, w, live, wanted, places, given, out
-):
+def _beside(
+    aside: Code,
+    iterate: Code,
+    prove: Code,
+    w: Array,
+    live: int,
+    wanted: IndexArray,
+    places: IndexArray,
+    given: Array,
+    out: Array,
+) -> None:
     """A place beside the one in ``w``, and the proof of the arc to it."""
     count = given.shape[1]
     for base in range(0, count, LANES):
