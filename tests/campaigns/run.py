@@ -9,6 +9,11 @@ from dataclasses import dataclass
 from time import perf_counter
 
 from tests.campaigns.certificates import judge
+from tests.campaigns.change_points import (
+    CASES,
+    parallel_train_campaign,
+    random_train_campaign,
+)
 from tests.campaigns.circuits import circuit_campaign
 from tests.campaigns.configurations import configuration_campaign
 from tests.campaigns.dead_points import dead_point_campaign
@@ -23,6 +28,7 @@ from tests.campaigns.study import study_campaign
 __all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
 
 _PART = 50
+_OWN_PART = {"parallel-trains": 1}  # every length of train is a part
 
 
 @dataclass(frozen=True)
@@ -70,6 +76,14 @@ def _dead_points(part: int) -> tuple[Counter[str], list[str]]:
     return dead_point_campaign(part, _PART)
 
 
+def _random_trains(part: int) -> tuple[Counter[str], list[str]]:
+    return random_train_campaign(part, _PART)
+
+
+def _parallel_trains(part: int) -> tuple[Counter[str], list[str]]:
+    return parallel_train_campaign(part, len(CASES))
+
+
 def _kinds(part: int) -> tuple[Counter[str], list[str]]:
     return kind_campaign(part, _PART)
 
@@ -83,6 +97,8 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "configurations": (_configurations, 450),
     "circuits": (_circuits, 500),
     "dead-points": (_dead_points, 1_000),
+    "trains": (_random_trains, 500),
+    "parallel-trains": (_parallel_trains, 40),
     "kinds": (_kinds, 100_000),
 }
 #: Those that share the cores themselves: what does the whole campaign, and its usual size.
@@ -100,7 +116,8 @@ def run(name: str, count: int | None = None) -> Report:
         counts, false = whole(count or usual)
         return Report(counts, tuple(false), perf_counter() - begin)
     work, usual = CAMPAIGNS[name]
-    parts = range(-(-(count or usual) // _PART))
+    part = _OWN_PART.get(name, _PART)
+    parts = range(-(-(count or usual) // part))
     counts, false = Counter(), []
     with ProcessPoolExecutor() as pool:
         for part_counts, part_false in pool.map(work, parts):

@@ -3,54 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 import linkwork as lw
-
-Array = npt.NDArray[np.float64]
-
-
-def train(
-    grounds: Sequence[float],
-    cranks: Sequence[float],
-    rows: tuple[float, float, float],
-    offsets: Sequence[float] = (),
-) -> lw.Mechanism:
-    """Parallelograms in a row, the rocker of each the crank of the next, turned by an offset [rad]:
-    loop k crosses its other branch where t0 + offset k is a whole number of half turns.
-    """
-    offsets = offsets or [0.0] * len(grounds)
-    loops, guess = {}, {"t0": math.radians(rows[0])}
-    for k, (ground, crank, offset) in enumerate(
-        zip(grounds, cranks, offsets, strict=True), start=1
-    ):
-        arm = f"{crank!r}*e^(i*({offset!r} + t%d))"
-        loops[f"loop {k}"] = f"{arm % (k - 1)} + {ground!r}*e^(i*k{k}) = {ground!r} + {arm % k}"
-        guess |= {f"k{k}": 0.0, f"t{k}": guess["t0"]}
-    start, stop, step = (math.radians(x) for x in rows)
-    count = round((stop - start) / step)
-    return lw.loops(
-        angle="rad",
-        loops=loops,
-        guess=guess,
-        inputs=lw.Input(variable="t0", start=start, stop=stop, step=(stop - start) / count),
-    )
+from tests.oracles.trains import Loop, apart, parallelogram, train, turned
 
 
-def turned(ground: float, crank: float, angle: Array) -> Array:
-    """The rocker of the antiparallelogram."""
-    half = 0.5 * angle
-    return 2.0 * np.arctan2(-(ground + crank) * np.sin(half), (ground - crank) * np.cos(half))
+def unit_train(count: int, rows: tuple[float, float, float]) -> lw.Mechanism:
+    """Unit parallelograms; those whose cranks point downwards at first are closed the other way."""
+    side = -1.0 if math.sin(math.radians(rows[0])) > 0.0 else 1.0
+    return train([Loop(1.0, 1.0, 1.0, 1.0, side=side)] * count, rows)
 
 
-def apart(a: Array, b: Array) -> float:
-    """The largest difference of angles, whole turns aside."""
-    gap: Array = np.remainder(a - b + math.pi, 2.0 * math.pi) - math.pi
-    return float(np.abs(gap).max())
+def two_loops(offset: float, rows: tuple[float, float, float]) -> lw.Mechanism:
+    """Two parallelograms; the second one crosses where the crank is ``offset`` short of a line."""
+    return train([parallelogram(4.0, 2.0), parallelogram(3.0, 1.0, offset)], rows)
 
 
 ROWS = [(90, 450, 10), (90, -270, -10), (45, 765, 7.2), (77, 437, 60), (-170, 190, 36)]
@@ -62,9 +31,7 @@ def test_rows_beyond_a_shared_crossing_stay_parallel(
     count: int, rows: tuple[float, float, float]
 ) -> None:
     certify = count % 2 == 0
-    motion = train([1.0] * count, [1.0] * count, rows).sweep(
-        change_points="straight", certify=certify
-    )
+    motion = unit_train(count, rows).sweep(change_points="straight", certify=certify)
     assert motion.found.all()
     for k in range(1, count + 1):
         np.testing.assert_allclose(motion[f"t{k}"], motion["t0"], rtol=0, atol=1e-11)
@@ -85,10 +52,10 @@ def test_rows_beyond_a_shared_crossing_stay_parallel(
 def test_crossings_close_to_each_other_are_told_apart(
     offset: float, rows: tuple[float, float, float]
 ) -> None:
-    motion = train([4.0, 3.0], [2.0, 1.0], rows, [0.0, offset]).sweep(change_points="straight")
+    motion = two_loops(offset, rows).sweep(change_points="straight")
     assert motion.found.all()
-    for name in ("t1", "t2"):
-        np.testing.assert_allclose(motion[name], motion["t0"], rtol=0, atol=1e-11)
+    for name, ahead in (("t1", 0.0), ("t2", offset)):
+        np.testing.assert_allclose(motion[name], motion["t0"] + ahead, rtol=0, atol=1e-11)
     passed = [limit for limit in motion.limits if limit.passed]
     assert {limit.loops for limit in passed} == {("loop 1",), ("loop 2",)}
     for limit in passed:
@@ -100,7 +67,9 @@ def test_crossings_close_to_each_other_are_told_apart(
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_every_loop_turns_off_at_a_shared_crossing(count: int) -> None:
     grounds, cranks = [4.0, 3.0, 5.0][:count], [2.0, 1.0, 1.5][:count]
-    motion = train(grounds, cranks, (90, 450, 10)).sweep(change_points="turn")
+    motion = train(list(map(parallelogram, grounds, cranks)), (90, 450, 10)).sweep(
+        change_points="turn"
+    )
     assert motion.found.all()
     assert [limit.passed for limit in motion.limits] == ["", "turn", "turn"]
     assert all(len(limit.loops) == count for limit in motion.limits)
@@ -116,7 +85,7 @@ def test_every_loop_turns_off_at_a_shared_crossing(count: int) -> None:
 
 def test_a_loop_that_cannot_be_told_to_be_on_its_side_stops_the_sweep() -> None:
     # the first loop turns off, and a billionth of a radian later the second one would
-    motion = train([4.0, 3.0], [2.0, 1.0], (90, 450, 10), [0.0, 1e-9]).sweep(change_points="turn")
+    motion = two_loops(1e-9, (90, 450, 10)).sweep(change_points="turn")
     beyond = (motion["t0"] > math.pi) & (motion["t0"] < 2.0 * math.pi)
     found = motion.found & beyond
     driven = motion["t1"][found]
@@ -128,7 +97,7 @@ def test_a_loop_that_cannot_be_told_to_be_on_its_side_stops_the_sweep() -> None:
 
 @pytest.mark.parametrize("gap", [1e-13, 1e-10, 1e-7, 1e-4, -1e-12, -1e-9, -1e-5])
 def test_rows_next_to_a_crossing_are_found(gap: float) -> None:
-    mechanism = train([4.0, 3.0], [2.0, 1.0], (90, 180 + math.degrees(gap), 18))
+    mechanism = two_loops(0.0, (90, 180 + math.degrees(gap), 18))
     motion = mechanism.sweep(change_points="straight")
     assert motion.found.all()
     for name in ("t1", "t2"):
