@@ -12,7 +12,7 @@ from __future__ import annotations
 import json
 import multiprocessing
 import sys
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
@@ -68,7 +68,7 @@ class Snapshot:
     def told(self) -> str:
         """How many mechanisms, calls, rows, and what they took; errors by their type."""
         calls: Counter[str] = Counter()
-        seconds: Counter[str] = Counter()
+        seconds: defaultdict[str, float] = defaultdict(float)
         counts: Counter[str] = Counter()
         for record in self.records.values():
             for section, taken in record.seconds.items():
@@ -80,7 +80,7 @@ class Snapshot:
                     counts[f"{section}: {words[0]}"] += 1
                 elif (category, what) in _COUNTED:
                     counts[f"{section}, {_COUNTED[category, what]}"] += len(words)
-        whole = f"{seconds.total():.0f} s of one core"
+        whole = f"{sum(seconds.values()):.0f} s of one core"
         lines = [f"{len(self.records)} mechanisms in {self.seconds:.0f} s, {whole}"]
         lines += [f"  {n:>8} {name:<16} {seconds[name]:>9.1f} s" for name, n in calls.items()]
         lines += [f"  {n:>8} {name}" for name, n in sorted(counts.items())]
@@ -119,7 +119,7 @@ def record_of(name: str) -> Record:
         if circuits is not None:
             _add_circuits(record, circuits)
     designs = {} if motion is None else designs_of(name, mechanism)
-    if designs:
+    if motion is not None and designs:
         family = _attempt(record, "family", lambda: mechanism.family(designs).sweep(threads=1))
         if family is not None:
             _add_family(record, family, motion)

@@ -16,7 +16,9 @@ import numpy as np
 import tomlkit
 
 import linkwork as lw
+from linkwork.mechanism.linkage import Linkage
 from tests.campaigns.motion import FAMILIES, random_case
+from tests.described import described_as
 from tests.equations.linkages import LINKAGES
 from tests.laws.contacts import KINDS as CONTACTS
 from tests.laws.contacts import contact
@@ -127,11 +129,11 @@ def _loops(family: str, number: int) -> lw.Mechanism:
 def _guided(name: str, number: int) -> lw.Mechanism:
     """A small linkage of the tests, every length and coordinate up to a tenth larger or smaller."""
     mechanism, rng = LINKAGES[name](), _rng(33, name, number)
-    description = mechanism.description
+    description = described_as(Linkage, mechanism)
     return mechanism.changed(
-        lengths={key: float(x * rng.uniform(0.9, 1.1)) for key, x in description.lengths.items()},
+        lengths={key: float(x) * rng.uniform(0.9, 1.1) for key, x in description.lengths.items()},
         points={
-            key: tuple(float(x * rng.uniform(0.9, 1.1)) for x in place)
+            key: tuple(float(x) * rng.uniform(0.9, 1.1) for x in place)
             for key, place in description.points.items()
         },
     )
@@ -209,6 +211,7 @@ def _vary(text: dict[str, Any], rng: Rng, spread: float) -> None:
             text[table] = _each(text[table], rng, spread)
     for table, keys in _LENGTHS.items():
         for part in text.get(table, []) if keys else []:
+            assert keys is not None
             factor = 1.0 + rng.uniform(-spread, spread)
             part |= {key: _times(part[key], factor) for key in keys if key in part}
 
@@ -227,6 +230,7 @@ def _enlarge(text: dict[str, Any], factor: float) -> None:
         if keys is None and table in text:
             text[table] = _times(text[table], factor)
         for part in text.get(table, []) if keys else []:
+            assert keys is not None
             part |= {key: _times(part[key], factor) for key in keys if key in part}
     for driven in _inputs(text):
         if "slider" in driven or "cylinder" in driven:

@@ -37,10 +37,11 @@ class Limit:
     input : float
         Of the leading input, everyday units.
     bracket : (float, float)
-        Around a located dead point: its rounding. Otherwise the last value reached and the first
+        The dead point lies in it if it is located. Otherwise the last value reached and the first
         that failed.
     located : bool
-        Whether the dead point was found to rounding.
+        Whether the input is proved to turn back within the bracket, and the branch to lead there;
+        of a change point, whether it was found to rounding.
     status : Status
         What rows beyond it say.
     loops : tuple of str
