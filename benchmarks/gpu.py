@@ -20,10 +20,10 @@ from linkwork.batch import Family, latin_hypercube
 from linkwork.batch.family_motion import FamilyMotion
 from linkwork.batch.lane_rows import Path
 from linkwork.foundation.errors import InputError
-from linkwork.kernels.lanes.device_compiling import graphics_card, name_of
-from linkwork.kernels.lanes.device_kernel import DeviceKernel
-from linkwork.kernels.lanes.gear import Gear
-from linkwork.kernels.lanes.lane_kernel import Steps
+from linkwork.kernels.gpu.compiling import graphics_card, name_of
+from linkwork.kernels.gpu.kernel import DeviceKernel
+from linkwork.kernels.march.sweep_kernel import Steps
+from linkwork.kernels.program.execution import Gear
 from linkwork.mechanism.quantities import quantities
 
 __all__ = ["FAMILIES", "Compared", "compared", "family_of", "kernel_speed", "main"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from linkwork.everyday.solvable import SolvableMechanism
+from linkwork.api.solvable import SolvableMechanism
 from linkwork.mechanism.description import Description
 
 __all__ = ["described_as"]

@@ -39,7 +39,7 @@ class LinkworkKernel(Peer):
         # compiled code is loaded by those who use it
         path = import_module("linkwork.batch.lane_rows").Path.of(model)
         assert path is not None
-        gear = import_module("linkwork.kernels.lanes.gear").Gear
+        gear = import_module("linkwork.kernels.program.execution").Gear
         march = path.march(family.designs, self.certify, 1, gear(specialised=self.compiled))
         t = model.rows[:, path.lead]
         t = np.ascontiguousarray(t[::-1] if path.falling else t)

@@ -17,7 +17,7 @@ shown_by("Circuits.html", "linkwork.viewer.notebook_html", "circuits_html")
 shown_by("Circuits.plot", "linkwork.drawing.charts.matplotlib_plot", "plot_circuits")
 
 if TYPE_CHECKING:
-    from linkwork.everyday import (
+    from linkwork.api import (
         Mechanism,
         example,
         example_text,
@@ -70,7 +70,7 @@ else:
     __getattr__ = loader(
         __name__,
         {
-            "everyday": (
+            "api": (
                 "Mechanism",
                 "example",
                 "example_text",

@@ -16,9 +16,9 @@ import linkwork as lw
 from benchmarks import gpu
 from linkwork.batch import Family
 from linkwork.batch.family_motion import FamilyMotion
-from linkwork.kernels.lanes import device_kernel
-from linkwork.kernels.lanes.device_kernel import Chunk, DeviceKernel
-from linkwork.kernels.lanes.lane_kernel import LaneRows
+from linkwork.kernels.gpu import kernel as device_kernel
+from linkwork.kernels.gpu.kernel import Chunk, DeviceKernel
+from linkwork.kernels.march.sweep_kernel import LaneRows
 
 ARRAYS = ("v", "status", "certification", "radius", "turns", "limits", "limit_kinds", "alone")
 

@@ -17,7 +17,7 @@ from linkwork.batch import Family
 from linkwork.batch.family_motion import FamilyMotion
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
-from linkwork.kernels.lanes import lane_kernel, one_design
+from linkwork.kernels.march import one_design, sweep_kernel
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.quantities import quantities
 from linkwork.motion import sweep
@@ -127,7 +127,7 @@ def test_library_mechanisms_move_together_as_each_by_itself(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if DRIVEN.index(name) % 2:  # as designs of a large family: in step, not rows side by side
-        monkeypatch.setattr("linkwork.kernels.lanes.lane_kernel._FEW", 0)
+        monkeypatch.setattr("linkwork.kernels.march.sweep_kernel._FEW", 0)
     family = family_of(name, 0.999, 1.001)
     motion = family.sweep()
     assert motion.status.shape == motion.radius.shape == (2, len(motion.inputs))
@@ -157,14 +157,14 @@ def test_without_proofs_the_motions_are_the_same(name: str) -> None:
 def test_rows_side_by_side_are_those_of_designs_in_step(
     name: str, few: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("linkwork.kernels.lanes.lane_kernel._FEW", few)
+    monkeypatch.setattr("linkwork.kernels.march.sweep_kernel._FEW", few)
     ways: list[str] = []
 
     def noted(way: str, inner: Callable[..., int], *arguments: object) -> int:
         ways.append(way)
         return inner(*arguments)
 
-    for where, way in ((lane_kernel, "in_step"), (one_design, "by_rows")):
+    for where, way in ((sweep_kernel, "in_step"), (one_design, "by_rows")):
         inner = getattr(where, way)
         monkeypatch.setattr(where, way, partial(noted, way, inner))
     family = family_of(name, 0.998, 1.002)
@@ -318,7 +318,7 @@ def test_starts_beside_the_path_are_led_to_it_together(
         motion = family.sweep(certify=certify)
         assert not motion.rows.alone.any()
         assert_agrees(family, motion, certify)
-    monkeypatch.setattr("linkwork.batch.entering._CHUNK", 1)  # one design after the other
+    monkeypatch.setattr("linkwork.batch.path_entry._CHUNK", 1)  # one design after the other
     again = family.sweep(certify=False)
     np.testing.assert_array_equal(again.rows.v, motion.rows.v)
 
@@ -343,7 +343,7 @@ def test_starts_that_cannot_be_led_to_the_path_go_alone() -> None:
 def test_threads_and_parts_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     family = lw.example("slider-crank").family({"A B": np.linspace(90.0, 110.0, 150)})
     whole = family.sweep(threads=1)
-    monkeypatch.setattr("linkwork.kernels.lanes.lane_kernel._PART", 64)
+    monkeypatch.setattr("linkwork.kernels.march.sweep_kernel._PART", 64)
     parted = family.sweep(threads=3)
     np.testing.assert_array_equal(parted.rows.v, whole.rows.v)
     np.testing.assert_array_equal(parted.radius, whole.radius)

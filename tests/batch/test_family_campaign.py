@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from linkwork.kernels.lanes import one_design, rowwise
+from linkwork.kernels.march import one_design, rowwise
 from tests.campaigns import families, kinds
 from tests.campaigns.motion import FAMILIES
 

@@ -16,7 +16,7 @@ from benchmarks import gpu
 from linkwork.batch import family as batch_family
 from linkwork.foundation.errors import InputError, MissingPackageError
 from linkwork.foundation.status import Status
-from linkwork.kernels.lanes import device_compiling
+from linkwork.kernels.gpu import compiling as device_compiling
 from tests.batch.in_simulator import ARRAYS, families, found
 
 pytestmark = pytest.mark.extended

@@ -8,10 +8,10 @@ import pytest
 import linkwork as lw
 from linkwork.batch import Family
 from linkwork.batch.lane_rows import March, Path
-from linkwork.kernels.lanes.gear import Gear
-from linkwork.kernels.lanes.machine import LANES
-from linkwork.kernels.lanes.rowwise import _proved, _smooth
-from linkwork.kernels.lanes.tasks import Found
+from linkwork.kernels.march.rowwise import _proved, _smooth
+from linkwork.kernels.march.work_arrays import Found
+from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.program.interpreter import LANES
 from linkwork.mechanism.linkage import Linkage
 from tests.described import described_as
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from flint import arb
 
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.certificate import Bounds, Majorant, Radii, bounds, expansion, radii
+from linkwork.numerics.proof.kantorovich import Bounds, Majorant, Radii, bounds, expansion, radii
 from tests.campaigns.positions import Placed
 from tests.oracles.balls import BallTable, ball, certainly_above, exactly, newton
 

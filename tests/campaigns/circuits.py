@@ -10,7 +10,7 @@ import numpy as np
 import linkwork as lw
 from linkwork.motion.circuit.dead_inputs import DeadPointInputs, dead_point_inputs
 from linkwork.motion.lock_step import lock_step
-from linkwork.numerics.track import InputPath
+from linkwork.numerics.continuation.branch_tracking import InputPath
 from tests.campaigns.motion import FAMILIES, random_mechanism
 from tests.oracles.cranked import cranked_truss
 

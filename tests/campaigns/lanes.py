@@ -8,16 +8,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from linkwork.kernels.lanes.closure import BlockPart, Closure
-from linkwork.kernels.lanes.machine import LANES, run
-from linkwork.kernels.lanes.march_programs import MarchPrograms, march_programs
-from linkwork.kernels.lanes.proof_program import BlockProof, Found
-from linkwork.kernels.lanes.recorder import Recorder, Value
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.certificate import Bounds, Radii
+from linkwork.kernels.march.closure import BlockPart, Closure
+from linkwork.kernels.march.march_programs import MarchPrograms, march_programs
+from linkwork.kernels.march.proof_program import BlockProof, Found
+from linkwork.kernels.program.interpreter import LANES, run
+from linkwork.kernels.program.recorder import Recorder, Value
+from linkwork.numerics.proof.kantorovich import Bounds, Radii
 from tests.campaigns.certificates import Case, Verdict, judge_case
 from tests.campaigns.positions import Placed, closed, random_position
-from tests.kernels.lanes.running import ran
+from tests.kernels.running import ran
 from tests.oracles.balls import BallTable
 
 __all__ = ["LaneClaims", "claims", "coefficients_of", "judge_lane_steps", "judge_lanes"]

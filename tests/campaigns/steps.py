@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.proof import links_hold, prove, reach, rounding_of_inputs
-from linkwork.numerics.proven_path import Beads, prove_path
-from linkwork.numerics.track import InputPath
+from linkwork.numerics.continuation.branch_tracking import InputPath
+from linkwork.numerics.continuation.path_proof import Beads, prove_path
+from linkwork.numerics.proof.position_proof import links_hold, prove, reach, rounding_of_inputs
 from tests.campaigns.certificates import Verdict
 from tests.campaigns.positions import closed
 from tests.numerics.systems import Term, blocks_of, loop_table

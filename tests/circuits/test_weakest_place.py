@@ -12,7 +12,7 @@ from flint import arb, ctx
 import linkwork as lw
 from linkwork.equations.leading import LeadTable
 from linkwork.motion.lock_step import lock_step
-from linkwork.numerics.track import InputPath
+from linkwork.numerics.continuation.branch_tracking import InputPath
 from tests.oracles.four_bar import FourBar, random_crank_rockers
 
 Array = npt.NDArray[np.float64]

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from linkwork.api import example_text, load
 from linkwork.cli import output_file
-from linkwork.everyday import example_text, load
 from linkwork.foundation.errors import InputError
 from linkwork.results.table import table_of
 from tests.cli.conftest import Run

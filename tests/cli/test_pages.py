@@ -10,9 +10,9 @@ from pathlib import Path
 import click
 import pytest
 
+from linkwork.api import example_text, examples, load
 from linkwork.cli.check import check_lines
 from linkwork.cli.main import linkwork
-from linkwork.everyday import example_text, examples, load
 from tests.cli.conftest import FILES, Run
 from tests.thinned import thinned
 

@@ -34,7 +34,7 @@ def test_solve_loads_nothing_heavy(environment: dict[str, str]) -> None:
     loaded = json.loads(done.stderr)
     assert "numpy" in loaded
     assert not {name.partition(".")[0] for name in loaded} & HEAVY
-    assert "linkwork.numerics.proof" in loaded
+    assert "linkwork.numerics.proof.position_proof" in loaded
     assert not FOR_MOTION & set(loaded)
 
 

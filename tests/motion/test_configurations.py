@@ -13,7 +13,7 @@ import linkwork as lw
 from linkwork import Completeness
 from linkwork.motion.assembly import assembling
 from linkwork.motion.assembly.assembling import positions_at
-from linkwork.numerics import bilinear_family, generic_roots, homotopy
+from linkwork.numerics.homotopy import bilinear_family, isolated_roots, path_tracking
 from tests.campaigns.configurations import judge_truss
 from tests.laws.mechanisms import NAMES, mechanism_of
 from tests.oracles.four_bar import FourBar
@@ -472,12 +472,12 @@ def test_a_random_start_that_was_not_confirmed_makes_no_claim(
 ) -> None:
     mechanism = _three_loops_with_a_slide()
     monkeypatch.setattr(bilinear_family, "bound_by_sums", lambda *_: None)
-    monkeypatch.setattr(generic_roots, "_KNOWN", {})
+    monkeypatch.setattr(isolated_roots, "_KNOWN", {})
     found = mechanism.configurations()
     assert found.completeness is Completeness.WITH_PROBABILITY_ONE
     assert found.message.endswith("16 complex solutions, at most 20 by Bézout's theorem")
-    monkeypatch.setattr(generic_roots, "_KNOWN", {})
-    monkeypatch.setattr(generic_roots, "_TRIES", 1)
+    monkeypatch.setattr(isolated_roots, "_KNOWN", {})
+    monkeypatch.setattr(isolated_roots, "_TRIES", 1)
     assert mechanism.configurations().completeness is Completeness.NOT_PROVED
 
 
@@ -502,7 +502,7 @@ def test_two_solutions_that_settle_on_one_position_make_no_claim(
 def test_lost_paths_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism = truss("Ds[", np.random.default_rng(5))
     mechanism.configurations()
-    monkeypatch.setattr(homotopy, "_LARGEST_STEPS", 3)
+    monkeypatch.setattr(path_tracking, "_LARGEST_STEPS", 3)
     found = mechanism.configurations()
     assert (found.completeness, len(found)) == (Completeness.NOT_PROVED, 0)
     assert found.message.startswith("not proved: solution paths were lost")

@@ -285,8 +285,8 @@ def test_loops_that_say_the_same_twice_are_no_complete_list() -> None:
 
 
 def test_lost_paths_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("linkwork.numerics.generic_roots._KNOWN", {})
-    monkeypatch.setattr("linkwork.numerics.generic_roots._TRIES", 0)
+    monkeypatch.setattr("linkwork.numerics.homotopy.isolated_roots._KNOWN", {})
+    monkeypatch.setattr("linkwork.numerics.homotopy.isolated_roots._TRIES", 0)
     found = dead_inputs_of(lw.example("rapier-drive"))
     assert found.completeness is Completeness.NOT_PROVED
     assert found.reason == ("not proved: solution paths were lost, so dead points may be missing")

@@ -17,11 +17,11 @@ import pytest
 
 import linkwork as lw
 from linkwork.foundation.arrays import Array
-from linkwork.kernels.lanes import at_hand
-from linkwork.kernels.lanes.at_hand import compiled_code_is_at_hand, say_that_it_compiles
+from linkwork.kernels.program import kernel_cache as at_hand
+from linkwork.kernels.program.kernel_cache import kernels_are_compiled, say_that_it_compiles
 from linkwork.motion import by_kernels
 from linkwork.motion.drive import Drive
-from linkwork.numerics.track import Track
+from linkwork.numerics.continuation.branch_tracking import Track
 from tests.thinned import thinned
 
 ROWS = 2400
@@ -296,11 +296,11 @@ def test_a_short_table_does_not_ask_for_compiled_code(monkeypatch: pytest.Monkey
         "from linkwork.motion import by_kernels\n"
         "many = 10**9\n"
         "print(by_kernels.kernels_pay(m.model, many, True), 'numba' in sys.modules)\n"
-        "import linkwork.kernels.lanes.rowwise\n"
+        "import linkwork.kernels.march.rowwise\n"
         "print(by_kernels.kernels_pay(m.model, 4000, True))\n"
         "print(by_kernels.kernels_pay(m.model, 40000, True))\n"
     )
-    at_hand = compiled_code_is_at_hand()
+    at_hand = kernels_are_compiled()
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     first, *others = done.stdout.splitlines()
     assert first == f"{at_hand} False"
@@ -325,23 +325,23 @@ def test_compiled_code_counts_if_it_is_that_of_its_source(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    assert not compiled_code_is_at_hand()
+    assert not kernels_are_compiled()
     left = tmp_path / "lanes_0a1b" / "rowwise.by_rows-336.py311.nbi"
     left.parent.mkdir()
     left.write_bytes(b"")
-    assert compiled_code_is_at_hand()
+    assert kernels_are_compiled()
     os.utime(left, (1.0, 1.0))  # older than the source: that of another one
-    assert not compiled_code_is_at_hand()
+    assert not kernels_are_compiled()
     digest = hashlib.sha256(at_hand._LAST.read_bytes()).digest()
     left.write_bytes(b"an index with " + digest + b" in it")
     os.utime(left, (1.0, 1.0))  # but in a copy times tell nothing
-    assert compiled_code_is_at_hand()
+    assert kernels_are_compiled()
 
 
 def test_numba_keeps_the_digest_by_which_compiled_code_is_known() -> None:
     numba = import_module("numba")
     if tuple(map(int, numba.__version__.split(".")[:2])) < (0, 68):
         pytest.skip("this version goes by the times of files")
-    import_module("linkwork.kernels.lanes.rowwise")
+    import_module("linkwork.kernels.march.rowwise")
     digest = hashlib.sha256(at_hand._LAST.read_bytes()).digest()
     assert any(digest in index.read_bytes() for index in at_hand._indices())

@@ -7,12 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from linkwork.numerics import generic_roots
-from linkwork.numerics.bilinear import BilinearSystem, proved_roots
-from linkwork.numerics.bilinear_family import structure_of
-from linkwork.numerics.bilinear_homotopy import ParameterHomotopy, StartHomotopy, null_space
-from linkwork.numerics.polynomial_system import polished
-from linkwork.numerics.quadratic_roots import quadratic_roots
+from linkwork.numerics.homotopy import isolated_roots as roots_module
+from linkwork.numerics.homotopy.bilinear import BilinearSystem, proved_roots
+from linkwork.numerics.homotopy.bilinear_family import structure_of
+from linkwork.numerics.homotopy.bilinear_homotopy import (
+    ParameterHomotopy,
+    StartHomotopy,
+    null_space,
+)
+from linkwork.numerics.homotopy.polynomial_system import polished
+from linkwork.numerics.homotopy.quadratic_roots import quadratic_roots
 from tests.numerics.bilinear_systems import (
     THETA_18,
     TRUSS_18,
@@ -140,21 +144,21 @@ def test_results_do_not_depend_on_what_was_solved_before(monkeypatch: pytest.Mon
     first = roots_of(system).x
     roots_of(angles_only(*TRUSS_18))
     assert np.array_equal(roots_of(system).x, first)
-    monkeypatch.setattr(generic_roots, "_KNOWN", {})
+    monkeypatch.setattr(roots_module, "_KNOWN", {})
     assert np.array_equal(roots_of(system).x, first)
 
 
 def test_lost_paths_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     system, _ = random_triad(8)
     roots_of(system)
-    monkeypatch.setattr("linkwork.numerics.homotopy._LARGEST_STEPS", 3)
+    monkeypatch.setattr("linkwork.numerics.homotopy.path_tracking._LARGEST_STEPS", 3)
     roots = roots_of(system)
     assert (len(roots.x), roots.failed) == (0, 6)
 
 
 def test_solutions_missing_at_first_are_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
     system, _ = random_triad(8)
-    followed, calls = generic_roots._followed, []
+    followed, calls = roots_module._followed, []
 
     def careless(*arguments: Any, **options: Any) -> Any:
         ends = followed(*arguments, **options)
@@ -164,7 +168,7 @@ def test_solutions_missing_at_first_are_looked_for_again(monkeypatch: pytest.Mon
         return ends
 
     roots_of(system)
-    monkeypatch.setattr(generic_roots, "_followed", careless)
+    monkeypatch.setattr(roots_module, "_followed", careless)
     roots = roots_of(system)
     assert (len(roots.x), roots.at_infinity, len(calls)) == (6, 0, 2)
     assert [options["nearest"] for options in calls] == [True, False]
@@ -172,10 +176,10 @@ def test_solutions_missing_at_first_are_looked_for_again(monkeypatch: pytest.Mon
 
 def test_a_path_that_jumped_is_not_counted_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     system, _ = random_triad(9)
-    known = generic_roots._generic(structure_of(system))
+    known = roots_module._generic(structure_of(system))
     twice = np.concatenate([known.x[:5], known.x[:1]])
-    spoiled = generic_roots._Generic(system=known.system, x=twice)
-    monkeypatch.setitem(generic_roots._KNOWN, structure_of(system), spoiled)
+    spoiled = roots_module._Generic(system=known.system, x=twice)
+    monkeypatch.setitem(roots_module._KNOWN, structure_of(system), spoiled)
     roots = roots_of(system)
     assert (len(roots.x), roots.failed) == (4, 2)
 
@@ -183,9 +187,9 @@ def test_a_path_that_jumped_is_not_counted_twice(monkeypatch: pytest.MonkeyPatch
 def test_closed_paths_find_solutions_that_were_missing() -> None:
     system, _ = random_triad(10)
     structure = structure_of(system)
-    known = generic_roots._generic(structure)
-    part = generic_roots._Generic(system=known.system, x=known.x[:2])
-    whole = generic_roots._closed(structure, part, np.random.default_rng(0))
+    known = roots_module._generic(structure)
+    part = roots_module._Generic(system=known.system, x=known.x[:2])
+    whole = roots_module._closed(structure, part, np.random.default_rng(0))
     assert len(whole.x) == 6
 
 
@@ -221,7 +225,7 @@ def test_three_legs_in_one_point_are_multiple_but_no_continuum() -> None:
 
 def test_a_regular_solution_is_on_no_curve() -> None:
     system, t = random_triad(4)
-    assert not generic_roots._on_a_curve(system, real_solution(t))
+    assert not roots_module._on_a_curve(system, real_solution(t))
 
 
 def _dyad(p: complex, q: complex, f: complex) -> BilinearSystem:

@@ -19,12 +19,24 @@ from linkwork.foundation.status import Status
 from linkwork.kernels.loop_table import LinearRows, LoopTable
 from linkwork.kernels.phasor_rows import PhasorRows
 from linkwork.motion.proving import prove_rows
-from linkwork.numerics import proven_path
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.certificate import Bounds, bounds, radii
-from linkwork.numerics.proof import Proof, links_hold, prove, reach, rounding_of_inputs
-from linkwork.numerics.proven_path import ProvenPath, prove_path
-from linkwork.numerics.track import InputPath, Track, follow, node_at, rows_on_track
+from linkwork.numerics.continuation import path_proof
+from linkwork.numerics.continuation.branch_tracking import (
+    InputPath,
+    Track,
+    follow,
+    node_at,
+    rows_on_track,
+)
+from linkwork.numerics.continuation.path_proof import ProvenPath, prove_path
+from linkwork.numerics.proof.kantorovich import Bounds, bounds, radii
+from linkwork.numerics.proof.position_proof import (
+    Proof,
+    links_hold,
+    prove,
+    reach,
+    rounding_of_inputs,
+)
 from tests.campaigns.certificates import judge
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.steps import beads_of, judge_steps
@@ -399,7 +411,7 @@ def test_the_first_step_without_a_proof_tells_why_there_is_none_beyond() -> None
 def test_a_proof_stops_at_its_allowance_and_begins_at_the_anchor(
     lanes: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(proven_path, "_LANES", lanes)
+    monkeypatch.setattr(path_proof, "_LANES", lanes)
     theta = np.radians(np.arange(0.0, 361.0, 60.0))
     solver, v = four_bar_at(ROCKER, theta, 1)
     beads = beads_of(solver, v)
@@ -422,7 +434,7 @@ def test_a_proof_stops_at_its_allowance_and_begins_at_the_anchor(
 
 
 def test_steps_beyond_one_that_is_refused_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(proven_path, "_LANES", 1)  # one after the other
+    monkeypatch.setattr(path_proof, "_LANES", 1)  # one after the other
     theta = np.radians(np.arange(0.0, 361.0, 60.0))
     solver, v = four_bar_at(ROCKER, theta, 1)
     v[2] = four_bar_at(ROCKER, theta, -1)[1][2]
@@ -454,8 +466,8 @@ def test_the_proofs_of_a_long_path_are_those_of_its_pieces() -> None:
 
 def too_long_to_prove(monkeypatch: pytest.MonkeyPatch) -> Certification:
     """Of a row three proved halvings away from the start, where none is allowed."""
-    monkeypatch.setattr(proven_path, "_MOST", 0)
-    monkeypatch.setattr(proven_path, "_MOST_EACH", 0)
+    monkeypatch.setattr(path_proof, "_MOST", 0)
+    monkeypatch.setattr(path_proof, "_MOST_EACH", 0)
     solver, v = four_bar_at(ROCKER, np.radians([0.0, 80.0]), 1)
     start, last = (node_at(solver, PATH, x[2], x) for x in v)
     track = Track(nodes=(start, last), start=0)

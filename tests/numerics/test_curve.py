@@ -16,12 +16,12 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.motion.circuit.branches import Traced, branches_of, traced
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.start import first_position
-from linkwork.numerics.curve import Curve, CurveOptions, Leg, trace
-from linkwork.numerics.leaders import same_position
+from linkwork.numerics.continuation.branch_tracking import InputPath
+from linkwork.numerics.continuation.curve_proof import prove_curve
+from linkwork.numerics.continuation.curve_tracing import Curve, CurveOptions, Leg, trace
+from linkwork.numerics.continuation.local_parametrization import same_position
+from linkwork.numerics.continuation.turning_point import TurningPoint
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.proven_curve import prove_curve
-from linkwork.numerics.track import InputPath
-from linkwork.numerics.turning_point import TurningPoint
 from tests.numerics.systems import four_bar_table
 from tests.oracles.four_bar import FourBar
 from tests.thinned import thinned

@@ -10,8 +10,8 @@ import numpy.typing as npt
 import pytest
 
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.fold import Family, Fold, locate_fold
-from linkwork.numerics.joined import JoinedBlocks
+from linkwork.numerics.continuation.fold import Family, Fold, locate_fold
+from linkwork.numerics.joined_blocks import JoinedBlocks
 from linkwork.numerics.least_squares import nearest_miss
 from tests.numerics.systems import blocks_of, loop_table
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from linkwork.foundation.arrays import AnyArray, Array, ComplexArray
-from linkwork.numerics.homotopy import (
+from linkwork.numerics.homotopy.path_tracking import (
     ARRIVED,
     BOLD,
     CAREFUL,

@@ -10,12 +10,12 @@ import pytest
 import linkwork as lw
 from linkwork.equations.directions import direction_form
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics import laman_number as module
-from linkwork.numerics.bilinear_family import Structure, structure_of
-from linkwork.numerics.column_sums import Columns, column_ranks, random_closures
-from linkwork.numerics.generic_roots import isolated_roots
-from linkwork.numerics.laman_number import laman_number
-from linkwork.numerics.solution_bound import bound_by_sums
+from linkwork.numerics.homotopy import laman_number as module
+from linkwork.numerics.homotopy.bilinear_family import Structure, structure_of
+from linkwork.numerics.homotopy.column_sums import Columns, column_ranks, random_closures
+from linkwork.numerics.homotopy.isolated_roots import isolated_roots
+from linkwork.numerics.homotopy.laman_number import laman_number
+from linkwork.numerics.homotopy.solution_bound import bound_by_sums
 from tests.oracles.frameworks import MOST_REALISATIONS, bars_of, bars_of_number, cycle_columns
 from tests.oracles.trusses import FIVE_LINKS, NINE_LINKS, SEVEN_LINKS, edges_of, truss
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwork.numerics import generic_roots
-from linkwork.numerics.locking_family import LockingFamily, locking_roots
-from linkwork.numerics.locking_system import LockingSystem
-from linkwork.numerics.polynomial_system import polished
+from linkwork.numerics.homotopy import isolated_roots as roots_module
+from linkwork.numerics.homotopy.dead_point_family import LockingFamily, locking_roots
+from linkwork.numerics.homotopy.dead_point_system import LockingSystem
+from linkwork.numerics.homotopy.polynomial_system import polished
 
 #: Own rates of a dyad: of two links; of a link and a length on a fixed line (third column: one).
 LINKS = ((0, 0, 0, 1.0, 1.0), (1, 1, 1, 1.0, 1.0))
@@ -150,7 +150,7 @@ def test_where_nothing_locks_every_path_runs_to_infinity() -> None:
 def test_every_run_gives_the_same_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
     first = locking_roots(six_bar(8)).x
     locking_roots(six_bar(9))
-    monkeypatch.setattr(generic_roots, "_KNOWN", {})
+    monkeypatch.setattr(roots_module, "_KNOWN", {})
     assert np.array_equal(locking_roots(six_bar(8)).x, first)
 
 

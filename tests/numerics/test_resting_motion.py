@@ -9,8 +9,8 @@ import linkwork as lw
 from linkwork.equations.locking import LockingForm, locking_form
 from linkwork.motion.drive import Drive
 from linkwork.motion.lock_step import lock_step
-from linkwork.numerics.locking_family import locking_roots
-from linkwork.numerics.resting_motion import RealPoints, keeps_complex_input, real_motion
+from linkwork.numerics.homotopy.dead_point_family import locking_roots
+from linkwork.numerics.homotopy.idle_component import RealPoints, keeps_complex_input, real_motion
 
 KITE = "e^(i*t) + 2*e^(i*p) = 1 + 2*e^(i*q)"
 ISOSCELES = "2*e^(i*p) + 2*e^(i*q) = s"

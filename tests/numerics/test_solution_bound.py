@@ -7,15 +7,20 @@ import math
 import numpy as np
 import pytest
 
-from linkwork.numerics import generic_roots
-from linkwork.numerics.bilinear import proved_roots
-from linkwork.numerics.bilinear_family import Structure, structure_of
-from linkwork.numerics.bilinear_homotopy import StartHomotopy
-from linkwork.numerics.column_sums import columns_of, sums_hold
-from linkwork.numerics.generic_roots import isolated_roots
-from linkwork.numerics.homotopy import CAREFUL, track
-from linkwork.numerics.laman_number import laman_number
-from linkwork.numerics.solution_bound import Products, Theorem, bound_by_products, bound_by_sums
+from linkwork.numerics.homotopy import isolated_roots as roots_module
+from linkwork.numerics.homotopy.bilinear import proved_roots
+from linkwork.numerics.homotopy.bilinear_family import Structure, structure_of
+from linkwork.numerics.homotopy.bilinear_homotopy import StartHomotopy
+from linkwork.numerics.homotopy.column_sums import columns_of, sums_hold
+from linkwork.numerics.homotopy.isolated_roots import isolated_roots
+from linkwork.numerics.homotopy.laman_number import laman_number
+from linkwork.numerics.homotopy.path_tracking import CAREFUL, track
+from linkwork.numerics.homotopy.solution_bound import (
+    Products,
+    Theorem,
+    bound_by_products,
+    bound_by_sums,
+)
 from tests.numerics.bilinear_systems import angles_only
 
 
@@ -106,8 +111,8 @@ def test_systems_of_small_integers_have_no_more_solutions_than_their_bound(seed:
         pytest.skip("dependent closures")
     system = angles_only(closures, known)
     start = StartHomotopy.of(system, rng)
-    ends = generic_roots._read(system, start, track(start, start.starts(), CAREFUL))
-    x = generic_roots._distinct(ends.x[ends.regular])
+    ends = roots_module._read(system, start, track(start, start.starts(), CAREFUL))
+    x = roots_module._distinct(ends.x[ends.regular])
     rounding = 1e-16 * np.abs(system.left)
     proofs = proved_roots(system, x, rounding)
     bound = structure_of(system).bound_of(system, rounding, len(x))

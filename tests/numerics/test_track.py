@@ -12,7 +12,14 @@ import pytest
 
 from linkwork import Input, Mechanism, Status, linkage
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.track import InputPath, Node, Track, follow, node_at, rows_on_track
+from linkwork.numerics.continuation.branch_tracking import (
+    InputPath,
+    Node,
+    Track,
+    follow,
+    node_at,
+    rows_on_track,
+)
 from tests.numerics.systems import blocks_of, four_bar_table
 from tests.oracles.four_bar import FourBar, random_crank_rockers
 from tests.thinned import thinned

@@ -14,8 +14,8 @@ from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import whole_number
 from linkwork.foundation.sharing import cores
-from linkwork.kernels.lanes.device_compiling import graphics_card
-from linkwork.kernels.lanes.gear import Gear
+from linkwork.kernels.gpu.compiling import graphics_card
+from linkwork.kernels.program.execution import Gear
 from linkwork.motion.model import Model
 
 __all__ = ["Family", "Reduction", "family_of"]

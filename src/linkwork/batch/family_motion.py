@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from linkwork.batch.designs import Designs
-from linkwork.batch.going_alone import message_alone
 from linkwork.batch.limits import FamilyLimits
 from linkwork.batch.quantity_values import (
     QuantityValues,
@@ -27,6 +26,7 @@ from linkwork.batch.rates import (
     design_speeds,
 )
 from linkwork.batch.rows import DesignRows
+from linkwork.batch.single_sweep import message_alone
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import InputError, MissingPackageError

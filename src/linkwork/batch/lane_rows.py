@@ -8,17 +8,17 @@ import numpy as np
 
 from linkwork.batch.coefficients import loop_coefficients, zero_coefficients
 from linkwork.batch.designs import Designs
-from linkwork.batch.entering import led_to_rows
-from linkwork.batch.going_alone import sweep_alone
 from linkwork.batch.limits import LIMIT_KINDS
+from linkwork.batch.path_entry import led_to_rows
 from linkwork.batch.rows import DesignRows
+from linkwork.batch.single_sweep import sweep_alone
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
-from linkwork.kernels.lanes.folding import dead_points
-from linkwork.kernels.lanes.gear import Gear
-from linkwork.kernels.lanes.lane_kernel import LaneRows, RowsOfOne, Steps
+from linkwork.kernels.march.dead_points import dead_points
+from linkwork.kernels.march.sweep_kernel import LaneRows, RowsOfOne, Steps
+from linkwork.kernels.program.execution import Gear
 from linkwork.motion.by_kernels import are_served, kernel_of
 from linkwork.motion.drive import Drive
 from linkwork.motion.lock_step import lock_step

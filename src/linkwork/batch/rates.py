@@ -14,9 +14,9 @@ from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.foundation.lanes import Consensus, NotElementwise, many
 from linkwork.foundation.status import Status
-from linkwork.kernels.lanes.closure import BlockPart
-from linkwork.kernels.lanes.places import at_places
-from linkwork.kernels.lanes.rate_programs import PlaceProgram, evidence_program, rate_program
+from linkwork.kernels.march.closure import BlockPart
+from linkwork.kernels.march.position_programs import at_places
+from linkwork.kernels.march.rate_programs import PlaceProgram, evidence_program, rate_program
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.quantities import with_numbers
 from linkwork.motion.by_kernels import block_parts, lines_of_lengths

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from linkwork.api import Mechanism
 from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.options import (
@@ -16,7 +17,6 @@ from linkwork.cli.options import (
 )
 from linkwork.cli.output_file import check_outputs, write_bytes
 from linkwork.cli.terminal import print_lines, progress
-from linkwork.everyday import Mechanism
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
 from linkwork.viewer import FilmOptions, animation, check_animation

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import click
 
+from linkwork.api import Mechanism
 from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.options import debug_option, file_argument, json_option, set_option
@@ -24,7 +25,6 @@ from linkwork.cli.terminal import (
 )
 from linkwork.cli.text_table import Column, short, table_lines
 from linkwork.drawing.charts.circuit_chart import MOST_PANELS, circuit_chart
-from linkwork.everyday import Mechanism
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import canonical

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import click
 
+from linkwork.api import Mechanism
 from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.options import (
@@ -30,7 +31,6 @@ from linkwork.cli.terminal import (
 )
 from linkwork.cli.text_table import Column, short, table_lines
 from linkwork.drawing.sheet import configuration_sheet
-from linkwork.everyday import Mechanism
 from linkwork.foundation.certification import Certification
 from linkwork.results.configurations import Configurations, PathCount
 from linkwork.results.position import Certificate

@@ -5,8 +5,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from linkwork.api import Mechanism, examples
 from linkwork.cli.options import number_or_formula
-from linkwork.everyday import Mechanism, examples
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.parts import Number

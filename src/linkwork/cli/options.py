@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from linkwork.everyday import Mechanism
+from linkwork.api import Mechanism
 from linkwork.foundation.errors import ExpressionError, InputError
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.results.force import Force, check_forces

@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from linkwork.api import Mechanism
 from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.motion_page import failure_line
@@ -27,7 +28,6 @@ from linkwork.drawing.charts.plotting import (
     motion_plot,
 )
 from linkwork.drawing.charts.theme import THEMES, chart_theme
-from linkwork.everyday import Mechanism
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.results.circuits import Circuits

@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from linkwork.api import Mechanism
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
 from linkwork.cli.text_table import Column, fixed, lengths, short, significant, table_lines
-from linkwork.everyday import Mechanism
 from linkwork.foundation.certification import Certification
 from linkwork.motion.lock_step import lock_step
 from linkwork.results.position import Certificate, NewtonTrail, Position

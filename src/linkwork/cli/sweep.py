@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from linkwork.api import Mechanism
 from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.motion_page import failure_line, motion_lines
@@ -26,7 +27,6 @@ from linkwork.cli.position_page import residual_measure
 from linkwork.cli.terminal import print_json, print_lines, progress, wrapped
 from linkwork.drawing.charts.plotting import motion_plot
 from linkwork.drawing.scene import Scene
-from linkwork.everyday import Mechanism
 from linkwork.export import csv_lines, workbook_of
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.parts import Number

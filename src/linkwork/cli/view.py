@@ -7,9 +7,9 @@ import webbrowser
 
 import click
 
+from linkwork.api import loads
 from linkwork.cli.options import debug_option, file_argument
 from linkwork.cli.terminal import print_lines, title_lines
-from linkwork.everyday import loads
 from linkwork.foundation.errors import InputError
 from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.server import LiveServer

@@ -14,7 +14,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.bilinear import BilinearSystem
+from linkwork.numerics.homotopy.bilinear import BilinearSystem
 
 __all__ = ["DirectionForm", "NoDirectionForm", "check_independent", "direction_form"]
 
@@ -39,7 +39,7 @@ class DirectionForm:
     column : (T,) int
         The column of each term: a direction, then the lengths, M for known terms.
     rows : (4, M) int
-        The products of :class:`~linkwork.numerics.bilinear.BilinearSystem`.
+        The products of :class:`~linkwork.numerics.homotopy.bilinear.BilinearSystem`.
     angles : (A, D)
         Unknown angles = ``angles`` · directions + ``shift`` · (known variables, 1).
     shift : (A, p + 1)

@@ -14,9 +14,9 @@ import numpy as np
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.kernels.loop_table import LinearRows, LoopTable, TableSplitter
 from linkwork.numerics.block_solver import Block, BlockSolver
+from linkwork.numerics.continuation.branch_tracking import InputPath
+from linkwork.numerics.continuation.local_parametrization import Led
 from linkwork.numerics.decomposition import block_form
-from linkwork.numerics.leaders import Led
-from linkwork.numerics.track import InputPath
 
 __all__ = ["LeadTable"]
 

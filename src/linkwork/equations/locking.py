@@ -18,9 +18,9 @@ from linkwork.equations.leading import LeadTable
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.kernels.loop_table import LoopTable, TableSplitter
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.joined import closure_of
-from linkwork.numerics.locking_system import LockingSystem, Slot
-from linkwork.numerics.track import InputPath
+from linkwork.numerics.continuation.branch_tracking import InputPath
+from linkwork.numerics.homotopy.dead_point_system import LockingSystem, Slot
+from linkwork.numerics.joined_blocks import closure_of
 
 __all__ = ["LockingForm", "locking_form"]
 

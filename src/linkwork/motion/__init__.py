@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from linkwork.motion.iterating import guessed_points, iterates, pulled_guess
     from linkwork.motion.model import Model, model_of
     from linkwork.motion.nearest_assembling import nearest_assembly
-    from linkwork.motion.renewing import renewed
     from linkwork.motion.solving import solve
     from linkwork.motion.sweeping import sweep
     from linkwork.motion.vector_loops import moving_loops, vector_loops
+    from linkwork.motion.warm_start import renewed
 else:
     __getattr__ = loader(
         __name__,

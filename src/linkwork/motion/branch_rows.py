@@ -18,8 +18,7 @@ from linkwork.motion.limits import BranchEnd, ends_of
 from linkwork.motion.proving import inputs_apart, prove_rows
 from linkwork.motion.rows import SolvedRows
 from linkwork.motion.tracking import track_to
-from linkwork.numerics.passage import Passage
-from linkwork.numerics.track import (
+from linkwork.numerics.continuation.branch_tracking import (
     BOLD,
     Node,
     Rows,
@@ -29,6 +28,7 @@ from linkwork.numerics.track import (
     joined_rows,
     rows_on_track,
 )
+from linkwork.numerics.continuation.passage import Passage
 
 __all__ = ["Asked", "BranchRows", "Report", "rows_of_branch"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd, end_at_change_point
-from linkwork.numerics.passage import Passage, pass_change_points
+from linkwork.numerics.continuation.passage import Passage, pass_change_points
 
 __all__ = ["beyond_change_point", "ends_passed"]
 

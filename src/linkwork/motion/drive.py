@@ -10,7 +10,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import leading_scale, turns_freely
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.track import InputPath
+from linkwork.numerics.continuation.branch_tracking import InputPath
 
 __all__ = ["Drive"]
 

@@ -14,8 +14,8 @@ from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.model import Model
-from linkwork.motion.reading import Named, named_series
-from linkwork.numerics.track import Track, rows_on_track
+from linkwork.motion.named_quantities import Named, named_series
+from linkwork.numerics.continuation.branch_tracking import Track, rows_on_track
 from linkwork.results.motion import OutputLimit, Series
 
 __all__ = ["check_quantities", "output_limit_at", "output_limits"]

@@ -9,9 +9,9 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.motion.model import Model
+from linkwork.motion.named_quantities import Named, named_series
 from linkwork.motion.nearest_assembling import open_ends
 from linkwork.motion.positions import target_values
-from linkwork.motion.reading import Named, named_series
 from linkwork.motion.solving import solve
 from linkwork.numerics.block_solver import Block
 from linkwork.numerics.newton import NewtonOptions

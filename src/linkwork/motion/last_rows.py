@@ -18,12 +18,12 @@ from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.rows import SolvedRows
-from linkwork.numerics.divided_steps import sign_change
-from linkwork.numerics.passage import Passage
-from linkwork.numerics.proof import Proof, prove
-from linkwork.numerics.proven_curve import same_solution
-from linkwork.numerics.track import Track
-from linkwork.numerics.turning_point import TurnAhead
+from linkwork.numerics.continuation.branch_tracking import Track
+from linkwork.numerics.continuation.curve_proof import same_solution
+from linkwork.numerics.continuation.passage import Passage
+from linkwork.numerics.continuation.step_division import sign_change
+from linkwork.numerics.continuation.turning_point import TurnAhead
+from linkwork.numerics.proof.position_proof import Proof, prove
 
 __all__ = ["fill_last_rows", "fill_passed_rows"]
 

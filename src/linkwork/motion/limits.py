@@ -15,17 +15,17 @@ from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
 from linkwork.motion.lined_up import links_in_line
 from linkwork.motion.model import Model
-from linkwork.numerics.change_point import (
+from linkwork.numerics.continuation.branch_tracking import End, Node, Track
+from linkwork.numerics.continuation.change_point import (
     ChangePoint,
     Crossing,
     locate_change_point,
     most_singular,
 )
-from linkwork.numerics.leaders import Led
-from linkwork.numerics.passage import Passage, pass_change_points
-from linkwork.numerics.proven_curve import same_solution
-from linkwork.numerics.track import End, Node, Track
-from linkwork.numerics.turning_point import TurnAhead, TurningPoint, turn_beyond
+from linkwork.numerics.continuation.curve_proof import same_solution
+from linkwork.numerics.continuation.local_parametrization import Led
+from linkwork.numerics.continuation.passage import Passage, pass_change_points
+from linkwork.numerics.continuation.turning_point import TurnAhead, TurningPoint, turn_beyond
 from linkwork.results.motion import Limit, LimitKind
 
 __all__ = [

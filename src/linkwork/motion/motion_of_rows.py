@@ -8,7 +8,7 @@ from linkwork.foundation.arrays import BoolArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.motion.model import Model
-from linkwork.motion.reading import named_series
+from linkwork.motion.named_quantities import named_series
 from linkwork.motion.redundancy import FITS, largest_misfits, misfit
 from linkwork.motion.rows import SolvedRows
 from linkwork.results.motion import Motion

@@ -9,8 +9,8 @@ import numpy as np
 
 from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.motion.model import Model
+from linkwork.motion.named_quantities import Named, named_series
 from linkwork.motion.positions import target_values
-from linkwork.motion.reading import Named, named_series
 from linkwork.numerics.least_squares import nearest_miss
 from linkwork.results.nearest_assembly import LinkEnd, NearestAssembly
 

@@ -11,7 +11,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
-from linkwork.motion.reading import Named
+from linkwork.motion.named_quantities import Named
 from linkwork.motion.redundancy import largest_misfits
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Series

@@ -11,9 +11,9 @@ from linkwork.foundation.arrays import Array, IndexArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.proof import rounding_of_inputs
-from linkwork.numerics.proven_path import Beads, prove_path
-from linkwork.numerics.track import InputPath, Node, Rows, Track
+from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Rows, Track
+from linkwork.numerics.continuation.path_proof import Beads, prove_path
+from linkwork.numerics.proof.position_proof import rounding_of_inputs
 
 __all__ = ["RowProofs", "inputs_apart", "prove_rows", "unproved", "way_is_proved"]
 

@@ -14,6 +14,7 @@ from linkwork.foundation.status import Status
 from linkwork.motion import failure as why
 from linkwork.motion import following
 from linkwork.motion.model import Model
+from linkwork.motion.named_quantities import named_series
 from linkwork.motion.positions import (
     Evidence,
     Found,
@@ -22,12 +23,11 @@ from linkwork.motion.positions import (
     position_of,
     target_values,
 )
-from linkwork.motion.reading import named_series
 from linkwork.motion.redundancy import FITS, lengths_found, misfit, without_redundant
 from linkwork.motion.start import Start, first_position
 from linkwork.numerics.block_solver import Rates
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.proof import prove, rounding_of_inputs
+from linkwork.numerics.proof.position_proof import prove, rounding_of_inputs
 from linkwork.results.failure import Failure, Remedy
 from linkwork.results.position import Certificate, Position
 

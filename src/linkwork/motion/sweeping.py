@@ -13,8 +13,8 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.status import Status
-from linkwork.motion.around import further_branches
 from linkwork.motion.branch_rows import Asked, BranchRows, Report, rows_of_branch
+from linkwork.motion.circuit_sweep import further_branches
 from linkwork.motion.crossing import beyond_change_point, ends_passed
 from linkwork.motion.drive import Drive
 from linkwork.motion.extremes import check_quantities, output_limit_at, output_limits
@@ -28,10 +28,10 @@ from linkwork.motion.rows import SolvedRows
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.sweep_table import NamedEnd, SweepTable
 from linkwork.motion.tracking import track_to
-from linkwork.numerics.leaders import coincide, whole_turns
+from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Track, follow, node_at
+from linkwork.numerics.continuation.local_parametrization import coincide, whole_turns
+from linkwork.numerics.continuation.passage import Passage
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.passage import Passage
-from linkwork.numerics.track import InputPath, Node, Track, follow, node_at
 from linkwork.results.motion import Limit, Motion, OutputLimit
 
 __all__ = ["sweep", "swept_rows"]

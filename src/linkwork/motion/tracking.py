@@ -11,7 +11,13 @@ from linkwork.kernels.law_row import LawRow
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.motion.model import Model
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.track import InputPath, Node, Track, TrackOptions, follow
+from linkwork.numerics.continuation.branch_tracking import (
+    InputPath,
+    Node,
+    Track,
+    TrackOptions,
+    follow,
+)
 
 __all__ = ["leading_scale", "track_to", "turns_freely"]
 

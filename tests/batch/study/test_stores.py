@@ -20,7 +20,7 @@ import xarray
 import linkwork as lw
 from linkwork.batch import Family
 from linkwork.batch.family_motion import FamilyMotion
-from linkwork.batch.study import crew, run_study, summary_of
+from linkwork.batch.study import run_study, summary_of, workers
 from linkwork.batch.study.job import Job, computed
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.status import Status
@@ -113,7 +113,7 @@ def test_values_do_not_depend_on_the_size_of_chunks(
 def test_chunks_may_come_in_any_order(
     whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def backwards(job: Job, tasks: Iterator[crew.Task]) -> Iterator[object]:
+    def backwards(job: Job, tasks: Iterator[workers.Task]) -> Iterator[object]:
         for k, values in reversed(list(tasks)):
             yield k, computed(job, values)
 
@@ -148,7 +148,7 @@ def test_a_run_killed_at_any_write_goes_on_to_the_same_store(
         replace(old, new)
 
     monkeypatch.setattr(Path, "write_bytes", torn)
-    monkeypatch.setattr("linkwork.batch.study.ledger.os.replace", renamed)
+    monkeypatch.setattr("linkwork.batch.study.chunk_manifest.os.replace", renamed)
     store = tmp_path / "out.zarr"
     deaths = 0
     for at in range(1, 10_000):
@@ -214,11 +214,11 @@ def test_killed_processes_lose_nothing_and_leave_no_workers(tmp_path: Path) -> N
     (tmp_path / "plan.toml").write_text(edited(*LONG), encoding="utf-8")
     generator = np.random.default_rng(7)
     before = 0
-    for workers in ("1", "2"):
-        process = _started(tmp_path, "--workers", workers)
+    for count in ("1", "2"):
+        process = _started(tmp_path, "--workers", count)
         _until(store, before + int(generator.integers(1, 8)), process)
         children = _children(process.pid)
-        assert len(children) == (0 if workers == "1" else 2)
+        assert len(children) == (0 if count == "1" else 2)
         process.kill()
         assert process.communicate() == (b"", b"")  # workers say nothing when they are left alone
         stored = summary_of(store).computed
@@ -278,10 +278,10 @@ def test_an_interrupt_leaves_a_store_to_go_on_with_and_says_so(tmp_path: Path) -
 def test_a_worker_that_dies_is_replaced(
     whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked = crew._Processes._asked
+    asked = workers._Processes._asked
     deaths = 0
 
-    def dying(self: crew._Processes, process: subprocess.Popen[bytes], values: Any) -> Any:
+    def dying(self: workers._Processes, process: subprocess.Popen[bytes], values: Any) -> Any:
         nonlocal deaths
         deaths += 1
         if deaths in (1, 4):
@@ -289,7 +289,7 @@ def test_a_worker_that_dies_is_replaced(
             process.wait()
         return asked(self, process, values)
 
-    monkeypatch.setattr(crew._Processes, "_asked", dying)
+    monkeypatch.setattr(workers._Processes, "_asked", dying)
     run_study(study(), tmp_path / "out.zarr", workers=2)
     assert deaths == 5 + 2
     assert contents(tmp_path / "out.zarr") == contents(whole)

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 from uuid import uuid4
 
-from linkwork.batch.study.crew import Task, Values, pumped
 from linkwork.batch.study.job import Job, Part, computed
+from linkwork.batch.study.workers import Task, Values, pumped
 from linkwork.foundation.errors import InputError, MissingPackageError
 
 __all__ = ["cluster_crew"]

@@ -9,16 +9,16 @@ from pathlib import Path
 from time import monotonic
 
 from linkwork.batch.study.cluster import cluster_crew
-from linkwork.batch.study.crew import Task, local_crew, one_after_the_other
 from linkwork.batch.study.job import Part
 from linkwork.batch.study.plan_file import read_plan
 from linkwork.batch.study.store import opened
 from linkwork.batch.study.study import Study
 from linkwork.batch.study.summary import Summary, summary_of
+from linkwork.batch.study.workers import Task, local_crew, one_after_the_other
 from linkwork.batch.study.zarr_files import check_packages
 from linkwork.foundation.plain_numbers import whole_number
 from linkwork.foundation.sharing import cores
-from linkwork.kernels.lanes.device_compiling import graphics_card
+from linkwork.kernels.gpu.compiling import graphics_card
 
 __all__ = ["Progress", "run_study"]
 

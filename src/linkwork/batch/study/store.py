@@ -12,8 +12,14 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
+from linkwork.batch.study.chunk_manifest import (
+    PARTIAL,
+    Entry,
+    read_entries,
+    write_entry,
+    write_whole,
+)
 from linkwork.batch.study.job import Part
-from linkwork.batch.study.ledger import PARTIAL, Entry, read_entries, write_entry, write_whole
 from linkwork.batch.study.study import DESIGN, Study
 from linkwork.batch.study.zarr_files import LEDGER, METADATA, ZarrFiles
 from linkwork.foundation.errors import InputError, key_text

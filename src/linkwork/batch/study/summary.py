@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from linkwork.batch.study.chunk_manifest import Entry, read_entries
 from linkwork.batch.study.job import passes_name
-from linkwork.batch.study.ledger import Entry, read_entries
 from linkwork.batch.study.store import attributes_of
 from linkwork.batch.study.zarr_files import check_packages, open_arrays
 from linkwork.foundation.arrays import AnyArray, Array

@@ -26,15 +26,15 @@ from linkwork.motion.assembly.configuration_names import combined_name, ordered
 from linkwork.motion.assembly.turned_slides import TurnedSlide, turned_slides
 from linkwork.motion.model import Model
 from linkwork.motion.redundancy import FITS, misfit
-from linkwork.numerics.bilinear import proved_roots
-from linkwork.numerics.bilinear_family import structure_of
 from linkwork.numerics.block_solver import Block, Linearised, linearised
-from linkwork.numerics.generic_roots import isolated_roots
+from linkwork.numerics.homotopy.bilinear import proved_roots
+from linkwork.numerics.homotopy.bilinear_family import structure_of
+from linkwork.numerics.homotopy.isolated_roots import isolated_roots
+from linkwork.numerics.homotopy.polynomial_system import Roots
+from linkwork.numerics.homotopy.quadratic_roots import quadratic_roots
+from linkwork.numerics.homotopy.solution_bound import SolutionBound, bound_by_products
 from linkwork.numerics.newton import newton
-from linkwork.numerics.polynomial_system import Roots
-from linkwork.numerics.proof import Proof, prove_block, rounding_of_inputs
-from linkwork.numerics.quadratic_roots import quadratic_roots
-from linkwork.numerics.solution_bound import SolutionBound, bound_by_products
+from linkwork.numerics.proof.position_proof import Proof, prove_block, rounding_of_inputs
 from linkwork.results.configurations import PathCount
 
 __all__ = ["Assemblies", "positions_at"]

@@ -15,6 +15,7 @@ from linkwork.foundation.status import Status
 from linkwork.motion.assembly.assembling import Assemblies, positions_at
 from linkwork.motion.circuit.circuits import branch_start, is_branch_name
 from linkwork.motion.model import Model
+from linkwork.motion.named_quantities import named_series
 from linkwork.motion.positions import (
     Evidence,
     found_message,
@@ -22,11 +23,10 @@ from linkwork.motion.positions import (
     position_of,
     target_values,
 )
-from linkwork.motion.reading import named_series
 from linkwork.motion.redundancy import without_redundant
 from linkwork.motion.solving import failed_position, solve
 from linkwork.motion.start import first_position
-from linkwork.numerics.generic_roots import SEED
+from linkwork.numerics.homotopy.isolated_roots import SEED
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.configurations import Configurations
 from linkwork.results.failure import Failure
@@ -41,7 +41,7 @@ def configurations(model: Model, at: float | Mapping[str, float] | None = None) 
     """All configurations at one input value, each with its certificate.
 
     Blocks of one loop are solved in closed form, larger ones by following the solutions of a
-    random system of the same structure (:mod:`linkwork.numerics.generic_roots`).
+    random system of the same structure (:mod:`linkwork.numerics.homotopy.isolated_roots`).
 
     Parameters
     ----------

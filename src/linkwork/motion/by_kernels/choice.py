@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwork.kernels.lanes.at_hand import compiled_code_is_at_hand, compiled_code_is_loaded
+from linkwork.kernels.program.kernel_cache import kernels_are_compiled, kernels_are_loaded
 from linkwork.motion.model import Model
 
 __all__ = ["are_served", "kernels_pay"]
@@ -28,4 +28,4 @@ def kernels_pay(model: Model, rows: int, certify: bool) -> bool:
     if rows < _ROWS or not are_served(model):
         return False
     saved = rows * model.compiled.solver.unknowns * (1.0 if certify else _WITHOUT_PROOF)
-    return compiled_code_is_loaded() or (saved >= _LOADING and compiled_code_is_at_hand())
+    return kernels_are_loaded() or (saved >= _LOADING and kernels_are_compiled())

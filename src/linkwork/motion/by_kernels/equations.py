@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.kernels.lanes.closure import BlockPart
+from linkwork.kernels.march.closure import BlockPart
 from linkwork.motion.model import Model
 
 __all__ = ["block_parts", "lines_of_lengths", "own_coefficients", "zero_names"]

@@ -5,9 +5,9 @@ from __future__ import annotations
 from weakref import WeakKeyDictionary
 
 from linkwork.equations.compiling import Compiled
-from linkwork.kernels.lanes.device_kernel import DeviceKernel
-from linkwork.kernels.lanes.lane_kernel import LaneKernel
-from linkwork.kernels.lanes.rate_programs import PlaceProgram, row_program
+from linkwork.kernels.gpu.kernel import DeviceKernel
+from linkwork.kernels.march.rate_programs import PlaceProgram, row_program
+from linkwork.kernels.march.sweep_kernel import LaneKernel
 from linkwork.motion.by_kernels.equations import block_parts, lines_of_lengths
 from linkwork.motion.model import Model
 

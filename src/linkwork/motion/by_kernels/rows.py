@@ -14,14 +14,14 @@ import numpy as np
 from linkwork.foundation.arrays import Array, CountArray, IndexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
-from linkwork.kernels.lanes.gear import Gear
-from linkwork.kernels.lanes.lane_kernel import Steps
-from linkwork.kernels.lanes.places import along_rows
+from linkwork.kernels.march.position_programs import along_rows
+from linkwork.kernels.march.sweep_kernel import Steps
+from linkwork.kernels.program.execution import Gear
 from linkwork.motion.by_kernels.equations import own_coefficients, zero_names
 from linkwork.motion.by_kernels.kernels import kernel_of, row_program_of
 from linkwork.motion.drive import Drive
 from linkwork.motion.rows import SolvedRows
-from linkwork.numerics.track import Node, Track
+from linkwork.numerics.continuation.branch_tracking import Node, Track
 
 __all__ = ["KernelRows", "kernel_rows"]
 

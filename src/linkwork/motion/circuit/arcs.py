@@ -15,8 +15,15 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
 from linkwork.motion.circuit.branches import CurveBranch, Traced, branches_of, traced
-from linkwork.numerics.change_point import ChangePoint, Crossing
-from linkwork.numerics.leaders import Leads, Led, apart, coincide, fastest_leader, same_position
+from linkwork.numerics.continuation.change_point import ChangePoint, Crossing
+from linkwork.numerics.continuation.local_parametrization import (
+    Leads,
+    Led,
+    apart,
+    coincide,
+    fastest_leader,
+    same_position,
+)
 
 __all__ = ["Arc", "Explorer", "positions_near"]
 

@@ -10,11 +10,11 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
-from linkwork.numerics.curve import Curve, CurveOptions, Leg, trace
-from linkwork.numerics.leaders import Leads, Led
-from linkwork.numerics.proven_curve import ProvenCurve, prove_curve, same_solution
-from linkwork.numerics.track import Track, TrackOptions, rows_on_track
-from linkwork.numerics.turning_point import TurningPoint, turning_points
+from linkwork.numerics.continuation.branch_tracking import Track, TrackOptions, rows_on_track
+from linkwork.numerics.continuation.curve_proof import ProvenCurve, prove_curve, same_solution
+from linkwork.numerics.continuation.curve_tracing import Curve, CurveOptions, Leg, trace
+from linkwork.numerics.continuation.local_parametrization import Leads, Led
+from linkwork.numerics.continuation.turning_point import TurningPoint, turning_points
 from linkwork.results.motion import LimitKind
 
 __all__ = ["CurveBranch", "Traced", "branches_of", "traced"]

@@ -28,8 +28,8 @@ from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import motion_of_rows
 from linkwork.motion.redundancy import FITS, misfit
 from linkwork.motion.rows import SolvedRows
-from linkwork.numerics.change_point import Crossing
-from linkwork.numerics.leaders import same_position
+from linkwork.numerics.continuation.change_point import Crossing
+from linkwork.numerics.continuation.local_parametrization import same_position
 from linkwork.results.circuits import Branch, Circuit, Circuits
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Motion

@@ -13,12 +13,12 @@ from linkwork.equations.locking import LockingForm, locking_form
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.motion.model import Model
-from linkwork.numerics.change_point import crossing_near
-from linkwork.numerics.generic_roots import nearest_solution
-from linkwork.numerics.locking_family import locking_roots
-from linkwork.numerics.polynomial_system import Roots
-from linkwork.numerics.resting_motion import keeps_complex_input, real_motion
-from linkwork.numerics.track import InputPath
+from linkwork.numerics.continuation.branch_tracking import InputPath
+from linkwork.numerics.continuation.change_point import crossing_near
+from linkwork.numerics.homotopy.dead_point_family import locking_roots
+from linkwork.numerics.homotopy.idle_component import keeps_complex_input, real_motion
+from linkwork.numerics.homotopy.isolated_roots import nearest_solution
+from linkwork.numerics.homotopy.polynomial_system import Roots
 
 __all__ = ["DeadPointInputs", "LockingCount", "dead_point_inputs"]
 

@@ -13,8 +13,8 @@ from linkwork.motion.circuit.dead_inputs import DeadPointInputs, dead_point_inpu
 from linkwork.motion.circuit.intervals import Interval, intervals_between
 from linkwork.motion.drive import Drive
 from linkwork.motion.start import Start, first_position
+from linkwork.numerics.continuation.branch_tracking import TrackOptions
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.track import TrackOptions
 
 __all__ = ["Seeding"]
 

@@ -20,8 +20,8 @@ from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.block_solver import Block
+from linkwork.numerics.continuation.branch_tracking import InputPath
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.numerics.track import InputPath
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit
 from linkwork.results.quantity import Kind

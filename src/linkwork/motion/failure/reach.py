@@ -13,11 +13,11 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.motion.circuit.branches import Traced
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
-from linkwork.numerics.curve import Curve, CurveOptions, Leg, trace
+from linkwork.numerics.continuation.branch_tracking import BOLD, InputPath, TrackOptions, follow
+from linkwork.numerics.continuation.curve_proof import prove_curve
+from linkwork.numerics.continuation.curve_tracing import Curve, CurveOptions, Leg, trace
+from linkwork.numerics.continuation.turning_point import turning_points
 from linkwork.numerics.least_squares import nearest_miss
-from linkwork.numerics.proven_curve import prove_curve
-from linkwork.numerics.track import BOLD, InputPath, TrackOptions, follow
-from linkwork.numerics.turning_point import turning_points
 
 __all__ = ["MOST_UNKNOWNS", "Reach", "assembled_near", "reach_towards"]
 

@@ -10,8 +10,8 @@ from linkwork.foundation.arrays import Array
 from linkwork.motion.failure.dyads import dyad_of
 from linkwork.motion.failure.lengths import ChangeableLength, lengths_of, model_with
 from linkwork.motion.model import Model
-from linkwork.numerics.fold import Family, locate_fold
-from linkwork.numerics.joined import JoinedBlocks, closure_of
+from linkwork.numerics.continuation.fold import Family, locate_fold
+from linkwork.numerics.joined_blocks import JoinedBlocks, closure_of
 from linkwork.results.failure import Remedy
 
 __all__ = ["remedies_of"]

@@ -17,7 +17,13 @@ from linkwork.motion.model import Model
 from linkwork.motion.positions import Found
 from linkwork.motion.proving import prove_rows
 from linkwork.motion.tracking import leading_scale, track_to, turns_freely
-from linkwork.numerics.track import InputPath, Rows, Track, node_at, rows_on_track
+from linkwork.numerics.continuation.branch_tracking import (
+    InputPath,
+    Rows,
+    Track,
+    node_at,
+    rows_on_track,
+)
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit
 from linkwork.results.position import Certificate

@@ -10,10 +10,10 @@ import numpy as np
 from linkwork.equations.leading import LeadTable
 from linkwork.foundation.arrays import Array
 from linkwork.motion.model import Model
-from linkwork.numerics.curve import CurveOptions, trace
-from linkwork.numerics.leaders import whole_turns
-from linkwork.numerics.proven_curve import prove_curve
-from linkwork.numerics.track import BOLD, InputPath
+from linkwork.numerics.continuation.branch_tracking import BOLD, InputPath
+from linkwork.numerics.continuation.curve_proof import prove_curve
+from linkwork.numerics.continuation.curve_tracing import CurveOptions, trace
+from linkwork.numerics.continuation.local_parametrization import whole_turns
 
 __all__ = ["Laps", "laps_to"]
 

@@ -12,11 +12,11 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from linkwork.foundation.errors import InputError, MissingPackageError
-from linkwork.viewer.live.desk import Desk
 from linkwork.viewer.live.events import Event, Refused
 from linkwork.viewer.live.guard import SUBPROTOCOL, Guard
 from linkwork.viewer.live.messages import LARGEST_MESSAGE, MessageError, decoded, encoded
 from linkwork.viewer.live.served_pages import served_pages
+from linkwork.viewer.live.session import Desk
 from linkwork.viewer.live.workbench import Workbench
 
 __all__ = ["LiveServer"]

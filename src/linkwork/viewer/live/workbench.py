@@ -16,8 +16,8 @@ from linkwork.results.motion import Motion
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.live import requests as ask
-from linkwork.viewer.live import telling
-from linkwork.viewer.live.beginnings import closing_input, sketch_at
+from linkwork.viewer.live import result_events as telling
+from linkwork.viewer.live.alternative_starts import closing_input, sketch_at
 from linkwork.viewer.live.edits import Before, Followed, applied
 from linkwork.viewer.live.history import History
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk

@@ -1,0 +1,81 @@
+"""Designs that go alone: by the ordinary sweep, one after the other."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from linkwork.batch.designs import Designs
+from linkwork.batch.rows import DesignRows
+from linkwork.batch.single_rows import OwnRows, ends_as_limits
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.certification import Certification
+from linkwork.foundation.errors import LinkworkError
+from linkwork.foundation.status import Status
+from linkwork.mechanism.parts import Input
+from linkwork.motion import sweep
+from linkwork.motion.limits import BranchEnd
+from linkwork.motion.model import Model
+from linkwork.motion.rows import SolvedRows
+from linkwork.motion.sweeping import swept_rows
+
+__all__ = ["message_alone", "sweep_alone"]
+
+
+def _at_shared_inputs(designs: Designs, k: int) -> Model:
+    """A design by itself with the family's table, should its own depend on what varies."""
+    base, model = designs.base, designs.design(k)
+    if np.array_equal(model.everyday_rows, base.everyday_rows):
+        return model
+    inputs = tuple(_with_plain_range(base, which) for which in base.description.inputs)
+    description = replace(model.description, inputs=inputs)
+    return Model(description, model.equations, model.compiled, model.skeleton, model.branch)
+
+
+def _with_plain_range(base: Model, which: Input) -> Input:
+    start, stop, step = (
+        None if value is None else base.description.numbers(value)
+        for value in (which.start, which.stop, which.step)
+    )
+    return replace(which, start=start, stop=stop, step=step)
+
+
+def sweep_alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
+    """One design by the ordinary sweep."""
+    found.alone[k] = True
+    try:
+        rows, ends = swept_rows(_at_shared_inputs(designs, k), certify=certify)
+    except LinkworkError:  # told by ``message_alone``
+        found.v[:, :, k] = found.radius[:, k] = np.nan
+        found.status[:, k] = Status.NO_START.code
+        none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
+        found.certification[:, k] = none.code
+        return
+    n = len(found.v)
+    found.v[:, :, k] = rows.v[:, :n].T
+    found.status[:, k], found.certification[:, k] = rows.status, rows.certification
+    if certify:
+        found.radius[:, k] = rows.radius
+    found.own[k] = OwnRows.of(rows, n)
+    _note_way(designs.base, k, rows, ends, found)
+
+
+def _note_way(
+    base: Model, k: int, rows: SolvedRows, ends: tuple[BranchEnd, ...], found: DesignRows
+) -> None:
+    """Whole turns to the rows of a design that went alone, and the limits it met."""
+    if not (rows.status == Status.CONVERGED.code).any():
+        return
+    found.limits[:, k], found.limit_kinds[:, k] = ends_as_limits(ends)
+    if base.equations.inputs[0].kind == "angle":
+        gap = (rows.v[:, len(found.v)] - base.rows[:, 0]) / FULL_TURN
+        found.turns[:, k] = np.round(np.where(np.isnan(gap), 0.0, gap))
+
+
+def message_alone(designs: Designs, k: int) -> str:
+    """What a design has to say of its own motion, or why it has none."""
+    try:
+        return sweep(_at_shared_inputs(designs, k), certify=False).message
+    except LinkworkError as error:
+        return str(error)

@@ -1,0 +1,1 @@
+"""The march on a graphics card: one thread follows one mechanism."""

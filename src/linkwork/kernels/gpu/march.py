@@ -1,0 +1,270 @@
+"""Many mechanisms along one path of inputs on a graphics card: each thread follows one, one way.
+
+The same march as :mod:`linkwork.kernels.march.independent`, for one mechanism. A thread's state is
+a small array that is addressed by constants only, so that the compiler can keep it in registers:
+
+=======================  =====================================================================
+``r S … r S + S - 1``    the position in role r, unknowns first and t last (:class:`Shape`)
+from ``5 S``             weights a1, b1, …, b4; good; radius; live of each block
+then                     coefficients, options, and what else is noted of the trial
+=======================  =====================================================================
+
+There is one loop, and one turn of it is one trial: a thread that has to repeat a step keeps no
+other one waiting, it only needs more turns. What is written out by
+:mod:`linkwork.kernels.gpu.printing` imports this module; nothing else does, because it
+loads numba.cuda.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.kernels.gpu.compiling import kernel, numba_cuda, on_device
+from linkwork.kernels.march import step_control
+from linkwork.kernels.march.march_programs import NODES
+from linkwork.kernels.march.step_control import GROWTH, SAME
+from linkwork.kernels.march.work_arrays import Found, Table
+from linkwork.kernels.program import sine
+from linkwork.kernels.program.program import ROLES
+
+__all__ = [
+    "Found",
+    "Sections",
+    "Shape",
+    "Start",
+    "Table",
+    "begin",
+    "cuda",
+    "follow",
+    "kernel",
+    "on_device",
+    "sin_cos",
+]
+
+cuda = numba_cuda()
+sin_cos = on_device(sine.sin_cos.py_func)
+_trusted = on_device(step_control.trusted.py_func)
+_hermite = on_device(step_control.hermite.py_func)
+
+
+class Sections(NamedTuple):
+    """Programs of one topology as functions of a thread's state.
+
+    ``predict`` the trial; ``correct`` it, or ``correct_slowly`` from a guess; ``judge`` it, with
+    its proof.
+    """
+
+    predict: Callable[[Array], None]
+    correct: Callable[[Array], None]
+    correct_slowly: Callable[[Array], None]
+    judge: Callable[[Array], None]
+
+
+class Start(NamedTuple):
+    """A mechanism and where it starts: column ``member`` of coefficients (C, M) and nodes (S, M);
+    ``options`` (O,).
+    """
+
+    member: int
+    design: Array
+    options: Array
+    node: Array
+
+
+class Shape(NamedTuple):
+    """How a thread's state is laid out.
+
+    ``unknowns``, and the ``size`` S of a position; how many ``blocks``, ``coefficients`` and
+    ``options``; ``certified``: whether steps are proved.
+    """
+
+    unknowns: int
+    size: int
+    blocks: int
+    coefficients: int
+    options: int
+    certified: bool
+
+
+@on_device
+def _weights(shape: Shape) -> int:
+    return ROLES * shape.size
+
+
+@on_device
+def _good(shape: Shape) -> int:
+    return ROLES * shape.size + 2 * NODES
+
+
+@on_device
+def _radius(shape: Shape) -> int:
+    return ROLES * shape.size + 2 * NODES + 1
+
+
+@on_device
+def _live(shape: Shape) -> int:
+    return ROLES * shape.size + 2 * NODES + 2
+
+
+@on_device
+def _load(shape: Shape, w: Array, start: Start) -> None:
+    """A mechanism, with all nodes where it starts."""
+    first = _live(shape) + shape.blocks
+    for j in range(shape.coefficients):
+        w[first + j] = start.design[j, start.member]
+    for j in range(shape.options):
+        w[first + shape.coefficients + j] = start.options[j]
+    for role in range(ROLES):
+        for j in range(shape.size):
+            w[role * shape.size + j] = start.node[j, start.member]
+
+
+@on_device
+def _weigh(shape: Shape, w: Array, t: float, times: Array, known: int) -> None:
+    """The weights of the prediction at t from the ``known`` last nodes."""
+    used = _trusted(t, times, known)
+    for i in range(NODES):
+        value, slope = 0.0, 0.0
+        if i < used:
+            value, slope = _hermite(t, times, i, used)
+        w[_weights(shape) + 2 * i] = value
+        w[_weights(shape) + 2 * i + 1] = slope
+
+
+@on_device
+def _choose(shape: Shape, w: Array, times: Array, step: float, known: int, spacing: Array) -> None:
+    """The weights of the prediction, computed anew where the spacing has changed.
+
+    ``times``: of the last nodes.
+    """
+    same = abs(step - spacing[0]) <= SAME * abs(step)
+    for k in range(1, NODES):
+        same = same and abs(times[k - 1] - times[k] - spacing[k]) <= SAME * abs(step)
+    if not same:
+        spacing[0] = step
+        for k in range(1, NODES):
+            spacing[k] = times[k - 1] - times[k]
+        _weigh(shape, w, times[0] + step, times, known)
+
+
+@on_device
+def begin(
+    sections: Sections, shape: Shape, w: Array, start: Start, node: Array, begun: BoolArray
+) -> None:
+    """From a guess to a position, with small steps and its own proof; see
+    :func:`linkwork.kernels.march.step_trial.solved_slowly`.
+
+    ``node`` (S, M), ``begun`` (M,) bool: what is found, and whether it is a position.
+    """
+    _load(shape, w, start)
+    for j in range(2 * NODES):
+        w[_weights(shape) + j] = 0.0
+    w[_weights(shape)] = 1.0
+    w[_good(shape)] = 1.0
+    sections.predict(w)
+    sections.correct_slowly(w)
+    if shape.certified:
+        for _ in range(2):
+            for j in range(shape.size):
+                w[shape.size + j] = w[j]
+            sections.judge(w)
+    fine = w[_good(shape)] > 0.5
+    for k in range(shape.blocks):
+        fine = fine and w[_live(shape) + k] == 0.0
+    for j in range(shape.size):
+        fine = fine and math.isfinite(w[j])
+        node[j, start.member] = w[j]
+    begun[start.member] = fine
+
+
+@on_device
+def _first_row(rows: Array, t: float, way: int) -> int:
+    """The first row ahead of t, or at t where the way leads upwards."""
+    low, high = 0, rows.shape[0]
+    while low < high:
+        middle = (low + high) // 2
+        if rows[middle] < t:
+            low = middle + 1
+        else:
+            high = middle
+    return low if way == 1 else low - 1
+
+
+@on_device
+def _note(shape: Shape, w: Array, row: int, found: Found) -> None:
+    """A row is reached."""
+    found.reached[row, found.first] = True
+    for j in range(shape.unknowns):
+        found.unknowns[j, row, found.first] = w[j]
+    if shape.certified:
+        found.radius[row, found.first] = w[_radius(shape)]
+
+
+@on_device
+def _stop(shape: Shape, w: Array, way: int, found: Found) -> None:
+    """A mechanism goes no further: its last node and the one before."""
+    size = shape.size
+    found.end[way, found.first] = w[2 * size - 1]
+    for j in range(2 * size):
+        found.last[way, j, found.first] = w[size + j]
+
+
+@on_device
+def follow(
+    sections: Sections, shape: Shape, w: Array, start: Start, way: int, table: Table, found: Found
+) -> None:
+    """Follow a mechanism from row to row, upwards (way 1) or downwards (0).
+
+    Parameters
+    ----------
+    sections : Sections
+    shape : Shape
+    w : thread's state
+    start : Start
+    way : int
+    table : Table
+    found : Found
+        ``first``: the mechanism.
+    """
+    size, rows, steps = shape.size, table.rows, table.steps
+    _load(shape, w, start)
+    times = cuda.local.array(NODES, "float64")
+    spacing = cuda.local.array(NODES, "float64")
+    for k in range(NODES):
+        spacing[k] = math.inf  # like no other
+    row, known, h = _first_row(rows, w[size - 1], way), 1, steps[0]
+    while 0 <= row < rows.shape[0]:
+        goal, before = rows[row], w[2 * size - 1]
+        away = goal - before
+        arrives = abs(away) <= h
+        step = away if arrives else math.copysign(h, away)
+        t = goal if arrives else before + step
+        for k in range(NODES):
+            times[k] = w[(k + 2) * size - 1]
+        _choose(shape, w, times, step, known, spacing)
+        w[size - 1] = t
+        sections.predict(w)
+        sections.correct(w)
+        sections.judge(w)
+        moved = abs(t - before)
+        lost = moved == 0.0 and t != goal  # a step lost in rounding
+        if w[_good(shape)] > 0.5 and not lost:
+            if t == goal:
+                _note(shape, w, row, found)
+                row += 2 * way - 1
+            if moved >= 0.5 * h:
+                h = min(GROWTH * h, steps[1])
+            known = min(known + 1, NODES)
+            if moved == 0.0:  # the trial is no new node
+                known = 1
+            else:
+                for j in range(NODES * size - 1, -1, -1):
+                    w[size + j] = w[j]
+        else:
+            h = 0.5 * moved
+            if h < steps[2]:
+                _stop(shape, w, way, found)
+                return

@@ -1,0 +1,359 @@
+"""Dead points of many designs at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.kernels.loop_table import LoopTable
+from linkwork.kernels.march.fold_programs import FoldPrograms, fold_programs
+from linkwork.kernels.program.compiling import compiled
+from linkwork.kernels.program.interpreter import LANES, run
+from linkwork.kernels.program.program import Code
+
+__all__ = ["Folds", "LastNodes", "dead_points"]
+
+_PLACES = 30  # that the secant method may try
+_STEPS = 8  # of Newton-Raphson at each
+_CLOSE = 1e-7  # a move of λ after which the place is found: t is off by its square and less
+_TOLERANCE = 1e-8
+_PARTS = (2, 4, 8)  # that an arc is proved in where it is not proved in one
+_EXACT = 5e-14  # relative: a possible error of t from which on it is corrected
+_STRAIGHT = 1e-4  # weighted d²t/dλ² below which it is no ordinary dead point
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LastNodes:
+    """Where D designs could go no further: ``t`` (D,), unknowns ``w`` (n, D), their rates by t
+    ``s``, the same at the node before (``q``, ``p``), how far the true position may be, ``x``.
+    """
+
+    t: Array
+    w: Array
+    s: Array
+    q: Array
+    p: Array
+    x: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Folds:
+    """``t`` (D,): of the dead point. ``found`` (D,): whether it is proved to be one, and joined to
+    the node.
+    """
+
+    t: Array
+    found: BoolArray
+
+
+def dead_points(
+    table: LoopTable,
+    zeros: Set[str],
+    coefficients: Mapping[str, Array],
+    nodes: LastNodes,
+    way: int,
+) -> Folds:
+    """The dead point right ahead of every node, downwards (way 0) or upwards (1).
+
+    Parameters
+    ----------
+    table : LoopTable
+        Without function rows, with a single input.
+    coefficients : Mapping[str, (D,)]
+        By register.
+    """
+    n, count = nodes.w.shape
+    scale = np.stack([coefficients.get(f"scale{k}", np.ones(count)) for k in range(n)])
+    with np.errstate(invalid="ignore"):
+        leads = np.argmax(np.abs(nodes.s) / scale, axis=0)
+    found = Folds(t=np.full(count, np.nan), found=np.zeros(count, dtype=bool))
+    for lead in np.unique(leads):
+        mine = np.flatnonzero(leads == lead)
+        _led_by(table, int(lead), zeros, coefficients, nodes, mine, way, found)
+    found.found[:] &= (found.t >= nodes.t) if way else (found.t <= nodes.t)
+    return found
+
+
+def _led_by(
+    table: LoopTable,
+    lead: int,
+    zeros: Set[str],
+    coefficients: Mapping[str, Array],
+    nodes: LastNodes,
+    mine: IndexArray,
+    way: int,
+    found: Folds,
+) -> None:
+    programs = fold_programs(table, lead, zeros)
+    n = table.unknowns
+    own = {name: values[mine] for name, values in coefficients.items()}
+    at_node = _at_node(nodes, lead, mine)
+    others = [k for k in range(n + 1) if k != lead]
+    named = ["step", "move", "bend", "live", "seeking", "good", "sound"]
+    named += [*(f"v{k}" for k in range(n + 1)), *(f"{r}{k}" for k in others for r in "re")]
+    out = dict(zip(named, _Runner(programs, own | at_node).search(named), strict=True))
+    size = own.get(f"scale{lead}", np.ones(len(mine)))
+    with np.errstate(invalid="ignore"):
+        fine = (out["live"] == 0.0) & (out["seeking"] == 0.0) & (out["sound"] > 0.5)
+        fine &= (out["step"] <= _TOLERANCE) & (out["move"] <= _CLOSE)
+        fine &= np.abs(out["bend"]) * size**2 >= _STRAIGHT
+    proved = out["good"] > 0.5
+    both = own | at_node | _both_ends(at_node, out, lead, others)
+    for parts in _PARTS:
+        left = np.flatnonzero(fine & ~proved)
+        some = _Runner(programs, {name: values[left] for name, values in both.items()})
+        proved[left] = some.proved_in(parts)
+    fine &= proved
+    left = np.flatnonzero(fine)
+    fine[left] = _turns(programs, own, out, lead, others, left, way)
+    left = np.flatnonzero(fine & (out[f"e{n}"] > _EXACT * np.maximum(1.0, np.abs(out[f"v{n}"]))))
+    for k in left:
+        v = np.array([out[f"v{j}"][k] for j in range(n + 1)])
+        out[f"v{n}"][k] = _exact(table, {name: values[k] for name, values in own.items()}, v, lead)
+    found.t[mine], found.found[mine] = np.where(fine, out[f"v{n}"], np.nan), fine
+
+
+def _turns(
+    programs: FoldPrograms,
+    coefficients: Mapping[str, Array],
+    dead: Mapping[str, Array],
+    lead: int,
+    others: Sequence[int],
+    left: IndexArray,
+    way: int,
+) -> BoolArray:
+    """Whether t is proved to turn back at some places: on both sides it is less far than there."""
+    n, sign = len(others), 1.0 if way else -1.0
+    given = {name: values[left] for name, values in coefficients.items()}
+    given |= {f"w{k}": dead[f"v{k}"][left] for k in (lead, *others)}
+    given |= {f"x{k}": dead[f"e{k}"][left] for k in others}
+    given |= {f"x{lead}": np.zeros(len(left)), "bend": dead["bend"][left]}
+    t, error = given[f"w{n}"], given[f"x{n}"]
+    turns = np.ones(len(left), dtype=bool)
+    for side in (-1.0, 1.0):
+        runner = _Runner(programs, given | {"side": np.full(len(left), side)})
+        good, beside, off = runner.beside(["good", f"v{n}", f"e{n}"])
+        with np.errstate(invalid="ignore"):
+            turns &= (good > 0.5) & (sign * (t - beside) > error + off)
+    return turns
+
+
+def _exact(table: LoopTable, coefficients: Mapping[str, float], v: Array, lead: int) -> float:
+    """The last variable of a position of one design (n + 1,), corrected to rounding."""
+    loops, lines = table.loops, table.linear
+    factors = np.array([
+        complex(*(coefficients.get(f"c{term}.{part}", 0.0) for part in ("re", "im")))
+        for term in range(len(loops.row))
+    ])  # fmt: skip
+    constants = [coefficients.get(f"k{row}", 0.0) for row in range(len(lines.constant))]
+    own = replace(
+        table,
+        loops=replace(loops, coefficient=factors),
+        linear=replace(lines, constant=np.array(constants)),
+    )
+    slopes = np.delete(own.jacobian(v[None, :])[0], lead, axis=1)
+    return float(v[-1] - np.linalg.solve(slopes, own.exact_residual(v)[0])[-1])
+
+
+def _at_node(nodes: LastNodes, lead: int, mine: np.ndarray) -> dict[str, Array]:
+    """Registers at the nodes of some designs: places, rates by λ, what is known of the errors."""
+    n = len(nodes.w)
+    slope, slope0 = 1.0 / nodes.s[lead, mine], 1.0 / nodes.p[lead, mine]
+    data = {f"v{k}": nodes.w[k, mine] for k in range(n)}
+    data |= {f"w{k}": nodes.w[k, mine] for k in range(n)}
+    data |= {f"x{k}": nodes.x[k, mine] for k in range(n)} | {f"x{n}": np.zeros(len(mine))}
+    data |= {f"r{k}": nodes.s[k, mine] * slope for k in range(n)}
+    data |= {f"v{n}": nodes.t[mine], f"w{n}": nodes.t[mine], f"r{n}": slope}
+    return data | {"lead0": nodes.q[lead, mine], "slope0": slope0}
+
+
+def _both_ends(
+    node: Mapping[str, Array], dead: Mapping[str, Array], lead: int, others: Sequence[int]
+) -> dict[str, Array]:
+    """Registers of an arc: its node and its dead point, with rates by λ."""
+    data: dict[str, Array] = {}
+    for end, place, rate in ((node, "p", "pr"), (dead, "z", "zr")):
+        data |= {f"{place}{k}": end[f"v{k}"] for k in (lead, *others)}
+        data |= {f"{rate}{k}": end[f"r{k}"] for k in others}
+    return data
+
+
+class _Runner:
+    """Programs with what they read, ``given`` (D,) by register, and a workspace."""
+
+    def __init__(self, programs: FoldPrograms, given: Mapping[str, Array]) -> None:
+        self.programs, self.registers = programs, programs.registers
+        named = self.registers.named
+        names = [name for name in given if name in named]
+        self.places = np.array([named[name] for name in names], dtype=np.intp)
+        self.given = np.stack([given[name] for name in names])
+        self.space = self.registers.filled(max(programs.height, self.registers.count), LANES)
+        self.space[named["tolerance"]], self.space[named["close"]] = _TOLERANCE, _CLOSE
+
+    def search(self, wanted: Sequence[str]) -> Array:
+        """Registers (W, D) when the dead points are found, and the arcs to them tried in one."""
+        programs = self.programs
+        out = np.empty((len(wanted), self.given.shape[1]))
+        live, seeking = self.registers.all_of(["live", "seeking"])
+        _search(
+            programs.iterate.code,
+            programs.move.code,
+            programs.prove.code,
+            self.space,
+            live,
+            seeking,
+            self.registers.all_of(wanted),
+            self.places,
+            self.given,
+            out,
+        )
+        return out
+
+    def beside(self, wanted: Sequence[str]) -> Array:
+        """Registers (W, D) at a place beside another one, and whether the arc to it is proved."""
+        programs = self.programs
+        out = np.empty((len(wanted), self.given.shape[1]))
+        _beside(
+            programs.aside.code,
+            programs.iterate.code,
+            programs.prove.code,
+            self.space,
+            self.registers.named["live"],
+            self.registers.all_of(wanted),
+            self.places,
+            self.given,
+            out,
+        )
+        return out
+
+    def proved_in(self, parts: int) -> BoolArray:
+        """Whether so many parts prove the arcs, (D,)."""
+        programs = self.programs
+        proved = np.zeros(self.given.shape[1], dtype=bool)
+        live, good, along = self.registers.all_of(["live", "good", "along"])
+        _prove_in_parts(
+            programs.between.code,
+            programs.iterate.code,
+            programs.prove.code,
+            programs.advance.code,
+            self.space,
+            live,
+            good,
+            along,
+            self.places,
+            self.given,
+            parts,
+            proved,
+        )
+        return proved
+
+
+@compiled
+def _solve(iterate: Code, w: Array, live: int) -> None:
+    w[live, :] = 1.0
+    for _ in range(_STEPS):
+        run(iterate, w)
+        open_ = 0.0
+        for i in range(LANES):
+            open_ += w[live, i]
+        if open_ == 0.0:
+            break
+
+
+@compiled
+def _load(w: Array, places: IndexArray, given: Array, base: int) -> None:
+    """The designs from ``base`` on; the last one in lanes that are left."""
+    for lane in range(LANES):
+        member = min(base + lane, given.shape[1] - 1)
+        for j in range(len(places)):
+            w[places[j], lane] = given[j, member]
+
+
+@compiled
+def _search(
+    iterate: Code,
+    move: Code,
+    prove: Code,
+    w: Array,
+    live: int,
+    seeking: int,
+    wanted: IndexArray,
+    places: IndexArray,
+    given: Array,
+    out: Array,
+) -> None:
+    """LANES designs at a time: secant steps along the curve, a last solution, the proof."""
+    count = given.shape[1]
+    for base in range(0, count, LANES):
+        _load(w, places, given, base)
+        w[seeking, :] = 1.0
+        for _ in range(_PLACES):
+            run(move, w)
+            _solve(iterate, w, live)
+            open_ = 0.0
+            for i in range(LANES):
+                open_ += w[seeking, i]
+            if open_ == 0.0:
+                break
+        run(prove, w)
+        for lane in range(min(LANES, count - base)):
+            for j in range(len(wanted)):
+                out[j, base + lane] = w[wanted[j], lane]
+
+
+@compiled
+def _beside(
+    aside: Code,
+    iterate: Code,
+    prove: Code,
+    w: Array,
+    live: int,
+    wanted: IndexArray,
+    places: IndexArray,
+    given: Array,
+    out: Array,
+) -> None:
+    """A place beside the one in ``w``, and the proof of the arc to it."""
+    count = given.shape[1]
+    for base in range(0, count, LANES):
+        _load(w, places, given, base)
+        run(aside, w)
+        _solve(iterate, w, live)
+        run(prove, w)
+        for lane in range(min(LANES, count - base)):
+            for j in range(len(wanted)):
+                out[j, base + lane] = w[wanted[j], lane]
+
+
+@compiled
+def _prove_in_parts(
+    between: Code,
+    iterate: Code,
+    prove: Code,
+    advance: Code,
+    w: Array,
+    live: int,
+    good: int,
+    along: int,
+    places: IndexArray,
+    given: Array,
+    parts: int,
+    proved: BoolArray,
+) -> None:
+    """Places between node and dead point, each proved to lie on the curve of the one before."""
+    count = given.shape[1]
+    for base in range(0, count, LANES):
+        _load(w, places, given, base)
+        lanes = min(LANES, count - base)
+        proved[base : base + lanes] = True
+        for part in range(1, parts + 1):
+            w[along, :] = part / parts
+            run(between, w)
+            _solve(iterate, w, live)
+            run(prove, w)
+            for lane in range(lanes):
+                proved[base + lane] &= w[good, lane] > 0.5 and w[live, lane] == 0.0
+            run(advance, w)

@@ -1,0 +1,316 @@
+"""Many mechanisms in step: 64 at a time go from row to row of the table together.
+
+All lanes have the same inputs, so the weights of a prediction are shared and results are written as
+whole rows. A lane whose step is not good leaves the others and becomes a task of
+:mod:`linkwork.kernels.march.independent`, which has steps of its own size.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.kernels.march.march_programs import NODES
+from linkwork.kernels.march.step_trial import (
+    GOOD,
+    RADIUS,
+    TOPOLOGY,
+    Topology,
+    all_loaded,
+    chosen,
+    settled,
+)
+from linkwork.kernels.march.work_arrays import FOUND, TABLE, TASKS, Found, Table, Tasks
+from linkwork.kernels.program.compiling import (
+    compiled,
+    compiled_for,
+    copied_to,
+    soon_written,
+    types,
+    uncounted,
+)
+from linkwork.kernels.program.interpreter import LANES
+from linkwork.kernels.program.program import ROLES
+
+__all__ = ["in_step"]
+
+_LINE = 64  # bytes of a cache line
+_LARGEST = 0.5  # of the largest step: further apart, rows have nodes between them
+_WORTH = LANES // 2  # with fewer lanes left each goes on by itself
+
+
+@uncounted
+def _left(
+    lane: int,
+    member: int,
+    way: int,
+    topology: Topology,
+    turn: int,
+    w: Array,
+    tasks: Tasks,
+    count: int,
+) -> int:
+    """A lane goes on by itself from its last node; how many tasks there are now."""
+    tasks.member[count], tasks.way[count] = member, way
+    nodes = topology.nodes
+    for j in range(nodes.shape[1]):
+        tasks.node[j, count] = w[nodes[(1 - turn) % ROLES, j], lane]
+    return count + 1
+
+
+@uncounted
+def _weighted(
+    w: Array,
+    topology: Topology,
+    turn: int,
+    steps: int,
+    together: bool,
+    spacing: Array,
+    times: Array,
+) -> None:
+    """The weights of the prediction: for each lane by itself until all have the same nodes behind.
+
+    ``together``: whether they have started at the same t. ``spacing`` (4,): of the trial and the
+    nodes before, for which the weights are at hand. ``times`` (4,): room.
+    """
+    nodes, weights = topology.nodes, topology.weights
+    last, trial = nodes.shape[1] - 1, nodes[-turn % ROLES, nodes.shape[1] - 1]
+    shared = together or steps > NODES
+    for lane in range(1 if shared else LANES):
+        for role in range(1, ROLES):
+            times[role - 1] = w[nodes[(role - turn) % ROLES, last], lane]
+        step = w[trial, lane] - times[0]
+        if not shared:
+            spacing[:] = np.inf  # each lane's own
+        changed = chosen(w, lane, weights, times, step, steps, spacing)
+        if shared and changed:
+            for j in range(len(weights)):
+                w[weights[j], 1:] = w[weights[j], 0]
+
+
+@uncounted
+def _address(array: Array, j: int, row: int, first: int) -> int:
+    strides = array.strides
+    return array.ctypes.data + j * strides[0] + row * strides[1] + first * strides[2]
+
+
+@uncounted
+def _fetched(first: int, width: int, row: int, table: Table, found: Found) -> None:
+    """The places of a row are brought near while the row is computed."""
+    target = found.unknowns
+    for j in range(table.unknowns):
+        place = _address(target, j, row, first)
+        for line in range(0, width * target.strides[2], _LINE):
+            soon_written(place + line)
+
+
+@uncounted
+def _kept(
+    first: int,
+    width: int,
+    row: int,
+    topology: Topology,
+    turn: int,
+    w: Array,
+    standing: Array,
+    all_stand: bool,
+    table: Table,
+    found: Found,
+) -> None:
+    """A row is reached by the lanes that stand."""
+    target, radius, reached = found.unknowns, found.radius, found.reached
+    place, error = topology.nodes, topology.noted[RADIUS]
+    proofs = radius.shape[0] > 0
+    if all_stand:
+        for j in range(table.unknowns):
+            source = place[-turn % ROLES, j]
+            if target.strides[2] == w.itemsize:
+                copied_to(_address(target, j, row, first), w[source].ctypes.data, width)
+                continue
+            for i in range(width):
+                target[j, row, first + i] = w[source, i]
+        if proofs:
+            for i in range(width):
+                radius[row, first + i] = w[error, i]
+        for i in range(width):
+            reached[row, first + i] = True
+        return
+    for i in range(width):
+        if standing[i] > 0.5:
+            for j in range(table.unknowns):
+                target[j, row, first + i] = w[place[-turn % ROLES, j], i]
+            if proofs:
+                radius[row, first + i] = w[error, i]
+            reached[row, first + i] = True
+
+
+@uncounted
+def _set_out(
+    base: int,
+    way: int,
+    topology: Topology,
+    w: Array,
+    begun: BoolArray,
+    node: Array,
+    rows: Array,
+    standing: Array,
+    tasks: Tasks,
+    count: int,
+) -> tuple[int, bool, int]:
+    """Who goes in this direction, and who has to go alone.
+
+    Returns
+    -------
+    ahead, together, count : int, bool, int
+        The first row, -1 if nobody goes; whether all lanes start at the same t; how many tasks.
+    """
+    size, width = topology.nodes.shape[1], min(LANES, node.shape[1] - base)
+    for role in range(1, ROLES):
+        all_loaded(w, topology.nodes[role], node, base, width)
+    t = topology.nodes[1, size - 1]
+    ahead, there, together = -1, False, True
+    standing[:] = 0.0
+    for i in range(LANES):
+        together &= w[t, i] == w[t, 0]
+    for i in range(width):
+        if not begun[base + i]:
+            continue
+        above = np.searchsorted(rows, w[t, i])
+        own = above if way == 1 else above - 1
+        if own < 0 or own >= len(rows):
+            continue
+        if ahead < 0:
+            ahead, there = own, rows[own] == w[t, i]
+        if own == ahead and (rows[own] == w[t, i]) == there:
+            standing[i] = 1.0
+        else:
+            count = _left(i, base + i, way, topology, 0, w, tasks, count)
+    return ahead, together, count
+
+
+@uncounted
+def _aimed(
+    base: int,
+    width: int,
+    row: int,
+    topology: Topology,
+    turn: int,
+    w: Array,
+    standing: Array,
+    table: Table,
+    found: Found,
+) -> tuple[float, int]:
+    """The trial's t: of the row, or on the way to it. How far the row is; in how many steps, -1
+    where a step would be lost in rounding.
+    """
+    last = topology.nodes.shape[1] - 1
+    t0, t1 = topology.nodes[-turn % ROLES, last], topology.nodes[(1 - turn) % ROLES, last]
+    lead = 0
+    while standing[lead] == 0.0:
+        lead += 1
+    away = table.rows[row] - w[t1, lead]
+    parts = math.ceil(abs(away) / (_LARGEST * table.steps[1]))
+    w[t0, :] = table.rows[row] if parts <= 1 else w[t1, lead] + away / parts
+    if parts > 1 and w[t0, lead] == w[t1, lead]:
+        return away, -1
+    if parts <= 1:
+        _fetched(found.first + base, width, row, table, found)
+    return away, parts
+
+
+@compiled
+def _one_way(
+    base: int,
+    way: int,
+    topology: Topology,
+    w: Array,
+    begun: BoolArray,
+    node: Array,
+    table: Table,
+    tasks: Tasks,
+    count: int,
+    found: Found,
+) -> int:
+    """64 mechanisms in one direction; how many tasks there are now."""
+    width, standing = min(LANES, node.shape[1] - base), np.zeros(LANES)
+    spacing, times = np.full(NODES, np.inf), np.zeros(NODES)
+    row, together, count = _set_out(
+        base, way, topology, w, begun, node, table.rows, standing, tasks, count
+    )
+    turn, steps, good = 0, 0, topology.noted[GOOD]
+    left = int(standing.sum())
+    while 0 <= row < len(table.rows) and left >= min(_WORTH, (width + 1) // 2):
+        away, parts = _aimed(base, width, row, topology, turn, w, standing, table, found)
+        if parts < 0:
+            break
+        steps += 1
+        _weighted(w, topology, turn, steps, together, spacing, times)
+        settled(topology, turn, w, standing, True, LANES)
+        bad = 0
+        for i in range(LANES):
+            bad += standing[i] > w[good, i]
+        if bad:
+            for i in range(width):
+                if standing[i] > 0.5 and not w[good, i] > 0.5:
+                    standing[i] = 0.0
+                    left -= 1
+                    count = _left(i, base + i, way, topology, turn, w, tasks, count)
+        if parts <= 1:
+            first, all_stand = found.first + base, left == width
+            _kept(first, width, row, topology, turn, w, standing, all_stand, table, found)
+            row += 2 * way - 1
+        if away != 0.0:
+            turn = (turn + 1) % ROLES
+        else:
+            steps = 0
+    if 0 <= row < len(table.rows):
+        for i in range(width):
+            if standing[i] > 0.5:
+                count = _left(i, base + i, way, topology, turn, w, tasks, count)
+    return count
+
+
+@compiled_for(
+    types.int64(
+        TOPOLOGY, types.Array(types.float64, 2, "C"),
+        types.Array(types.float64, 2, "C"), types.Array(types.float64, 2, "C"),
+        types.Array(types.boolean, 1, "C"), TABLE, TASKS, FOUND,
+    )
+)  # fmt: skip
+def in_step(
+    topology: Topology,
+    w: Array,
+    design: Array,
+    node: Array,
+    begun: BoolArray,
+    table: Table,
+    tasks: Tasks,
+    found: Found,
+) -> int:
+    """Lead mechanisms through the rows of the table as far as they go together.
+
+    Parameters
+    ----------
+    topology : Topology
+    w : (registers, LANES) workspace with constants and options in place
+    design : (C, M) coefficients
+    node, begun : (S, M), (M,) where they start, and whether they do
+    table : Table
+    tasks : Tasks
+        Room for 2 M; filled with what is left to do.
+    found : Found
+
+    Returns
+    -------
+    int
+        How many tasks.
+    """
+    count = 0
+    for base in range(0, node.shape[1], LANES):
+        width = min(LANES, node.shape[1] - base)
+        all_loaded(w, topology.coefficients, design, base, width)
+        for way in (1, 0):
+            count = _one_way(base, way, topology, w, begun, node, table, tasks, count, found)
+    return count

@@ -1,0 +1,354 @@
+"""The programs of one topology: predict, solve block by block, prove or judge the step.
+
+A lane keeps five positions: the trial (role 0) and the last four nodes (roles 1 to 4). Registers
+by name, one number per lane each; ``.s`` is a role:
+
+``t.s``                   the value of the path
+``x<k>.s`` ``d<k>.s``     unknowns, and their derivatives by t
+``e<k>.s``                how far the true position may be from there
+``side<b>.s``             det J of a block
+``u<j>.origin`` ``.rate`` inputs are u = origin + rate t
+``u<j>.spread``           how far the inputs of a row may be from those, beside their own rounding
+``a1`` … ``b4``           weights of the nodes' unknowns and derivatives in the prediction
+``scale<k>``              weights of variables that are lengths
+
+and what is noted of the trial on the way, which has one place whatever the roles are:
+
+``u<j>.0``                inputs; phasors of phases that only inputs turn
+``live<b>.0``             1.0 where block b still iterates
+``step<b>.0`` ``begin<b>.0``  weighted size of the latest and of the first correction
+``y<k>.0``                how far the true position may get from the trial on the way to it
+``radius.0``              the largest error of the trial, weighted
+``good.0``                1.0 where the step may be taken
+
+When the trial has become the last node, roles move on by one: nothing is copied, the same program
+is run with its registers renamed (:meth:`MarchPrograms.turned`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence, Set
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.foundation.arrays import IndexArray
+from linkwork.kernels.loop_table import LoopTable
+from linkwork.kernels.march.closure import (
+    BlockPart,
+    Closure,
+    Phase,
+    phasor_name,
+    solved,
+    turned,
+)
+from linkwork.kernels.march.proof_program import BlockProof
+from linkwork.kernels.program.lowering import lowered, reserve
+from linkwork.kernels.program.program import ROLES, Program, Registers
+from linkwork.kernels.program.recorder import Recorder, Value
+
+__all__ = ["NODES", "WEIGHTS", "MarchPrograms", "march_programs"]
+
+NODES = ROLES - 1  # that a prediction can use
+#: Registers of the weights of nodes' values and derivatives in a prediction.
+WEIGHTS = tuple(f"{name}{role}" for role in range(1, ROLES) for name in "ab")
+_UNIT = float(np.finfo(float).eps) / 2.0
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MarchPrograms:
+    """``predict`` the trial; what is ``given`` there; ``begin`` and ``iterate`` every block,
+    ``damped`` at the start; ``prove`` every block, if asked; ``judge``.
+
+    ``nodes`` (5, S): registers of positions by role, the first ones of all. ``noted``: names of
+    what programs leave of a trial beside it; ``shared``: those of what is given that depend on t
+    alone, none where they depend on the design as well.
+    """
+
+    registers: Registers
+    height: int
+    predict: Program
+    given: Program
+    judge: Program
+    begin: tuple[Program, ...]
+    damped: tuple[Program, ...]
+    iterate: tuple[Program, ...]
+    prove: tuple[Program, ...]
+    nodes: IndexArray
+    noted: tuple[str, ...]
+    shared: tuple[str, ...]
+
+    @property
+    def sections(self) -> tuple[Program, ...]:
+        """All programs in the order in which the march counts them."""
+        return (
+            self.predict,
+            self.given,
+            self.judge,
+            *self.begin,
+            *self.damped,
+            *self.iterate,
+            *self.prove,
+        )
+
+    def turned(self, moves: int) -> tuple[Program, ...]:
+        """The sections when roles have moved on so many times: the trial is one further down."""
+        place = np.arange(self.height, dtype=np.uint32)
+        for role in range(ROLES):
+            place[self.nodes[role]] = self.nodes[(role - moves) % ROLES]
+        return tuple(
+            replace(program, code=np.hstack([program.code[:, :1], place[program.code[:, 1:]]]))
+            for program in self.sections
+        )
+
+
+class _Writer:
+    """Records the programs of one table."""
+
+    def __init__(
+        self, table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str], certified: bool
+    ) -> None:
+        self.table, self.parts, self.zeros, self.certified = table, parts, zeros, certified
+        self.n, self.count = table.unknowns, table.variables
+        self.alone = self.count == self.n + 1  # a single input is the path's own value
+
+    def _variables(self, rec: Recorder) -> list[Value]:
+        """All variables at the trial."""
+        inputs = range(self.count - self.n)
+        own = [rec.input("t.0")] if self.alone else [rec.input(f"u{j}.0") for j in inputs]
+        return [*[rec.input(f"x{k}.0") for k in range(self.n)], *own]
+
+    def _scale(self, rec: Recorder, k: int) -> Value:
+        """The weight of a variable: 1 for angles."""
+        return rec.constant(1.0) if self.table.turns[k] else rec.input(f"scale{k}")
+
+    def _rate(self, rec: Recorder, j: int) -> Value:
+        """By how much an input changes with t."""
+        return rec.constant(1.0) if self.alone else rec.input(f"u{j}.rate")
+
+    def _moved(self, rec: Recorder, k: int) -> Value:
+        """The rate of a variable that a block takes as known."""
+        return rec.input(f"d{k}.0") if k < self.n else self._rate(rec, k - self.n)
+
+    def _weighted(self, rec: Recorder, k: int, change: Value) -> Value:
+        """|change| of a variable in its weight."""
+        return rec.divide(rec.absolute(change), self._scale(rec, k))
+
+    def _closure(self, number: int, rec: Recorder) -> Closure:
+        part = self.parts[number]
+        return Closure(self.table, part, rec, self._variables(rec), self.zeros, shared=True)
+
+    def predict(self) -> Recorder:
+        """The polynomial through the last nodes with their derivatives."""
+        rec = Recorder()
+        for k in range(self.n):
+            value: Value = rec.constant(0.0)
+            for role in range(1, ROLES):
+                value = value + rec.input(f"a{role}") * rec.input(f"x{k}.{role}")
+                value = value + rec.input(f"b{role}") * rec.input(f"d{k}.{role}")
+            rec.write(f"x{k}.0", value)
+        return rec
+
+    def given(self) -> Recorder:
+        """The inputs at t, and the phasors that only they turn."""
+        rec = Recorder()
+        t = rec.input("t.0")
+        inputs = [t]
+        if not self.alone:
+            inputs = [
+                rec.input(f"u{j}.origin") + rec.input(f"u{j}.rate") * t
+                for j in range(self.count - self.n)
+            ]
+            for j, value in enumerate(inputs):
+                rec.write(f"u{j}.0", value)
+        variables = [t] * self.n + inputs  # phases of inputs alone know no unknowns
+        for phase in sorted(self._given_phases()):
+            cosine, sine = turned(rec, variables, phase)
+            rec.write(phasor_name("cos", phase), cosine)
+            rec.write(phasor_name("sin", phase), sine)
+        return rec
+
+    def _given_phases(self) -> set[Phase]:
+        closures = [self._closure(b, Recorder()) for b in range(len(self.parts))]
+        return {p for c in closures for p in c.phases.values() if c.given(p)}
+
+    def iterate(self, number: int, first: bool, damped: bool) -> Recorder:
+        """One Newton-Raphson step of a block; without proofs with rates and the sign of det J."""
+        part, rec = self.parts[number], Recorder()
+        closure = self._closure(number, rec)
+        matrix, sides = closure.jacobian(part.unknowns), [closure.residual()]
+        if not self.certified:
+            sides.append(self._drives(closure, rec))
+        answer = solved(rec, matrix, sides)
+        change, live = answer.columns[0], rec.input(f"live{number}.0")
+        turns = [abs(d) for d, k in zip(change, part.unknowns, strict=True) if self.table.turns[k]]
+        if damped and turns:
+            factor = rec.smallest([1.0, rec.input("most_turn") / rec.largest(turns)])
+            change = [factor * d for d in change]
+        size = rec.largest(
+            self._weighted(rec, k, d) for d, k in zip(change, part.unknowns, strict=True)
+        )
+
+        def put(name: str, value: Value) -> None:
+            rec.write(name, value if first else rec.where(live, value, rec.input(name)))
+
+        for d, k in zip(change, part.unknowns, strict=True):
+            put(f"x{k}.0", closure.v[k] - d)
+        for moved in answer.columns[1:]:
+            rates = self._rates(closure, matrix, moved, change)
+            for r, k in zip(rates, part.unknowns, strict=True):
+                put(f"d{k}.0", r)
+        if not self.certified:
+            put(f"side{number}.0", answer.determinant)
+            put(f"step{number}.0", size)
+            if first:
+                rec.write(f"begin{number}.0", size)
+        done = rec.at_most(size, rec.input("tolerance"))
+        rec.write(f"live{number}.0", 1.0 - done if first else rec.where(done, 0.0, live))
+        return rec
+
+    def _rates(
+        self,
+        closure: Closure,
+        matrix: Sequence[Sequence[Value | float]],
+        moved: Sequence[Value],
+        change: Sequence[Value],
+    ) -> list[Value]:
+        """Rates after the correction, from those before it: the Jacobian is not solved again."""
+        rec, unknowns = closure.rec, closure.part.unknowns
+        rates = {k: self._moved(rec, k) for k in closure.known()}
+        rates |= {k: -r for k, r in zip(unknowns, moved, strict=True)}
+        correction = {k: -d for k, d in zip(unknowns, change, strict=True)}
+        (more,) = solved(rec, matrix, [closure.bending(correction, rates)]).columns
+        return [rec.subtract(rates[k], m) for k, m in zip(unknowns, more, strict=True)]
+
+    def _drives(self, closure: Closure, rec: Recorder) -> list[Value]:
+        """F_k times the rates of the known variables."""
+        known = closure.known()
+        rates = [self._moved(rec, k) for k in known]
+        return [
+            rec.total([rec.multiply(x, rate) for x, rate in zip(row, rates, strict=True)])
+            for row in closure.jacobian(known)
+        ]
+
+    def prove(self, number: int) -> Recorder:
+        """A block's proof: of the trial, and that it lies on the branch of the last node."""
+        part, rec = self.parts[number], Recorder()
+        closure = self._closure(number, rec)
+        used = (*part.unknowns, *closure.known())
+        proof = BlockProof(closure, {k: self._scale(rec, k) for k in used})
+        near: dict[int, Value] = {}
+        far: dict[int, Value] = {}
+        step = abs(rec.input("t.0") - rec.input("t.1")) * (1.0 + 16.0 * _UNIT)
+        for k in proof.known:
+            if k < self.n:
+                near[k], far[k] = rec.input(f"e{k}.0"), rec.input(f"y{k}.0")
+            else:
+                near[k] = abs(closure.v[k]) * (4.0 * _UNIT) + rec.input(f"u{k - self.n}.spread")
+                far[k] = step * abs(self._rate(rec, k - self.n)) + 2.0 * near[k]
+        for k, rate in zip(part.unknowns, proof.rates(self._moved), strict=True):
+            rec.write(f"d{k}.0", rate)
+        here, there = proof.within(near), proof.within(far)
+        masks = [here.holds, there.holds]
+        for k, error, reach, alone in zip(
+            part.unknowns, here.each, there.each, there.alone, strict=True
+        ):
+            rec.write(f"e{k}.0", error)
+            rec.write(f"y{k}.0", reach)
+            away = abs(closure.v[k] - rec.input(f"x{k}.1"))
+            away = away + rec.largest([error, rec.input(f"e{k}.1")])
+            masks.append(rec.at_most(away, alone * (1.0 - 4.0 * _UNIT)))
+        rec.write(f"ok{number}.0", rec.all_of(masks))
+        rec.write(f"radius{number}.0", here.radius)
+        return rec
+
+    def judge_proof(self) -> Recorder:
+        """``good``: where everything is proved."""
+        rec = Recorder()
+        blocks = range(len(self.parts))
+        masks = [rec.input(f"ok{b}.0") for b in blocks]
+        # what has not converged may be proved, but its radius would be of no use
+        masks += [rec.at_most(rec.input(f"live{b}.0"), 0.0) for b in blocks]
+        rec.write("good.0", rec.all_of(masks))
+        rec.write("radius.0", rec.largest(rec.input(f"radius{b}.0") for b in blocks))
+        return rec
+
+    def judge(self) -> Recorder:
+        """``good``: where the step may be taken without a proof."""
+        rec = Recorder()
+        masks = []
+        for b in range(len(self.parts)):
+            masks.append(rec.at_most(rec.input(f"step{b}.0"), rec.input("tolerance")))
+            masks.append(rec.at_most(rec.input(f"begin{b}.0"), rec.input("most_correction")))
+            product = rec.input(f"side{b}.0") * rec.input(f"side{b}.1")
+            masks.append(rec.at_most(0.0, product))
+        h = rec.input("t.0") - rec.input("t.1")
+        drifts = [
+            self._weighted(rec, k, (rec.input(f"d{k}.0") - rec.input(f"d{k}.1")) * h)
+            for k in range(self.n)
+        ]
+        masks.append(rec.at_most(rec.largest(drifts), rec.input("most_drift")))
+        rec.write("good.0", rec.all_of(masks))
+        return rec
+
+    def node_names(self, role: int) -> list[str]:
+        """What makes up a position in a role: unknowns, derivatives, evidence, t."""
+        own = [f"{name}{k}" for name in "xd" for k in range(self.n)]
+        own += [f"e{k}" for k in range(self.n)] if self.certified else []
+        own += [] if self.certified else [f"side{b}" for b in range(len(self.parts))]
+        return [f"{name}.{role}" for name in (*own, "t")]
+
+
+def march_programs(
+    table: LoopTable,
+    parts: Sequence[BlockPart],
+    zeros: Set[str] = frozenset(),
+    certified: bool = False,
+) -> MarchPrograms:
+    """The programs of a table in blocks.
+
+    Parameters
+    ----------
+    table : LoopTable
+        Without function rows.
+    parts : sequence of BlockPart
+        Blocks in the order in which they are solved.
+    zeros : set of str
+        Names of coefficients that are zero in every design.
+    certified : bool
+        Whether every step is proved.
+    """
+    writer, blocks = _Writer(table, parts, zeros, certified), range(len(parts))
+    recorded = [
+        writer.predict(),
+        writer.given(),
+        writer.judge_proof() if certified else writer.judge(),
+        *[writer.iterate(b, first=True, damped=False) for b in blocks],
+        *[writer.iterate(b, first=False, damped=True) for b in blocks],
+        *[writer.iterate(b, first=False, damped=False) for b in blocks],
+        *[writer.prove(b) for b in blocks if certified],
+    ]
+    registers = Registers()
+    nodes = np.stack([registers.all_of(writer.node_names(role)) for role in range(ROLES)])
+    noted = {name for rec in recorded for name in rec.writes} | {"good.0", "radius.0"}
+    noted -= set(writer.node_names(0))
+    registers.all_of(sorted(noted))
+    for rec in recorded:
+        reserve(rec, registers)
+    programs = [lowered(rec, registers, registers.count) for rec in recorded]
+    count = len(parts)
+    predict, given, judge, *rest = programs
+    return MarchPrograms(
+        registers=registers,
+        height=max(registers.count, *(program.height for program in programs)),
+        predict=predict,
+        given=given,
+        judge=judge,
+        begin=tuple(rest[:count]),
+        damped=tuple(rest[count : 2 * count]),
+        iterate=tuple(rest[2 * count : 3 * count]),
+        prove=tuple(rest[3 * count :]),
+        nodes=nodes,
+        noted=tuple(sorted(noted)),
+        shared=tuple(recorded[1].writes) if writer.alone else (),
+    )

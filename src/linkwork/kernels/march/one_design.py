@@ -1,0 +1,116 @@
+"""One design at a time, its rows side by side in the lanes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, CountArray
+from linkwork.kernels.march.rowwise import DONE, NOT_NEAR, by_rows
+from linkwork.kernels.march.step_trial import Topology
+from linkwork.kernels.march.work_arrays import Found, Table
+
+__all__ = ["Alone", "Ready", "RowsOfOne"]
+
+
+@dataclass(frozen=True, eq=False)
+class Ready:
+    """A topology and the coefficients (C, D) of designs."""
+
+    topology: Topology
+    design: Array
+
+    def part(self, which: slice) -> Ready:
+        """Some of the designs."""
+        return Ready(self.topology, np.ascontiguousarray(self.design[:, which]))
+
+    def one(self, k: int) -> Ready:
+        """One of the designs."""
+        return self.part(slice(k, k + 1))
+
+    def load(self, space: Array, k: int) -> None:
+        """One design into all lanes of a workspace."""
+        space[self.topology.coefficients] = self.design[:, k, None]
+
+
+class Scout(Protocol):
+    """What finds starts from guesses that are not near; see :class:`LaneKernel`."""
+
+    def given(self, guess: Array, start: Array) -> Array:
+        """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""
+
+    def begun(self, ready: Ready, space: Array, given: Array) -> tuple[Array, BoolArray]:
+        """Nodes (S, D) where designs start, and whether they do, (D,)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Alone:
+    """What computes the rows of one design side by side, with room for one of them at a time.
+
+    ``scale`` (D, n): weights of the unknowns.
+    """
+
+    scout: Scout
+    ready: Ready
+    ahead: Ready
+    space: Array
+    own: Array
+    table: Table
+    scale: Array
+
+    def loaded(self, k: int) -> Loaded:
+        """With a design in place, until another one is."""
+        self.ready.load(self.space, k)
+        if self.own is not self.space:
+            self.ahead.load(self.own, k)
+        return Loaded(self, k, (self.ready.topology, self.ahead.topology, self.space, self.own))
+
+
+@dataclass(frozen=True, eq=False)
+class Loaded:
+    """One design in place."""
+
+    alone: Alone
+    design: int
+    spaces: tuple[Topology, Topology, Array, Array]
+
+    def run(self, guess: Array, found: Found, counts: CountArray) -> bool:
+        """From a guess (n + 1,) of the unknowns and of t; whether all rows are found.
+
+        ``counts`` (R,): filled with the corrections that they took.
+        """
+        alone, scale = self.alone, self.alone.scale[self.design]
+        code = by_rows(*self.spaces, guess, False, alone.table, scale, found, counts)
+        if code == NOT_NEAR:
+            node = alone.scout.given(guess[:-1, None], guess[-1:])
+            start, begun = alone.scout.begun(alone.ahead.one(self.design), alone.own, node)
+            if not begun[0]:
+                return False
+            own = start[:, 0].copy()
+            code = by_rows(*self.spaces, own, True, alone.table, scale, found, counts)
+        return bool(code == DONE)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RowsOfOne:
+    """The rows of one design, computed as often as wanted; see :meth:`LaneKernel.alone`."""
+
+    loaded: Loaded
+    guess: Array
+    room: tuple[BoolArray, Array, Array]
+    counts: CountArray
+    certified: bool
+
+    def run(self) -> tuple[Array, Array] | None:
+        """Unknowns (n, R, 1) and radii of their proofs (R, 1); ``None`` if this is not the way.
+
+        How many corrections each row took is left in ``counts`` (R,).
+        """
+        table = self.loaded.alone.table
+        rows = len(table.rows)
+        v = np.empty((table.unknowns, rows, 1))
+        radius = np.empty((rows if self.certified else 0, 1))
+        done = self.loaded.run(self.guess, Found(0, v, radius, *self.room), self.counts)
+        return (v, radius) if done else None

@@ -1,0 +1,181 @@
+"""Programs run over positions: of many designs in step, or of one design's rows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, IndexArray, TurnArray
+from linkwork.foundation.sharing import shared_out
+from linkwork.kernels.march.rate_programs import PlaceProgram
+from linkwork.kernels.program.compiling import compiled, compiled_for, types
+from linkwork.kernels.program.interpreter import LANES, run
+from linkwork.kernels.program.program import Code
+
+__all__ = ["along_rows", "at_places"]
+
+_PART = 1024  # designs that one thread works on at a time
+
+
+def at_places(
+    what: PlaceProgram,
+    coefficients: Mapping[str, Array],
+    v: Array,
+    inputs: Array,
+    turns: TurnArray,
+    threads: int = 1,
+) -> Array:
+    """What a program computes at D designs' positions in R rows.
+
+    Parameters
+    ----------
+    coefficients : Mapping[str, (D,)]
+        By register; names that the program does not use are left out.
+    v : (n, R, D)
+        Unknowns; NaN gives NaN.
+    inputs : (R, p)
+    turns : (R, D)
+        How many whole turns the first input of a position is further than the row says.
+
+    Returns
+    -------
+    (len(what.wanted), R, D)
+    """
+    n, rows, count = v.shape
+    ready = _Ready.of(what, coefficients, n + inputs.shape[1])
+    design = np.array([coefficients[name] for name in ready.used]).reshape(len(ready.used), count)
+    found = np.empty((len(what.wanted), rows, count))
+
+    def one(first: int) -> None:
+        part = slice(first, first + _PART)
+        _evaluate(
+            what.program.code, ready.space(), ready.places, np.ascontiguousarray(design[:, part]),
+            ready.variables, v[:, :, part], inputs, turns[:, part], ready.wanted,
+            found[:, :, part],
+        )  # fmt: skip
+
+    firsts = range(0, count, _PART)
+    shared_out(one, firsts, min(threads, len(firsts)))
+    return found
+
+
+def along_rows(what: PlaceProgram, coefficients: Mapping[str, Array], v: Array) -> Array:
+    """What a program computes at R positions of one design.
+
+    Parameters
+    ----------
+    coefficients : Mapping[str, (1,)]
+        By register; names that the program does not use are left out.
+    v : (N, R)
+        Unknowns, then inputs.
+
+    Returns
+    -------
+    (len(what.wanted), R)
+    """
+    ready = _Ready.of(what, coefficients, len(v))
+    space = ready.space()
+    for name, place in zip(ready.used, ready.places, strict=True):
+        space[place] = coefficients[name][0]
+    found = np.empty((len(what.wanted), v.shape[1]))
+    _follow(what.program.code, space, ready.variables, v, ready.wanted, found)
+    return found
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Ready:
+    """Where a program reads and leaves what: registers by number.
+
+    ``used``: the coefficients that it reads, at ``places``.
+    """
+
+    what: PlaceProgram
+    used: list[str]
+    places: IndexArray
+    variables: IndexArray
+    wanted: IndexArray
+    height: int
+
+    @classmethod
+    def of(cls, what: PlaceProgram, coefficients: Iterable[str], variables: int) -> _Ready:
+        named = what.registers.named
+        used = [name for name in coefficients if name in named]
+        # a variable that the program does not use is loaded into a register of its own
+        spare = max(what.program.height, what.registers.count)
+        return cls(
+            what=what,
+            used=used,
+            places=np.array([named[name] for name in used], dtype=np.intp),
+            variables=np.array([named.get(f"v{k}", spare) for k in range(variables)], np.intp),
+            wanted=np.array([named[name] for name in what.wanted], dtype=np.intp),
+            height=spare + 1,
+        )
+
+    def space(self) -> Array:
+        """A workspace with constants in place."""
+        return self.what.registers.filled(self.height, LANES)
+
+
+@compiled_for(
+    types.void(
+        types.Array(types.uint32, 2, "C"), types.Array(types.float64, 2, "C"),
+        types.Array(types.int64, 1, "C"), types.Array(types.float64, 2, "C"),
+        types.Array(types.int64, 1, "C"), types.Array(types.float64, 2, "C"),
+    )
+)  # fmt: skip
+def _follow(
+    code: Code, w: Array, variables: IndexArray, v: Array, wanted: IndexArray, found: Array
+) -> None:
+    """LANES rows at a time."""
+    rows = v.shape[1]
+    for base in range(0, rows, LANES):
+        lanes = min(LANES, rows - base)
+        for k in range(len(variables)):
+            for lane in range(lanes):
+                w[variables[k], lane] = v[k, base + lane]
+        run(code, w)
+        for j in range(len(wanted)):
+            for lane in range(lanes):
+                found[j, base + lane] = w[wanted[j], lane]
+
+
+@compiled
+def _evaluate(
+    code: Code,
+    w: Array,
+    places: IndexArray,
+    design: Array,
+    variables: IndexArray,
+    v: Array,
+    inputs: Array,
+    turns: TurnArray,
+    wanted: IndexArray,
+    found: Array,
+) -> None:
+    """LANES designs at a time, row by row."""
+    unknowns, rows, count = v.shape
+    for base in range(0, count, LANES):
+        lanes = min(LANES, count - base)
+        for lane in range(LANES):
+            member = base + min(lane, lanes - 1)
+            for j in range(len(places)):
+                w[places[j], lane] = design[j, member]
+        for row in range(rows):
+            for k in range(unknowns):
+                for lane in range(lanes):
+                    w[variables[k], lane] = v[k, row, base + lane]
+            for j in range(inputs.shape[1]):
+                for lane in range(lanes):
+                    w[variables[unknowns + j], lane] = inputs[row, j]
+            if inputs.shape[1]:
+                for lane in range(lanes):
+                    turn = turns[row, base + lane]
+                    if turn:
+                        w[variables[unknowns], lane] += turn * 2.0 * math.pi
+            run(code, w)
+            for j in range(len(wanted)):
+                for lane in range(lanes):
+                    found[j, row, base + lane] = w[wanted[j], lane]

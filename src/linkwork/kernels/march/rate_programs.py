@@ -1,0 +1,221 @@
+"""Programs that read off positions what moves how fast, and how far they are from singular ones.
+
+Block by block, as in ``numerics.block_solver``:  J x' = -F_u u',  J x'' = -D²F[(x', u'), (x', u')]
+with the rates of all variables that a block knows. Registers by name:
+
+``v<k>``             variables, the inputs behind the unknowns
+``u<j>.rate``        rate of an input by the leading one
+``scale<k>``         weights of variables that are lengths
+``length``           what the residuals of equations of lengths are divided by
+``first<k>`` ``second<k>``  derivatives of the unknowns by the leading input
+``condition``        the largest ‖J‖·‖J⁻¹‖ of all blocks, weighted, in the largest norm
+``residual``         the largest residual of all equations, scaled
+``u<j>.spread``      how far an input may be from the value it stands for, beside its rounding
+``radius`` ``unique``  a position lies within the one and no other within the other, weighted; both
+                     NaN where that is not proved
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence, Set
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.kernels.loop_table import LoopTable
+from linkwork.kernels.march.closure import BlockPart, Closure, solved
+from linkwork.kernels.march.proof_program import BlockProof
+from linkwork.kernels.program.lowering import lowered, reserve
+from linkwork.kernels.program.program import Program, Registers
+from linkwork.kernels.program.recorder import Recorder, Value
+
+__all__ = ["PlaceProgram", "evidence_program", "rate_program", "row_program"]
+
+_UNIT = float(np.finfo(float).eps) / 2.0
+
+Number = Value | float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlaceProgram:
+    """A program that computes ``wanted`` named registers from a position."""
+
+    program: Program
+    registers: Registers
+    wanted: tuple[str, ...]
+
+
+class _Writer:
+    def __init__(self, table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str]) -> None:
+        self.table, self.n = table, table.unknowns
+        self.rec = rec = Recorder()
+        variables = [rec.input(f"v{k}") for k in range(table.variables)]
+        self.closures = [Closure(table, part, rec, variables, zeros) for part in parts]
+
+    def finished(self, wanted: Sequence[str]) -> PlaceProgram:
+        """The program, which computes these."""
+        registers = Registers()
+        reserve(self.rec, registers)
+        program = lowered(self.rec, registers, registers.count)
+        return PlaceProgram(program=program, registers=registers, wanted=tuple(wanted))
+
+    # ---------------------------------------------------------------- rates
+
+    def rates(self) -> list[str]:
+        """Both derivatives of all unknowns; the names of what is written."""
+        inputs = range(self.table.variables - self.n)
+        alone = len(inputs) == 1  # a single input leads
+        first: dict[int, Number] = {
+            self.n + j: 1.0 if alone else self.rec.input(f"u{j}.rate") for j in inputs
+        }
+        second: dict[int, Number] = {self.n + j: 0.0 for j in inputs}
+        for closure in self.closures:
+            self._block_rates(closure, first, second)
+        for k in range(self.n):
+            self.rec.write(f"first{k}", first[k])
+            self.rec.write(f"second{k}", second[k])
+        return [f"{name}{k}" for name in ("first", "second") for k in range(self.n)]
+
+    def _block_rates(
+        self, closure: Closure, first: dict[int, Number], second: dict[int, Number]
+    ) -> None:
+        unknowns, known = closure.part.unknowns, closure.known()
+        matrix, drives = closure.jacobian(unknowns), closure.jacobian(known)
+        side = self._driven(drives, [first[k] for k in known])
+        for k, x in zip(unknowns, self._solution(matrix, side), strict=True):
+            first[k] = -x
+        bends = closure.bending(first, first)
+        driven = self._driven(drives, [second[k] for k in known])
+        side = [self.rec.add(x, y) for x, y in zip(bends, driven, strict=True)]
+        for k, x in zip(unknowns, self._solution(matrix, side), strict=True):
+            second[k] = -x
+
+    def _solution(self, matrix: list[list[Number]], side: Sequence[Number]) -> list[Value]:
+        return solved(self.rec, matrix, [side]).columns[0]
+
+    def _driven(self, drives: list[list[Number]], rates: list[Number]) -> list[Value]:
+        """Σ dF/dv times the rates of known variables."""
+        rec = self.rec
+        return [
+            rec.total([rec.multiply(x, rate) for x, rate in zip(row, rates, strict=True)])
+            for row in drives
+        ]
+
+    # ---------------------------------------------------------------- evidence
+
+    def evidence(self, lengths: Set[int]) -> list[str]:
+        """Condition and residual; ``lengths``: the linear rows that are equations of lengths."""
+        rec = self.rec
+        conditions, residuals = [rec.constant(1.0)], [rec.constant(0.0)]
+        for closure in self.closures:
+            lines = [rec.input("length") if r in lengths else 1.0 for r in closure.lines]
+            scales = [*[rec.input("length")] * (2 * len(closure.loops)), *lines]
+            conditions.append(self._condition(closure, scales))
+            residuals += [
+                rec.divide(rec.absolute(f), scale)
+                for f, scale in zip(closure.residual(), scales, strict=True)
+            ]
+        rec.write("condition", rec.largest(conditions))
+        rec.write("residual", rec.largest(residuals))
+        return ["condition", "residual"]
+
+    def _weight(self, k: int) -> Value:
+        """Of a variable: 1 for angles."""
+        return self.rec.constant(1.0) if self.table.turns[k] else self.rec.input(f"scale{k}")
+
+    def _condition(self, closure: Closure, scales: Sequence[Number]) -> Value:
+        rec, n = self.rec, len(scales)
+        weights = [self._weight(k) for k in closure.part.unknowns]
+        matrix = closure.jacobian(closure.part.unknowns)
+        units = [[1.0 if i == j else 0.0 for i in range(n)] for j in range(n)]
+        columns = solved(rec, matrix, units).columns
+        forward = self._norm(matrix, weights, scales)
+        inverse = [[columns[j][i] for j in range(n)] for i in range(n)]
+        return rec.multiply(forward, self._norm(inverse, scales, weights))
+
+    def _norm(
+        self, matrix: Sequence[Sequence[Number]], columns: Sequence[Number], rows: Sequence[Number]
+    ) -> Value:
+        """The largest sum of moduli of a row, columns multiplied and rows divided by weights."""
+        rec = self.rec
+        return rec.largest(
+            rec.divide(
+                rec.total(
+                    [rec.multiply(rec.absolute(x), w) for x, w in zip(row, columns, strict=True)]
+                ),
+                scale,
+            )
+            for row, scale in zip(matrix, rows, strict=True)
+        )
+
+    # ---------------------------------------------------------------- proof
+
+    def proof(self) -> list[str]:
+        """That there is one position near, for all values the inputs may stand for."""
+        rec = self.rec
+        near: dict[int, Value] = {
+            k: rec.absolute(rec.input(f"v{k}")) * (4.0 * _UNIT) + rec.input(f"u{k - self.n}.spread")
+            for k in range(self.n, self.table.variables)
+        }
+        proofs = []
+        for closure in self.closures:
+            used = (*closure.part.unknowns, *closure.known())
+            proofs.append(BlockProof(closure, {k: self._weight(k) for k in used}).within(near))
+            near |= dict(zip(closure.part.unknowns, proofs[-1].each, strict=True))
+        holds = rec.all_of([proof.holds for proof in proofs])
+        rec.write("radius", rec.where(holds, rec.largest(p.radius for p in proofs), math.nan))
+        rec.write("unique", rec.where(holds, rec.smallest(p.unique for p in proofs), math.nan))
+        return ["radius", "unique"]
+
+
+def rate_program(
+    table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str] = frozenset()
+) -> PlaceProgram:
+    """First derivatives of all unknowns, then the second ones.
+
+    Parameters
+    ----------
+    table : LoopTable
+        Without function rows.
+    parts : sequence of BlockPart
+        Blocks in the order in which they are solved.
+    zeros : set of str
+        Names of coefficients that are zero in every design.
+    """
+    writer = _Writer(table, parts, zeros)
+    return writer.finished(writer.rates())
+
+
+def evidence_program(
+    table: LoopTable,
+    parts: Sequence[BlockPart],
+    lengths: Set[int],
+    zeros: Set[str] = frozenset(),
+) -> PlaceProgram:
+    """Condition and residual; see :func:`rate_program`.
+
+    Parameters
+    ----------
+    lengths : set of int
+        The linear rows whose residual is a length.
+    """
+    writer = _Writer(table, parts, zeros)
+    return writer.finished(writer.evidence(lengths))
+
+
+def row_program(
+    table: LoopTable,
+    parts: Sequence[BlockPart],
+    lengths: Set[int],
+    zeros: Set[str] = frozenset(),
+    *,
+    certified: bool,
+) -> PlaceProgram:
+    """Rates, condition and residual; with radii of a proof if it is to be ``certified``.
+
+    Parameters are those of :func:`evidence_program`.
+    """
+    writer = _Writer(table, parts, zeros)
+    proof = writer.proof() if certified else []
+    return writer.finished([*writer.rates(), *writer.evidence(lengths), *proof])

@@ -1,0 +1,493 @@
+"""One mechanism through a long, even table: rows side by side in the lanes.
+
+A scout goes in one lane from the start to the first row, and on until it has left four nodes. From
+there on the lanes are as many rows that follow each other, predicted from six of those before them.
+All this is without proofs. Then every row is proved, and that it lies on the branch of the row
+before it; in the end that the start lies on that of the row beside it. What does not go well is
+left to :mod:`linkwork.kernels.march.independent`.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from linkwork.foundation.arrays import AnyArray, Array, CountArray
+from linkwork.kernels.march.march_programs import NODES
+from linkwork.kernels.march.step_control import GROWTH, SAME
+from linkwork.kernels.march.step_trial import (
+    GOOD,
+    RADIUS,
+    TOPOLOGY,
+    Topology,
+    chosen,
+    met,
+    proved,
+    settled,
+)
+from linkwork.kernels.march.work_arrays import FOUND, TABLE, Found, Table
+from linkwork.kernels.program.compiling import compiled, compiled_for, types, uncounted
+from linkwork.kernels.program.interpreter import LANES
+from linkwork.kernels.program.program import ROLES
+
+__all__ = ["DONE", "LEFT", "NOT_NEAR", "by_rows"]
+
+DONE, LEFT, NOT_NEAR = 1, 0, -1
+
+_STRIDE = 0.6  # of the largest step: as far reach rows that are computed together
+_VECTOR = 8  # lanes that a processor computes at once
+_KNOTS = 6  # rows from which the next ones are predicted, at most
+_FEWEST = 4  # with fewer the march is as quick
+_APART = 0.2  # of a step: nodes that are closer do not tell more
+_ANY = 1 << 30  # nodes: as many as the way takes
+# of an angle, or of a length's weight:
+_FAR = 1e-7  # as much as a row may be off before it is proved
+_CLOSE = 0.1  # a guess that is as near needs no care
+_BEND = 0.1  # without proofs, from row to row: a change of rates times the distance,
+_ROUGH = 0.03  # and what rates do not explain, of the way and of as much for a largest step
+
+
+@uncounted
+def _gap(rows: Array) -> float:
+    """From row to row; 0 where it is not the same everywhere."""
+    gap: float = (rows[-1] - rows[0]) / (len(rows) - 1)
+    for k in range(len(rows)):
+        if abs(rows[k] - (rows[0] + k * gap)) > SAME * gap:
+            return 0.0
+    return gap
+
+
+@uncounted
+def _set_out(topology: Topology, w: Array, node: Array) -> None:
+    """A node (S,) into the first lane, as the only one."""
+    for role in range(1, ROLES):
+        for j in range(len(node)):
+            w[topology.nodes[role, j], 0] = node[j]
+
+
+@uncounted
+def _noted(topology: Topology, turn: int, w: Array, lane: int, node: Array) -> None:
+    """The trial of a lane as a node (S,)."""
+    for j in range(len(node)):
+        node[j] = w[topology.nodes[-turn % ROLES, j], lane]
+
+
+@compiled
+def _started(topology: Topology, w: Array, guess: Array, scale: Array, node: Array) -> bool:
+    """The position at a guess (n + 1,) close to it, into ``node`` (S,); whether it is close."""
+    nodes, n, last = topology.nodes, len(scale), topology.nodes.shape[1] - 1
+    for role in range(1, ROLES):
+        for j in range(last):
+            w[nodes[role, j], 0] = guess[j] if j < n else 0.0
+        w[nodes[role, last], 0] = guess[n]
+    w[nodes[0, last], 0] = guess[n]
+    if topology.trial == 0 or met(topology, 0, w, np.ones(1), 1, n) == 0:
+        return False
+    _noted(topology, 0, w, 0, node)
+    near = 0
+    for k in range(n):
+        near += abs(node[k] - guess[k]) <= _CLOSE * scale[k]
+    return near == n
+
+
+@compiled
+def _scouted(
+    topology: Topology, w: Array, turn: int, known: int, end: float, steps: Array, enough: int
+) -> tuple[int, int]:
+    """In the first lane to ``end``, or until ``enough`` nodes are behind: how often roles have
+    moved on, and how many nodes there are; none where it does not get there.
+    """
+    nodes, last = topology.nodes, topology.nodes.shape[1] - 1
+    h = steps[0]
+    times, spacing, alone = np.zeros(NODES), np.full(NODES, np.inf), np.ones(1)
+    while known < enough and w[nodes[(1 - turn) % ROLES, last], 0] != end:
+        for role in range(1, ROLES):
+            times[role - 1] = w[nodes[(role - turn) % ROLES, last], 0]
+        away = end - times[0]
+        step = math.copysign(min(abs(away), h), away)
+        w[nodes[-turn % ROLES, last], 0] = end if step == away else times[0] + step
+        chosen(w, 0, topology.weights, times, step, known, spacing)
+        settled(topology, turn, w, alone, False, 1)
+        if w[topology.noted[GOOD], 0] > 0.5:
+            known, h = known + 1, min(GROWTH * h, steps[1])
+            turn = (turn + 1) % ROLES
+        else:
+            h = 0.5 * abs(step)
+            if h < steps[2]:
+                return turn, 0
+    return turn, known
+
+
+@compiled
+def _ready(topology: Topology, w: Array, node: Array, row: int, table: Table) -> tuple[int, int]:
+    """Nodes from a node to a row and some behind that; the same as :func:`_scouted`."""
+    rows, steps = table.rows, table.steps
+    _set_out(topology, w, node)
+    turn, known = _scouted(topology, w, 0, 1, rows[row], steps, _ANY)
+    if known and known < NODES:
+        turn, known = _scouted(topology, w, turn, known, rows[-1], steps, NODES)
+    return turn, known
+
+
+@uncounted
+def _all_good(topology: Topology, w: Array, lanes: int) -> bool:
+    good, bad = topology.noted[GOOD], 0
+    for i in range(lanes):
+        bad += not w[good, i] > 0.5
+    return bad == 0
+
+
+@uncounted
+def _weighed(times: AnyArray, count: int, t: AnyArray, lanes: int, cells: Array) -> None:
+    """Weights at t (lanes,) of values and derivatives at ``count`` times, (2 count, lanes), in
+    Hermite's polynomial.
+    """
+    for j in range(count):
+        scale, slope = 1.0, 0.0
+        for k in range(count):
+            if k != j:
+                scale *= times[j] - times[k]
+                slope += 1.0 / (times[j] - times[k])
+        for i in range(lanes):
+            basis = 1.0 / scale
+            for k in range(count):
+                if k != j:
+                    basis *= t[i] - times[k]
+            away, square = t[i] - times[j], basis * basis
+            cells[2 * j, i], cells[2 * j + 1, i] = (
+                (1.0 - 2.0 * slope * away) * square,
+                away * square,
+            )
+
+
+@compiled
+def _from_nodes(
+    topology: Topology, turn: int, w: Array, lanes: int, used: int, unknowns: int, cells: Array
+) -> None:
+    """Guesses for the first rows by the polynomial through the nodes behind them, which are the
+    same in all lanes, in the place of the oldest one.
+
+    A node close to a later one is left out.
+    """
+    nodes, last = topology.nodes, topology.nodes.shape[1] - 1
+    times, places, count = np.zeros(NODES), np.zeros(NODES, np.int64), 0
+    t, near = nodes[-turn % ROLES, last], nodes[(1 - turn) % ROLES, last]
+    for k in range(used):
+        time, apart = w[nodes[(k + 1 - turn) % ROLES, last], 0], True
+        for j in range(count):
+            apart &= abs(time - times[j]) > _APART * abs(w[t, 0] - w[near, 0])
+        if apart:
+            times[count], places[count] = time, (k + 1 - turn) % ROLES
+            count += 1
+    _weighed(times, count, w[t], lanes, cells)
+    for k in range(unknowns):
+        guess = nodes[(ROLES - 1 - turn) % ROLES, k]
+        for i in range(lanes):
+            w[guess, i] = 0.0
+        for j in range(count):
+            value, rate = w[nodes[places[j], k], 0], w[nodes[places[j], unknowns + k], 0]
+            for i in range(lanes):
+                w[guess, i] += cells[2 * j, i] * value + cells[2 * j + 1, i] * rate
+
+
+@compiled
+def _knots(width: int) -> CountArray:
+    """The lanes of so many rows from which the next rows are predicted, the last one first."""
+    count = min(_KNOTS, width)
+    knots = np.empty(count, np.int64)
+    for j in range(count):
+        knots[j] = width - 1 - j * (width // count)
+    return knots
+
+
+@uncounted
+def _predicted(
+    topology: Topology,
+    turn: int,
+    w: Array,
+    lanes: int,
+    knots: CountArray,
+    cells: Array,
+    unknowns: int,
+) -> None:
+    """Guesses by the polynomial through rows before, in the place of the oldest node."""
+    nodes = topology.nodes
+    for k in range(unknowns):
+        guess, x = nodes[(ROLES - 1 - turn) % ROLES, k], nodes[(1 - turn) % ROLES, k]
+        d = nodes[(1 - turn) % ROLES, unknowns + k]
+        for i in range(lanes):
+            w[guess, i] = 0.0
+        for j in range(len(knots)):
+            value, rate = w[x, knots[j]], w[d, knots[j]]
+            for i in range(lanes):
+                w[guess, i] += cells[2 * j, i] * value + cells[2 * j + 1, i] * rate
+
+
+@uncounted
+def _smooth(
+    topology: Topology,
+    turn: int,
+    w: Array,
+    lanes: int,
+    before: Array,
+    is_first: bool,
+    scale: Array,
+    gap: float,
+    largest: float,
+) -> bool:
+    """Whether rows follow from the rates of the rows before them, and det J keeps its sign.
+
+    ``before`` (S,): the row before the first lane, unless that is the first one of all.
+    """
+    nodes, n, rough, trial = topology.nodes, len(scale), 0, -turn % ROLES
+    for k in range(n):
+        x, d = nodes[trial, k], nodes[trial, n + k]
+        most, least = _BEND * scale[k], scale[k] * gap / largest
+        x0, d0 = before[k], before[n + k]
+        for i in range(lanes):
+            if i > 0 or not is_first:
+                bend, way = gap * abs(w[d, i] - d0), 0.5 * gap * (w[d, i] + d0)
+                off = abs(w[x, i] - x0 - way)
+                rough += not (bend <= most and off <= bend + _ROUGH * (abs(way) + least))
+            x0, d0 = w[x, i], w[d, i]
+    for k in range(2 * n, nodes.shape[1] - 1):
+        side, sign = nodes[trial, k], before[k]
+        for i in range(lanes):
+            rough += not sign * w[side, i] > 0.0
+    return rough == 0
+
+
+@uncounted
+def _kept(
+    topology: Topology, turn: int, w: Array, lanes: int, row: int, unknowns: int, found: Found
+) -> None:
+    """The lanes are rows, from that one on."""
+    m, trial = found.first, -turn % ROLES
+    for j in range(unknowns):
+        source = topology.nodes[trial, j]
+        for i in range(lanes):
+            found.unknowns[j, row + i, m] = w[source, i]
+
+
+@compiled
+def _stretch(
+    topology: Topology,
+    w: Array,
+    first: int,
+    width: int,
+    before: Array,
+    table: Table,
+    scale: Array,
+    gap: float,
+    trusting: bool,
+    found: Found,
+    counts: CountArray,
+) -> int:
+    """From a row on, as far as it goes well with so many rows at once: the first row not found.
+
+    ``before`` (S,): the start, or the row before the first one; set to the last row.
+    ``trusting``: whether rows will be proved.
+    """
+    rows, n, nodes = table.rows, table.unknowns, topology.nodes
+    size = nodes.shape[1]
+    standing, cells, knots = np.ones(LANES), np.empty((2 * _KNOTS, LANES)), _knots(width)
+    turn, known = _ready(topology, w, before, first, table)
+    if known == 0:
+        return first
+    for role in range(ROLES):
+        for j in range(size):
+            register = nodes[role, j]
+            for i in range(1, width):
+                w[register, i] = w[register, 0]
+    for j in range(len(topology.weights)):
+        # the guess stands in the place of the oldest node
+        for i in range(width):
+            w[topology.weights[j], i] = 1.0 if j == 2 * NODES - 2 else 0.0
+    block = 0
+    while first < len(rows):
+        lanes, t = min(width, len(rows) - first), nodes[-turn % ROLES, size - 1]
+        for i in range(lanes):
+            w[t, i] = rows[first + i]
+        if block == 0:
+            _from_nodes(topology, turn, w, lanes, min(known, NODES - 1), n, cells)
+        else:
+            if block == 1:
+                _weighed((knots - width) * gap, len(knots), np.arange(width) * gap, width, cells)
+            _predicted(topology, turn, w, lanes, knots, cells, n)
+        count = met(topology, turn, w, standing, lanes, n)
+        if count == 0:
+            return first
+        if not trusting and not _smooth(
+            topology, turn, w, lanes, before, first == 0, scale, gap, table.steps[1]
+        ):
+            return first
+        _kept(topology, turn, w, lanes, first, n, found)
+        for i in range(lanes):
+            counts[first + i] = count
+        _noted(topology, turn, w, lanes - 1, before)
+        turn = (turn + 1) % ROLES
+        first, block = first + lanes, block + 1
+    return first
+
+
+@uncounted
+def _linked(
+    topology: Topology,
+    w: Array,
+    first: int,
+    table: Table,
+    scale: Array,
+    standing: Array,
+    found: Found,
+    counts: CountArray,
+) -> bool:
+    """Prove rows from one on, each from the one before it; whether that is done.
+
+    While that one's error is not known it is taken to be :data:`_FAR`, and looked at afterwards.
+    """
+    nodes, n, m, rows = topology.nodes, len(scale), found.first, table.rows
+    last, lanes = nodes.shape[1] - 1, min(LANES, len(rows) - first)
+    for i in range(lanes):
+        w[nodes[0, last], i] = rows[first + i]
+        w[nodes[1, last], i] = rows[max(first + i - 1, 0)]
+    for k in range(n):
+        mine, near, source = nodes[2, k], nodes[1, k], found.unknowns[k]
+        for i in range(lanes):
+            w[mine, i] = source[first + i, m]
+        for i in range(lanes):
+            w[near, i] = source[max(first + i - 1, 0), m]
+        for i in range(lanes):
+            w[nodes[1, 2 * n + k], i] = _FAR * scale[k]
+    count = settled(topology, 0, w, standing, False, lanes)
+    if not _all_good(topology, w, lanes):
+        return False
+    outside = 0
+    for k in range(n):
+        x, error, guess = nodes[0, k], nodes[0, 2 * n + k], nodes[2, k]
+        for i in range(lanes):
+            outside += not abs(w[x, i] - w[guess, i]) + w[error, i] <= _FAR * scale[k]
+    _kept(topology, 0, w, lanes, first, n, found)
+    radius = topology.noted[RADIUS]
+    for i in range(lanes):
+        found.radius[first + i, m] = w[radius, i]
+        counts[first + i] += count
+    return outside == 0
+
+
+@uncounted
+def _joined(
+    topology: Topology,
+    w: Array,
+    start: Array,
+    rows: Array,
+    scale: Array,
+    found: Found,
+    standing: Array,
+) -> bool:
+    """Whether the start (S,) is proved to lie on the branch of the row next to it."""
+    nodes, n = topology.nodes, len(scale)
+    last = nodes.shape[1] - 1
+    row = min(np.searchsorted(rows, start[-1]), len(rows) - 1)
+    if row > 0 and start[-1] - rows[row - 1] < rows[row] - start[-1]:
+        row -= 1
+    for k in range(n):
+        w[nodes[2, k], 0], w[nodes[1, k], 0] = start[k], found.unknowns[k, row, found.first]
+        w[nodes[1, 2 * n + k], 0] = _FAR * scale[k]
+    w[nodes[0, last], 0], w[nodes[1, last], 0] = start[-1], rows[row]
+    settled(topology, 0, w, standing, False, 1)
+    return bool(w[topology.noted[GOOD], 0] > 0.5)
+
+
+@compiled
+def _proved(
+    topology: Topology,
+    w: Array,
+    start: Array,
+    table: Table,
+    scale: Array,
+    found: Found,
+    counts: CountArray,
+) -> bool:
+    """Whether all rows are proved, and to be on the branch of the start."""
+    for j in range(len(topology.weights)):
+        for i in range(LANES):  # the guess: the node before the last
+            w[topology.weights[j], i] = 1.0 if j == 2 else 0.0
+    standing = np.ones(LANES)
+    for first in range(0, len(table.rows), LANES):
+        if not _linked(topology, w, first, table, scale, standing, found, counts):
+            return False
+    return _joined(topology, w, start, table.rows, scale, found, standing)
+
+
+@compiled_for(
+    types.int64(
+        TOPOLOGY, TOPOLOGY, types.Array(types.float64, 2, "C"), types.Array(types.float64, 2, "C"),
+        types.Array(types.float64, 1, "C"), types.boolean, TABLE,
+        types.Array(types.float64, 1, "C"), FOUND, types.Array(types.int64, 1, "C"),
+    )
+)  # fmt: skip
+def by_rows(
+    topology: Topology,
+    scout: Topology,
+    w: Array,
+    own: Array,
+    begin: Array,
+    solved: bool,
+    table: Table,
+    scale: Array,
+    found: Found,
+    counts: CountArray,
+) -> int:
+    """One mechanism through all rows.
+
+    Parameters
+    ----------
+    topology : Topology
+    scout : Topology
+        The same equations without proofs.
+    w, own : (registers, LANES)
+        Workspaces of the two with constants, options and coefficients in place.
+    begin : (S,)
+        Where it starts: a node of the scout if it is ``solved``, else a guess of the unknowns, and
+        t behind it.
+    solved : bool
+    table : Table
+    scale : (n,)
+        Weights of the unknowns: 1 of an angle.
+    found : Found
+        The column ``first`` is filled.
+    counts : (R,)
+        Filled: how many corrections each row took.
+
+    Returns
+    -------
+    int
+        :data:`DONE`; :data:`NOT_NEAR` if the guess is not near a position, :data:`LEFT` if not
+        every row is found: then nothing counts.
+    """
+    rows, gap = table.rows, _gap(table.rows)
+    width = 0 if gap == 0.0 else int(min(float(LANES), _STRIDE * table.steps[1] / gap))
+    width -= width % _VECTOR if width > _VECTOR else 0
+    start = np.zeros(scout.nodes.shape[1])
+    if solved:
+        for j in range(len(start)):
+            start[j] = begin[j]
+    else:
+        for j in range(len(scout.weights)):
+            own[scout.weights[j], 0] = 1.0 if j == 2 * NODES - 2 else 0.0
+        if not _started(scout, own, begin, scale, start):
+            return NOT_NEAR
+    before, certify, first = start.copy(), proved(topology), 0
+    while first < len(rows):
+        if width < _FEWEST:
+            return LEFT
+        reached = _stretch(
+            scout, own, first, width, before, table, scale, gap, certify, found, counts
+        )
+        first, width = reached, width // 2
+    if certify and not _proved(topology, w, start, table, scale, found, counts):
+        return LEFT
+    for row in range(len(rows)):
+        found.reached[row, found.first] = True
+    return DONE

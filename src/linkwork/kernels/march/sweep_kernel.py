@@ -1,0 +1,412 @@
+"""The march of one topology, ready to run: programs in one array, registers by number."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence, Set
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from linkwork.foundation.aligned import aligned
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.sharing import shared_out
+from linkwork.kernels.loop_table import LoopTable
+from linkwork.kernels.march.closure import BlockPart
+from linkwork.kernels.march.dead_points import LastNodes
+from linkwork.kernels.march.independent import march
+from linkwork.kernels.march.lockstep import in_step
+from linkwork.kernels.march.march_programs import WEIGHTS, march_programs
+from linkwork.kernels.march.one_design import Alone, Ready, RowsOfOne
+from linkwork.kernels.march.start_positions import begin
+from linkwork.kernels.march.step_trial import Topology
+from linkwork.kernels.march.work_arrays import Found, Table, Tasks
+from linkwork.kernels.program.code_cache import is_written, written
+from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.program.interpreter import LANES
+from linkwork.kernels.program.printing import trial_source
+from linkwork.kernels.program.program import ROLES, SOURCES, Op, Program
+
+__all__ = ["LaneKernel", "LaneRows", "RowsOfOne", "Steps"]
+
+_FEW = 16  # designs in a part of which each goes with its rows side by side
+_PART = 4096  # designs that one thread works on at a time, at most
+_ROUGHLY = 1e-6  # weighted: a correction behind which a proof corrects once more
+_LEAST = 2  # times LANES: designs in a part where threads share them, at least
+
+
+@dataclass(frozen=True, kw_only=True)
+class Steps:
+    """How lanes step: sizes in t, tolerances as weighted changes.
+
+    ``tolerance``: below it a Newton-Raphson step is the last one; the error left is about its
+    square. ``most_correction``, ``most_drift``: without proofs, the largest first correction and
+    change of rates times step that are trusted.
+    """
+
+    first: float = 0.05
+    largest: float = 0.6
+    smallest: float = 1e-5
+    tolerance: float = 1e-8
+    most_turn: float = float(np.radians(40.0))
+    most_correction: float = 0.1
+    most_drift: float = 0.5
+
+    def times(self, size: float) -> Steps:
+        """For a path whose natural step is so many times longer: a length for lengths."""
+        return replace(
+            self,
+            first=size * self.first,
+            largest=size * self.largest,
+            smallest=size * self.smallest,
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LaneRows:
+    """Where the march of D designs over R rows leaves what it finds.
+
+    ``v`` (n, R, D): unknowns, untouched where not reached. ``radius`` (R, D): of the proof,
+    weighted ((0, D) without). ``reached`` (R, D). ``found`` (D,): the start. ``stopped`` (2, D):
+    the last value of t downwards and upwards where a design could go no further, NaN where it went
+    through; ``last`` (2, S, D): the node there, see :meth:`LaneKernel.last_nodes`.
+    """
+
+    v: Array
+    radius: Array
+    reached: BoolArray
+    found: BoolArray
+    stopped: Array
+    last: Array
+
+    @classmethod
+    def over(cls, v: Array, radius: Array, kernel: LaneKernel) -> LaneRows:
+        """Nothing found yet; ``v`` and ``radius`` are written to."""
+        _, rows, count = v.shape
+        return cls(
+            v=v,
+            radius=radius,
+            reached=np.zeros((rows, count), dtype=bool),
+            found=np.zeros(count, dtype=bool),
+            stopped=np.full((2, count), np.nan),
+            last=np.empty((2, 2 * kernel.nodes.shape[1], count)),
+        )
+
+    def at(self, first: int) -> Found:
+        """As the march sees it, designs from one on."""
+        return Found(first, self.v, self.radius, self.reached, self.stopped, self.last)
+
+    def take(self, where: IndexArray) -> LaneRows:
+        """Some of the designs."""
+        return LaneRows(
+            v=self.v[:, :, where],
+            radius=self.radius[:, where],
+            reached=self.reached[:, where],
+            found=self.found[where],
+            stopped=self.stopped[:, where],
+            last=self.last[:, :, where],
+        )
+
+
+class LaneKernel:
+    """Programs and registers for one loop table.
+
+    Parameters
+    ----------
+    table : LoopTable
+        Without function rows.
+    parts : sequence of BlockPart
+        In the order in which blocks are solved.
+    zeros : set of str
+        Coefficients that are zero in every design, by register.
+    certified : bool
+        Whether every step is proved.
+    """
+
+    def __init__(
+        self, table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str], certified: bool
+    ) -> None:
+        self.table, self.certified = table, certified
+        programs = march_programs(table, parts, zeros, certified)
+        self.registers = reg = programs.registers
+        self.code = np.concatenate(
+            [section.code for moves in range(ROLES) for section in programs.turned(moves)]
+        )
+        ends = np.cumsum([len(section.code) for section in programs.sections])
+        self.spans = np.stack([np.concatenate([[0], ends[:-1]]), ends], axis=1)
+        self.nodes = np.ascontiguousarray(programs.nodes)
+        noted = ["good", "radius", *[f"live{b}" for b in range(len(parts))]]
+        self.noted = reg.all_of([f"{name}.0" for name in noted])
+        self.shared = reg.all_of(programs.shared)
+        self.weights = reg.all_of(WEIGHTS)
+        self.height = max(programs.height, reg.count)
+        self._sections = programs
+        #: The same without proofs, which goes ahead where rows are side by side.
+        self.scout = LaneKernel(table, parts, zeros, certified=False) if certified else None
+        #: The workspace of the steps asked for last; replaced whole, for threads share a kernel.
+        self._blank: tuple[Steps, Array] | None = None
+        self._trial: Any = None  # written out; kept, for its address is used
+
+    @property
+    def trial(self) -> int:
+        """Address of the trial written out, 0 where the machine does it."""
+        written_out = self._trial  # read once: another thread may shift
+        return 0 if written_out is None else int(written_out.address)
+
+    def shift(self, gear: Gear) -> None:
+        """Write the trial out, if that is asked for or saves time.
+
+        Raises
+        ------
+        InputError
+            If it is asked for, and the folder for compiled code cannot be written to.
+        """
+        if gear.specialised is False:
+            self._trial = None
+        elif gear.specialised:
+            self._trial = self._trial or written(self.source(), "trial")
+        elif self._trial is None and gear.pays_compiled(len(self.code)):
+            source = self.source()
+            if gear.pays(len(self.code)) or is_written(source):
+                with suppress(InputError):  # nobody asked: the machine serves
+                    self._trial = written(source, "trial")
+
+    def source(self) -> str:
+        """A trial of this topology written out: prediction, one correction, proof, judgement."""
+        sections = self._sections
+        ordered = [sections.predict, *sections.begin, *sections.prove, sections.judge]
+        after = [*sections.iterate, *sections.prove, sections.judge]
+        kept = {*self.nodes[0].tolist(), *self.noted.tolist(), *_read(after)}
+        return trial_source(
+            [section.code for section in ordered],
+            self.nodes.shape[1],
+            kept,
+            {register: value for value, register in self.registers.constants.items()},
+        )
+
+    def run(
+        self,
+        coefficients: Mapping[str, Array],
+        guess: Array,
+        start: Array,
+        rows: Array,
+        steps: Steps,
+        found: LaneRows,
+        threads: int = 1,
+    ) -> None:
+        """March D designs through R rows.
+
+        Parameters
+        ----------
+        coefficients : Mapping[str, (D,)]
+            By register; names that no program uses are left out.
+        guess : (n, D)
+            Of the unknowns, at ``start`` (D,).
+        rows : (R,)
+            Increasing values of t.
+        found : LaneRows
+            Filled.
+        """
+        count, given = len(start), self.given(guess, start)
+        ready, table = self._ready(coefficients, count), self._table(rows, steps)
+
+        def one(part: slice) -> None:
+            self._part(ready.part(part), given[:, part], table, steps, found, part)
+
+        if count <= _FEW and len(rows) >= LANES:
+            self._few(ready, coefficients, given, table, steps, found)
+            return
+        parts = _parts(count, threads)
+        shared_out(one, parts, min(threads, len(parts)))
+
+    def given(self, guess: Array, start: Array) -> Array:
+        """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""
+        node = np.zeros((self.nodes.shape[1], len(start)))
+        node[: self.table.unknowns], node[-1] = guess, start
+        return node
+
+    def last_nodes(self, found: LaneRows, way: int, where: IndexArray) -> LastNodes:
+        """The nodes at which some designs stopped, downwards (0) or upwards (1)."""
+        n, last = self.table.unknowns, found.last[way][:, where]
+        w, s, x = (last[k * n : (k + 1) * n] for k in range(3))
+        q, p = (last[self.nodes.shape[1] :][k * n : (k + 1) * n] for k in range(2))
+        errors = x if self.certified else np.zeros_like(w)
+        return LastNodes(t=found.stopped[way, where], w=w, s=s, q=q, p=p, x=errors)
+
+    def _registered(
+        self, coefficients: Mapping[str, Array], count: int
+    ) -> tuple[IndexArray, Array]:
+        """Registers (C,) of the coefficients that programs use, and their values (C, D)."""
+        named = self.registers.named
+        used = [name for name in coefficients if name in named]
+        values = np.array([coefficients[name] for name in used]).reshape(len(used), count)
+        return np.array([named[name] for name in used], dtype=np.intp), values
+
+    def _ready(self, coefficients: Mapping[str, Array], count: int) -> Ready:
+        places, design = self._registered(coefficients, count)
+        return Ready(self._topology(places), design)
+
+    def _space(self, steps: Steps) -> Array:
+        """A workspace with constants and options in place."""
+        blank = self._blank
+        if blank is None or blank[0] != steps:
+            space = self.registers.filled(self.height, LANES)
+            for name in ("tolerance", "most_turn", "most_correction", "most_drift"):
+                if name in self.registers.named:
+                    space[self.registers.named[name]] = getattr(steps, name)
+            blank = self._blank = steps, space
+        own = aligned(self.height, LANES)
+        own[:] = blank[1]
+        return own
+
+    def begun(self, ready: Ready, space: Array, given: Array) -> tuple[Array, BoolArray]:
+        """Nodes (S, D) where designs start, and whether they do, (D,)."""
+        node, begun = np.empty_like(given), np.zeros(given.shape[1], dtype=bool)
+        given = np.ascontiguousarray(given)
+        begin(ready.topology, space, ready.design, given, node, begun)
+        return node, begun
+
+    def _part(
+        self,
+        ready: Ready,
+        given: Array,
+        table: Table,
+        steps: Steps,
+        found: LaneRows,
+        part: slice,
+    ) -> None:
+        """Designs side by side."""
+        space = self._space(steps)
+        node, begun = self.begun(ready, space, given)
+        found.found[part] = begun
+        _marched(ready, space, node, begun, table, found.at(part.start))
+
+    def _table(self, rows: Array, steps: Steps) -> Table:
+        sizes = np.array([steps.first, steps.largest, steps.smallest])
+        return Table(rows, sizes, self.table.unknowns)
+
+    def _few(
+        self,
+        ready: Ready,
+        coefficients: Mapping[str, Array],
+        given: Array,
+        table: Table,
+        steps: Steps,
+        found: LaneRows,
+    ) -> None:
+        """One design after the other, its rows side by side; then those that this is not for."""
+        alone, n = self._alone(ready, coefficients, table, steps), self.table.unknowns
+        counts = np.zeros(len(table.rows), dtype=np.int64)
+        for k in range(given.shape[1]):
+            guess = np.append(given[:n, k], given[-1, k])
+            found.found[k] = alone.loaded(k).run(guess, found.at(k), counts)
+        left = ~found.found
+        if left.any():
+            space = self._space(steps)
+            node, begun = self.begun(ready, space, given)
+            found.found[left] = begun[left]
+            _marched(ready, space, node, begun & left, table, found.at(0))
+
+    def alone(
+        self,
+        coefficients: Mapping[str, Array],
+        guess: Array,
+        start: float,
+        rows: Array,
+        steps: Steps,
+    ) -> RowsOfOne:
+        """One design's rows, ready to be computed again and again.
+
+        Parameters
+        ----------
+        coefficients : Mapping[str, (1,)]
+            As for :meth:`run`.
+        guess : (n,)
+            Of the unknowns at ``start``.
+        """
+        ready = self._ready(coefficients, 1)
+        table = self._table(rows, steps)
+        loaded = self._alone(ready, coefficients, table, steps).loaded(0)
+        size = 2 * self.nodes.shape[1]
+        room = (np.zeros((len(rows), 1), dtype=bool), np.empty((2, 1)), np.empty((2, size, 1)))
+        return RowsOfOne(
+            loaded=loaded,
+            guess=np.append(guess, start),
+            room=room,
+            counts=np.zeros(len(rows), dtype=np.int64),
+            certified=self.certified,
+        )
+
+    def _alone(
+        self, ready: Ready, coefficients: Mapping[str, Array], table: Table, steps: Steps
+    ) -> Alone:
+        count = ready.design.shape[1]
+        ahead, scout = ready, self.scout or self
+        if self.scout is not None:
+            if self.trial:
+                self.scout.shift(Gear(specialised=True))
+            ahead = self.scout._ready(coefficients, count)
+        space = self._space(steps)
+        ones = np.ones(count)
+        scales = [coefficients.get(f"scale{k}", ones) for k in range(self.table.unknowns)]
+        return Alone(
+            scout=scout,
+            ready=ready,
+            ahead=ahead,
+            space=space,
+            own=space if scout is self else scout._space(replace(steps, tolerance=_ROUGHLY)),
+            table=table,
+            scale=np.ascontiguousarray(np.array(scales).T),
+        )
+
+    def _topology(self, coefficients: IndexArray) -> Topology:
+        return Topology(
+            code=self.code,
+            length=len(self.code) // ROLES,
+            spans=self.spans,
+            weights=self.weights,
+            nodes=self.nodes,
+            noted=self.noted,
+            shared=self.shared,
+            coefficients=coefficients,
+            trial=self.trial,
+        )
+
+
+def _parts(count: int, threads: int) -> list[slice]:
+    """Whole lanes of designs. Of several threads each takes half of its share of what is left, so
+    that the last parts are small and none waits long for the others.
+    """
+    parts, first = list[slice](), 0
+    while first < count:
+        size = _PART
+        if threads > 1:
+            lanes = -(-(count - first) // (LANES * 2 * threads))
+            size = min(_PART, max(_LEAST, lanes) * LANES)
+        parts.append(slice(first, min(first + size, count)))
+        first += size
+    return parts
+
+
+def _marched(
+    ready: Ready, space: Array, node: Array, begun: BoolArray, table: Table, kept: Found
+) -> None:
+    tasks = Tasks.room(2 * len(begun), len(node))
+    many = in_step(ready.topology, space, ready.design, node, begun, table, tasks, kept)
+    march(ready.topology, space, ready.design, table, tasks, many, kept)
+
+
+def _read(programs: Sequence[Program]) -> set[int]:
+    """Registers that programs read before they write them."""
+    read, written = set[int](), set[int]()
+    for program in programs:
+        for number, target, *sources in program.code.tolist():
+            op = Op(number)
+            count = SOURCES[op]
+            read.update(set(sources[:count]) - written)
+            if op in (Op.KEEP, Op.LESS):
+                read.update({target} - written)
+            written.update({target, sources[2]} if op is Op.SIN else {target})
+    return read

@@ -1,0 +1,104 @@
+"""Programs written out as modules of their own, in a folder where compiled code is kept."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import os
+import sys
+import tempfile
+from pathlib import Path
+from threading import RLock
+from typing import Any
+
+from platformdirs import user_cache_path
+
+from linkwork.foundation.errors import InputError
+
+__all__ = ["is_written", "written"]
+
+#: A folder that takes the place of the user's cache.
+FOLDER = "LINKWORK_CACHE"
+#: Modules of this package that written ones are compiled with.
+_WITH = (
+    "gpu/compiling.py",
+    "gpu/march.py",
+    "march/step_control.py",
+    "march/step_trial.py",
+    "march/work_arrays.py",
+    "program/compiling.py",
+    "program/sine.py",
+)
+_KERNELS = Path(__file__).parents[1]
+_ONE_AT_A_TIME = RLock()  # a module is among the known ones before it is whole
+
+
+def written(source: str, function: str) -> Any:
+    """A function of a module of which the source is given; compiled at most once.
+
+    Raises
+    ------
+    InputError
+        If nothing can be written to the folder of the cache.
+    """
+    name = _name(source)
+    with _ONE_AT_A_TIME:
+        known = sys.modules.get(name)
+        if known is None:
+            path = _path(name)
+            if not path.exists() or path.read_text(encoding="utf-8") != source:
+                _write(path, source)
+            known = _loaded(name, path)
+    return getattr(known, function)
+
+
+def is_written(source: str) -> bool:
+    """Whether the module is there already, so that it costs next to nothing."""
+    return _name(source) in sys.modules or _path(_name(source)).exists()
+
+
+def _path(name: str) -> Path:
+    return _folder() / f"{name.rpartition('.')[2]}.py"
+
+
+def _folder() -> Path:
+    given = os.environ.get(FOLDER)
+    return Path(given) if given else user_cache_path("linkwork") / "kernels"
+
+
+def _name(source: str) -> str:
+    """By the text and all that it is compiled with."""
+    digest = hashlib.sha256(source.encode())
+    for module in _WITH:
+        digest.update((_KERNELS / module).read_bytes())
+    return f"linkwork_kernel_{digest.hexdigest()[:24]}"
+
+
+def _write(path: Path, source: str) -> None:
+    """All or nothing, whoever else writes the same."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(
+            "w", dir=path.parent, suffix=".part", delete=False, encoding="utf-8"
+        ) as part:
+            part.write(source)
+        os.replace(part.name, path)
+    except OSError as error:
+        raise InputError(
+            f"compiled code cannot be kept in {path.parent} ({error.strerror}): "
+            f"name another folder in {FOLDER}, or ask for specialised=False"
+        ) from None
+
+
+def _loaded(name: str, path: Path) -> Any:
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
+    return module

@@ -1,0 +1,165 @@
+"""How functions of this package are compiled: the one place that knows numba."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, cast
+
+import numba  # noqa: TID253 - this module is loaded when a family is solved
+from llvmlite import ir
+from numba import types  # noqa: TID253
+from numba.core import cgutils  # noqa: TID253
+from numba.extending import intrinsic  # noqa: TID253
+
+from linkwork.kernels.program.kernel_cache import say_that_it_compiles
+
+if TYPE_CHECKING:
+    from numba.core.base import BaseContext
+    from numba.core.typing.context import Context
+    from numba.core.typing.templates import Signature
+
+    #: Writes what an intrinsic does, from its arguments.
+    Emitter = Callable[[BaseContext, ir.IRBuilder, Signature, Sequence[ir.Value]], ir.Value]
+
+__all__ = [
+    "call_at",
+    "compiled",
+    "compiled_for",
+    "copied_to",
+    "named_tuple",
+    "soon_written",
+    "trial_at",
+    "types",
+    "uncounted",
+]
+
+_njit: Any = numba.njit  # whose types do not know of the option ``_nrt``
+_P = ParamSpec("_P")
+_R_co = TypeVar("_R_co", covariant=True)
+
+
+class Compiled(Protocol[_P, _R_co]):
+    """A compiled function, and the Python that it was compiled from."""
+
+    @property
+    def py_func(self) -> Callable[_P, _R_co]: ...
+
+    def __call__(self, *args: _P.args, **options: _P.kwargs) -> _R_co: ...
+
+
+class Compiling(Protocol):
+    """A decorator of functions to be compiled."""
+
+    def __call__(self, function: Callable[_P, _R_co], /) -> Compiled[_P, _R_co]: ...
+
+
+def compiled_for(signature: object) -> Compiling:
+    """Compiled when the module is loaded, for arrays as the signature says; ``None``: at the first
+    call, for the arrays that are met.
+    """
+    compiling: Compiling = _njit(
+        signature, cache=True, error_model="numpy", fastmath={"contract"}, nogil=True
+    )
+    return compiling
+
+
+compiled = compiled_for(None)
+
+#: The same for functions that make no arrays: they do not count who refers to those they are given.
+#: Counting would take a fifth of the time.
+uncounted: Compiling = _njit(
+    cache=True, error_model="numpy", fastmath={"contract"}, nogil=True, _nrt=False
+)
+say_that_it_compiles()
+
+
+def named_tuple(fields: list[object], kind: type) -> Any:
+    """The type of a NamedTuple in a signature."""
+    return types.NamedTuple(fields, kind)
+
+
+_intrinsic: Any = cgutils.get_or_insert_function
+_BYTES = ir.PointerType(ir.IntType(8))
+_BLOCKS = 6  # of numbers, which a trial that is written out is called with
+
+
+def trial_at(function: Any) -> Any:
+    """A function of six blocks of numbers and a number of lanes, compiled for :data:`call_at`; its
+    ``address``, which unlike a function costs nothing to hand over.
+    """
+    numbers = types.CPointer(types.float64)
+    signature = types.void(*[numbers] * _BLOCKS, types.int64)
+    return numba.cfunc(signature, cache=True, error_model="numpy", fastmath={"contract"})(function)
+
+
+def _call(
+    typing: Context,
+    address: types.Type,
+    one: types.Type,
+    two: types.Type,
+    three: types.Type,
+    four: types.Type,
+    five: types.Type,
+    six: types.Type,
+    lanes: types.Type,
+) -> tuple[Signature, Emitter]:
+    def code(
+        context: BaseContext,
+        builder: ir.IRBuilder,
+        signature: Signature,
+        arguments: Sequence[ir.Value],
+    ) -> ir.Value:
+        number = ir.PointerType(ir.DoubleType())
+        kind = ir.FunctionType(ir.VoidType(), [*[number] * _BLOCKS, ir.IntType(64)])
+        function = builder.inttoptr(arguments[0], ir.PointerType(kind))
+        blocks = [builder.inttoptr(a, number) for a in arguments[1:-1]]
+        builder.call(function, [*blocks, arguments[-1]])
+        return context.get_dummy_value()
+
+    return types.void(*[types.int64] * (2 + _BLOCKS)), code
+
+
+#: Calls what :func:`trial_at` has compiled, by its address, with the addresses of six blocks and
+#: the number of lanes.
+call_at = cast(Callable[[int, int, int, int, int, int, int, int], None], intrinsic(_call))
+
+
+def _copy(
+    typing: Context, to: types.Type, source: types.Type, count: types.Type
+) -> tuple[Signature, Emitter]:
+    def code(
+        context: BaseContext,
+        builder: ir.IRBuilder,
+        signature: Signature,
+        arguments: Sequence[ir.Value],
+    ) -> ir.Value:
+        target, origin = (builder.inttoptr(a, _BYTES) for a in arguments[:2])
+        cgutils.raw_memcpy(builder, target, origin, arguments[2], 8)
+        return context.get_dummy_value()
+
+    return types.void(types.int64, types.int64, types.int64), code
+
+
+#: Copies numbers, at once, to an address from another one; ``count`` of them.
+copied_to = cast(Callable[[int, int, int], None], intrinsic(_copy))
+
+
+def _prefetch(typing: Context, address: types.Type) -> tuple[Signature, Emitter]:
+    def code(
+        context: BaseContext,
+        builder: ir.IRBuilder,
+        signature: Signature,
+        arguments: Sequence[ir.Value],
+    ) -> ir.Value:
+        whole = ir.IntType(32)
+        kind = ir.FunctionType(ir.VoidType(), [_BYTES, whole, whole, whole])
+        fetch = _intrinsic(builder.module, kind, "llvm.prefetch.p0")
+        place = builder.inttoptr(arguments[0], _BYTES)
+        builder.call(fetch, [place, whole(1), whole(3), whole(1)])  # to write, to keep, data
+        return context.get_dummy_value()
+
+    return types.void(types.int64), code
+
+
+#: Says that the cache line of an address will be written to.
+soon_written = cast(Callable[[int], None], intrinsic(_prefetch))

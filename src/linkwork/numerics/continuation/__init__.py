@@ -1,0 +1,1 @@
+"""Continuation: branches along inputs, curves beyond dead points, change points and folds."""

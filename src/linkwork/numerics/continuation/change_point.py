@@ -1,0 +1,437 @@
+"""Locating the change point at which two branches cross, and the tangents of both.
+
+There D = [J, F_t] loses rank: a left null vector w has wᵀJ = 0 and wᵀF_t = 0. The extended system
+
+    F(x, t) + β c = 0,   J(x, t)ᵀ w = 0,   wᵀF_t(x, t) = 0,   wᵀw = 1
+
+for (x, t, β, w), with a fixed vector c near w, is regular at a simple crossing, where β = 0
+(Griewank & Reddien 1984, doi:10.1137/0721010). With a basis z1, z2 of D's null space the crossing
+tangents a z1 + b z2 solve A a² + 2 B ab + C b² = 0 with A = wᵀD²F[z1, z1], B = wᵀD²F[z1, z2],
+C = wᵀD²F[z2, z2].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.continuation.branch_tracking import InputPath, Node
+from linkwork.numerics.joined_blocks import JoinedBlocks, closure_of
+from linkwork.numerics.system import System
+
+__all__ = [
+    "ChangePoint",
+    "Crossing",
+    "KnownJet",
+    "crossing_near",
+    "locate_change_point",
+    "locate_crossing",
+    "most_singular",
+    "tangents_behind_kink",
+]
+
+_UNIT = np.finfo(float).eps
+_STEPS = 12
+_SHARES = 17  # in which rates are led around a kink
+_FAR = 1e-3  # ratio of a block's singular values from which on it is far from a singular position
+_UNFOLDED = 1e-13  # |β| beyond which the branches pass each other without touching
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChangePoint:
+    """A crossing of two branches on a path.
+
+    ``t`` with ``bracket``; ``v`` (N,) the position; ``onward`` and ``other`` (N,): derivative by t
+    of the branch that was followed and of the one that crosses it (NaN if that one keeps t);
+    ``directions`` (2, N): both as weighted unit vectors, zero where a block takes no part;
+    ``block`` the number of the block that becomes singular; ``located`` whether it was found to
+    rounding.
+    """
+
+    t: float
+    bracket: tuple[float, float]
+    v: Array
+    onward: Array
+    other: Array
+    directions: Array
+    block: int
+    located: bool
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Crossing:
+    """A change point: parameter with bracket, position (N,), directions of both curves (2, N)."""
+
+    t: float
+    v: Array
+    directions: Array
+    bracket: tuple[float, float]
+    located: bool
+
+
+@dataclass(frozen=True)
+class KnownJet:
+    """What some equations take as known as a motion: y, y', y'' by t, (p,) each."""
+
+    at: Callable[[float], tuple[Array, Array, Array]]
+
+    @classmethod
+    def along(cls, path: InputPath) -> KnownJet:
+        """The inputs on a path."""
+        return cls(lambda t: (path.at(t), path.rate, np.zeros_like(path.rate)))
+
+    @classmethod
+    def resting(cls, y: Array, first: Array, second: Array) -> KnownJet:
+        """The same y, y', y'' whatever t is asked for."""
+        return cls(lambda t: (y, first, second))
+
+
+def locate_change_point(
+    solver: BlockSolver, path: InputPath, last: Node, side: float
+) -> ChangePoint | None:
+    """The change point just beyond a node at which the Jacobian has become nearly singular.
+
+    Parameters
+    ----------
+    last : Node
+        The last node of a track before it ended.
+    side : float
+        +1 if t was growing, -1 if it was falling.
+
+    Returns
+    -------
+    ChangePoint or None
+        Of the first block in solving order that has one: where several cross at one input, the
+        equations of the others lose more than one rank. ``None`` if the branches only come near
+        each other, or there is none on that side.
+    """
+    inputs = solver.variable_scale[solver.unknowns :]
+    near = 1e-3 * float(np.min(inputs[path.rate != 0.0] / np.abs(path.rate[path.rate != 0.0])))
+    for block in nearly_singular(solver, last.v):
+        system = JoinedBlocks(solver, closure_of(solver, block))
+        mine = system.order[: system.unknowns]
+        known = KnownJet.along(path)
+        found = _located(system, known, last.v[mine], last.t, last.first[mine])
+        if found is None or (found.t - last.t) * side < -1e-3 * near:
+            continue
+        if abs(found.t - last.t) > near:
+            continue
+        v = last.v + (found.t - last.t) * last.first
+        v[mine], v[solver.unknowns :] = found.x, path.at(found.t)
+        return _placed_point(solver, path.rate, block, mine, v, found)
+    return None
+
+
+def locate_crossing(
+    solver: BlockSolver, number: int, known: KnownJet, x: Array, t: float, own: Array
+) -> ChangePoint | None:
+    """The change point of one block, given how everything moves that it takes as known.
+
+    Parameters
+    ----------
+    number : int
+        Of the block.
+    known : KnownJet
+        Of the block's known variables.
+    x, t : (n,), float
+        Near it.
+    own : (n,)
+        Derivatives by t of the branch that is followed.
+    """
+    block = solver.blocks[number]
+    found = _located(block.system, known, x, t, own)
+    if found is None:
+        return None
+    y, rate, _ = known.at(found.t)
+    v = np.full(solver.variables, np.nan)
+    v[block.variables] = np.concatenate([found.x, y])
+    moving = np.zeros(solver.variables - solver.unknowns)
+    inputs = block.variables[len(found.x) :] - solver.unknowns
+    moving[inputs[inputs >= 0]] = rate[inputs >= 0]
+    return _placed_point(solver, moving, number, block.unknowns, v, found)
+
+
+def tangents_behind_kink(
+    solver: BlockSolver,
+    point: ChangePoint,
+    before: tuple[Array, Array, Array],
+    after: tuple[Array, Array, Array],
+) -> tuple[Array, Array] | None:
+    """The rates (n,) of the branch followed and of the other one, where what is known has a kink.
+
+    Parameters
+    ----------
+    point : ChangePoint
+        Of a block, at the kink.
+    before, after : y, y', y'' (p,) each
+        What the block takes as known, on both sides of the kink.
+
+    Notes
+    -----
+    The rates of what is known are led from one side to the other, and both tangents with them:
+    straight on where both rest for a moment.
+    """
+    block = solver.blocks[point.block]
+    weights = block.system.variable_scale[: len(block.unknowns)]
+    x = point.v[block.unknowns]
+    here = np.stack([part[block.unknowns] / weights for part in (point.onward, point.other)])
+    last, slope = 0.0, np.zeros_like(here)
+    for share in np.linspace(0.0, 1.0, _SHARES)[1:].tolist():
+        y, first, second = (
+            (1.0 - share) * a + share * b for a, b in zip(before, after, strict=True)
+        )
+        crossing = _Crossing(block.system, KnownJet.resting(y, first, second))
+        w = np.linalg.svd(crossing.linear(x, point.t)[1])[0][:, -1]
+        found = crossing.tangents(x, point.t, w)
+        if found is None:
+            continue  # what is known rests
+        both = np.stack([_rate(z) for z in found])
+        if not np.isfinite(both).all():
+            return None
+        ahead = here + (share - last) * slope
+        if np.abs(both[::-1] - ahead).max() < np.abs(both - ahead).max():
+            both = both[::-1]
+        slope = (both - here) / (share - last)
+        here, last = both, share
+    return (here[0] * weights, here[1] * weights) if last == 1.0 else None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Located:
+    """A crossing of some equations: ``onward``, ``other`` as scaled directions (n + 1,)."""
+
+    x: Array
+    t: float
+    error: float
+    onward: Array
+    other: Array
+
+
+def _located(
+    system: _Equations, known: KnownJet, x: Array, t: float, own: Array
+) -> _Located | None:
+    """The crossing near (x, t); ``own`` (n,) is the derivative of the branch that is followed."""
+    crossing = _Crossing(system, known)
+    found = crossing.solve(x, t)
+    if found is None:
+        return None
+    x, t, w, beta, error = found
+    tangents = None if abs(beta) > _UNFOLDED else crossing.tangents(x, t, w)
+    if tangents is None:
+        return None
+    mine = own / crossing.weights
+    onward, other = sorted(tangents, key=lambda z: _distance(_rate(z), mine))
+    return _Located(x=x, t=t, error=error, onward=onward, other=other)
+
+
+def _placed_point(
+    solver: BlockSolver, rate: Array, block: int, mine: IndexArray, v: Array, found: _Located
+) -> ChangePoint:
+    """A crossing in the order of the whole; ``mine``: which variables are the equations' own."""
+    weights = solver.variable_scale[mine]
+    both = (found.onward, found.other)
+    onward, other = (_placed(solver, mine, _rate(z) * weights) for z in both)
+    reach = found.error + 4.0 * _UNIT * max(1.0, abs(found.t))
+    return ChangePoint(
+        t=found.t,
+        bracket=(found.t - reach, found.t + reach),
+        v=v,
+        onward=onward,
+        other=other,
+        directions=np.stack([_direction(solver, rate, mine, z, weights) for z in both]),
+        block=block,
+        located=found.error <= 1e-9 * max(1.0, abs(found.t)),
+    )
+
+
+def crossing_near(solver: BlockSolver, path: InputPath, block: int, v: Array) -> float | None:
+    """The path's parameter at the change point of a block next to a position v (N,).
+
+    ``None`` if there is none within a hundredth of the natural size of the inputs.
+    """
+    system = JoinedBlocks(solver, closure_of(solver, block))
+    moving = int(np.argmax(np.abs(path.rate)))
+    t = float((v[solver.unknowns + moving] - path.origin[moving]) / path.rate[moving])
+    found = _Crossing(system, KnownJet.along(path)).solve(v[system.order[: system.unknowns]], t)
+    if found is None or abs(found[3]) > _UNFOLDED:
+        return None
+    near = 1e-2 * float(solver.variable_scale[solver.unknowns + moving] / abs(path.rate[moving]))
+    return found[1] if abs(found[1] - t) <= near else None
+
+
+def _distance(rate: Array, own: Array) -> float:
+    gap = float(np.abs(rate - own).max())
+    return gap if np.isfinite(gap) else np.inf
+
+
+def _rate(z: Array) -> Array:
+    """The derivative by t along a direction (n + 1,) whose last entry is t's; NaN if t rests."""
+    if abs(z[-1]) <= 1e-9 * np.abs(z).max():
+        return np.full(len(z) - 1, np.nan)
+    rate: Array = z[:-1] / z[-1]
+    return rate
+
+
+def _direction(
+    solver: BlockSolver, rate: Array, where: IndexArray, z: Array, weights: Array
+) -> Array:
+    whole = np.zeros(solver.variables)
+    whole[where] = z[:-1] * weights
+    whole[solver.unknowns :] = z[-1] * rate
+    unit: Array = whole / np.abs(whole / solver.variable_scale).max()
+    return unit
+
+
+def _placed(solver: BlockSolver, where: IndexArray, values: Array) -> Array:
+    whole = np.full(solver.variables, np.nan)
+    whole[where] = values
+    return whole
+
+
+def most_singular(solver: BlockSolver, v: Array) -> int | None:
+    """The block nearest to a singular position; ``None`` if all are far from it at v (N,)."""
+    ratios = _ratios(solver, v)
+    if not ratios or min(ratios) > _FAR:
+        return None
+    return int(np.argmin(ratios))
+
+
+def nearly_singular(solver: BlockSolver, v: Array) -> list[int]:
+    """The blocks that are near a singular position at v (N,), in solving order."""
+    return [k for k, ratio in enumerate(_ratios(solver, v)) if ratio <= _FAR]
+
+
+def _ratios(solver: BlockSolver, v: Array) -> list[float]:
+    """The smallest singular value of every block, relative to its largest.
+
+    Columns of J are divided by their sizes near by: those of lengths that differ much are no sign
+    of a singular position, one that is about to vanish is.
+    """
+    ratios = []
+    for block in solver.blocks:
+        n = len(block.unknowns)
+        system, here = block.system, v[block.variables]
+        j = system.jacobian(here[None, :])[0, :, :n]
+        sizes = np.maximum(
+            np.abs(j / system.equation_scale[:, None]).max(axis=0), _near(system, here)
+        )
+        scaled = j / system.equation_scale[:, None] / np.where(sizes > 0.0, sizes, 1.0)
+        values = np.linalg.svd(scaled, compute_uv=False)
+        ratios.append(float(values[-1] / values[0]) if values[0] > 0 else 0.0)
+    return ratios
+
+
+def _near(system: System, v: Array) -> Array:
+    """How long the columns of J become near v (N,): the largest change by a natural step, (n,)."""
+    n, count = len(system.equation_scale), len(v)
+    i, j = (index.ravel() for index in np.indices((n, count)))
+    column, step = np.eye(count)[i], np.diag(system.variable_scale)[j]
+    lanes = np.repeat(v[None, :], n * count, axis=0)
+    mixed = 0.25 * (system.second(lanes, column + step) - system.second(lanes, column - step))
+    changes: Array = np.abs(mixed / system.equation_scale).max(axis=1).reshape(n, count)
+    largest: Array = changes.max(axis=1)
+    return largest
+
+
+class _Equations(Protocol):
+    """What locating a crossing needs to know of equations: a part of a System."""
+
+    @property
+    def unknowns(self) -> int: ...
+    @property
+    def equation_scale(self) -> Array: ...
+    @property
+    def variable_scale(self) -> Array: ...
+    def jacobian(self, v: Array) -> Array: ...
+    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]: ...
+    def second(self, v: Array, d: Array) -> Array: ...
+
+
+class _Crossing:
+    """The extended system of some equations, in scaled variables and equations."""
+
+    def __init__(self, system: _Equations, known: KnownJet) -> None:
+        self.system, self.known = system, known
+        self.n = system.unknowns
+        self.weights = system.variable_scale[: self.n]
+        self.scale = system.equation_scale
+
+    def _at(self, x: Array, t: float) -> tuple[Array, Array, Array]:
+        """v (1, N), scaled unit steps of the unknowns and of t, (n + 1, N), and y'' (p,)."""
+        y, first, second = self.known.at(t)
+        basis = np.zeros((self.n + 1, self.n + len(y)))
+        basis[: self.n, : self.n] = np.diag(self.weights)
+        basis[self.n, self.n :] = first
+        return np.concatenate([x, y])[None, :], basis, second
+
+    def linear(self, x: Array, t: float) -> tuple[Array, Array]:
+        """F (n,) and D (n, n + 1), scaled."""
+        v, basis, _ = self._at(x, t)
+        f, jacobian = self.system.residual_and_jacobian(v)
+        d = jacobian[0] @ basis.T / self.scale[:, None]
+        return f[0] / self.scale, d
+
+    def bend(self, x: Array, t: float, w: Array) -> Array:
+        """wᵀD²F over all pairs of scaled unit steps, (n + 1, n + 1)."""
+        size = self.n + 1
+        i, j = (index.ravel() for index in np.indices((size, size)))
+        v, basis, second = self._at(x, t)
+        lanes = np.repeat(v, size * size, axis=0)
+        a, b = basis[i], basis[j]
+        values = 0.25 * (self.system.second(lanes, a + b) - self.system.second(lanes, a - b))
+        matrix: Array = (values / self.scale @ w).reshape(size, size)
+        if second.any():  # what is known does not move at a constant rate
+            slope = self.system.jacobian(v)[0, :, self.n :]
+            matrix[self.n, self.n] += float(w @ (slope @ second / self.scale))
+        return matrix
+
+    def solve(self, x: Array, t: float) -> tuple[Array, float, Array, float, float] | None:
+        """(x, t, w, β) and the last change of t, by Newton-Raphson."""
+        n = self.n
+        _, d = self.linear(x, t)
+        w = np.linalg.svd(d)[0][:, -1]
+        c, beta, error = w.copy(), 0.0, np.inf
+        for _ in range(_STEPS):
+            f, d = self.linear(x, t)
+            h = self.bend(x, t, w)
+            matrix = np.zeros((2 * n + 2, 2 * n + 2))
+            matrix[:n, : n + 1] = d
+            matrix[:n, n + 1] = c
+            matrix[n : 2 * n + 1, : n + 1] = h
+            matrix[n : 2 * n + 1, n + 2 :] = d.T
+            matrix[2 * n + 1, n + 2 :] = 2.0 * w
+            right = np.concatenate([f + beta * c, d.T @ w, [w @ w - 1.0]])
+            try:
+                change = -np.linalg.solve(matrix, right)
+            except np.linalg.LinAlgError:
+                return None
+            if not np.isfinite(change).all():
+                return None
+            x = x + change[:n] * self.weights
+            t = t + float(change[n])
+            beta += float(change[n + 1])
+            w = w + change[n + 2 :]
+            last, error = error, abs(float(change[n]))
+            if error <= 2.0 * _UNIT * max(1.0, abs(t)) or (error >= last and last < 1e-10):
+                break
+        return x, t, w, beta, error
+
+    def tangents(self, x: Array, t: float, w: Array) -> tuple[Array, ...] | None:
+        """The directions of both branches in scaled unknowns and t, (n + 1,) each."""
+        _, d = self.linear(x, t)
+        null = np.linalg.svd(d)[2][-2:]
+        h = self.bend(x, t, w)
+        a, b, c = null[0] @ h @ null[0], null[0] @ h @ null[1], null[1] @ h @ null[1]
+        square = b * b - a * c
+        if square <= 0.0:
+            return None
+        root = np.sqrt(square)
+        # the two roots (p : q) of a p² + 2 b p q + c q², without cancellation
+        q = -(b + np.copysign(root, b))
+        pairs = ((q, a), (c, q)) if q != 0.0 else ((1.0, 0.0), (0.0, 1.0))
+        return tuple(p * null[0] + r * null[1] for p, r in pairs)

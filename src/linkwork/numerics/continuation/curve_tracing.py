@@ -1,0 +1,332 @@
+"""Following a curve of positions beyond dead points, by changing which variable leads.
+
+The curve F(x, t) = 0 turns back in t at a dead point, where dx/dt is infinite. With one of the fast
+unknowns in the lead it is an ordinary branch again (local parametrisation: Rheinboldt & Burkardt
+1983, doi:10.1145/357456.357460). A curve is therefore a chain of legs, each followed and proved by
+the same means as a sweep; only a crossing of curves stops it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.foundation.status import Status
+from linkwork.numerics.continuation.branch_tracking import BOLD, Node, TrackOptions, follow
+from linkwork.numerics.continuation.change_point import ChangePoint, locate_change_point
+from linkwork.numerics.continuation.local_parametrization import (
+    Leads,
+    Led,
+    fastest_leader,
+    same_position,
+)
+from linkwork.numerics.continuation.step_division import node_between, one_way, share_at
+
+__all__ = ["Curve", "CurveOptions", "Leg", "trace"]
+
+_CONVERGED = Status.CONVERGED.code
+_SAME = 1e-6  # weighted: a position is moved no further when its parameter is made exact
+_ON_PLANE = 1e-11  # a value of the parameter this near, relative, is reached
+_UNIT = np.finfo(float).eps
+_LEG = 8.0  # natural sizes of the leader, after which a leg ends if nothing else ends it
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurveOptions:
+    """When another variable takes the lead, and when a curve is given up.
+
+    ``fast``: the leader is replaced where another variable moves so many times faster [weighted].
+    ``slow``: the parameter leads again where nothing moves faster than so many times its rate.
+    ``far``: a length so many times the mechanism's own has run to infinity.
+    ``most_turns``: of the parameter, after which the curve counts as never closing.
+    """
+
+    fast: float = 6.0
+    slow: float = 3.0
+    far: float = 1e4
+    most_turns: int = 60
+    most_legs: int = 2000
+    track: TrackOptions = field(default_factory=lambda: BOLD)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Leg:
+    """A piece of a curve with one leader; nodes in the order traced, in the solver's order."""
+
+    led: Led
+    nodes: tuple[Node, ...]
+
+    @property
+    def v(self) -> Array:
+        """(K, N) in the whole's order."""
+        return self.led.whole(np.stack([node.v for node in self.nodes]))
+
+    @property
+    def first(self) -> Array:
+        """Derivatives by the leader, (K, N), in the whole's order."""
+        return self.led.whole(np.stack([node.first for node in self.nodes]))
+
+    @property
+    def second(self) -> Array:
+        """Second derivatives by the leader, (K, N)."""
+        return self.led.whole(np.stack([node.second for node in self.nodes]))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Curve:
+    """Legs in the order traced and why the curve ends.
+
+    ``passes``: the positions (N,) at which the parameter came by its starting value, whole turns
+    aside, each with the number of the leg that it ends. ``crossing``: the change point that it ends
+    at, as the last leg's leader sees it.
+    """
+
+    legs: tuple[Leg, ...]
+    end: CircuitEnd
+    passes: tuple[tuple[int, Array], ...]
+    crossing: ChangePoint | None = None
+
+    @property
+    def last(self) -> tuple[Led, Node]:
+        """Where it ends."""
+        leg = self.legs[-1]
+        return leg.led, leg.nodes[-1]
+
+
+def trace(
+    leads: Leads, start: Array, heading: float | Array, options: CurveOptions | None = None
+) -> Curve:
+    """Follow the curve through a position until it closes or ends.
+
+    Parameters
+    ----------
+    start : (N,)
+        A position on the curve, not where curves cross.
+    heading : float or (N,)
+        How the variables move at first, in direction; +1 for a growing parameter, -1 for a falling
+        one.
+    """
+    if isinstance(heading, float):
+        side, heading = heading, np.zeros(len(start))
+        heading[leads.parameter] = side
+    return _Tracer(leads, start, heading, options or CurveOptions()).run()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Pass:
+    """A piece of a step in which the parameter goes one way and comes by a value."""
+
+    value: float
+    low: Node
+    high: Node
+
+
+class _Tracer:
+    """The state of one trace: the position reached and the direction of travel."""
+
+    def __init__(self, leads: Leads, start: Array, heading: Array, options: CurveOptions) -> None:
+        self.leads, self.start, self.options = leads, start, options
+        self.here, self.heading = start, heading
+        self.crossing: ChangePoint | None = None
+        self.legs: list[Leg] = []
+        self.passes: list[tuple[int, Array]] = []
+        # a value to be passed on which the curve stands, so that it is not passed again at once
+        self.leaving: float | None = float(start[leads.parameter])
+        own = self._own()
+        if own is None:
+            raise ValueError("the parameter of a curve must determine the position")
+        self.own = own
+        if np.count_nonzero(heading) == 1 and heading[leads.parameter]:
+            rates = own.whole(own.node(start).first)
+            if np.isfinite(rates).all():
+                self.heading = heading[leads.parameter] * rates
+
+    def _own(self) -> Led | None:
+        return self.leads.by(self.leads.parameter)
+
+    def run(self) -> Curve:
+        """Leg after leg."""
+        opt, stuck = self.options, 0
+        avoid: int | None = None
+        for _ in range(opt.most_legs):
+            leader = self._leader(avoid)
+            if leader is None:
+                return self._ended(CircuitEnd.SINGULAR)
+            led, node = leader
+            leg, end = self._leg(led, node)
+            moved = len(leg.nodes) > 1
+            if moved:
+                self.legs.append(leg)
+                self._arrive(leg)
+            if end is not None:
+                self.crossing = _crossing_ahead(leg)
+                if self.crossing is not None:
+                    return self._ended(CircuitEnd.CHANGE_POINT)
+                stuck = 0 if moved else stuck + 1
+                avoid = led.lead
+                if stuck > 1:
+                    return self._ended(CircuitEnd.SINGULAR)
+                continue
+            stuck, avoid = 0, None
+            ending = self._ending()
+            if ending is not None:
+                return self._ended(ending)
+        return self._ended(CircuitEnd.NEVER_CLOSES)
+
+    def _ended(self, end: CircuitEnd) -> Curve:
+        return Curve(
+            legs=tuple(self.legs), end=end, passes=tuple(self.passes), crossing=self.crossing
+        )
+
+    def _arrive(self, leg: Leg) -> None:
+        last = leg.nodes[-1]
+        self.here = leg.led.whole(last.v)
+        sign = math.copysign(1.0, last.t - leg.nodes[0].t)
+        self.heading = sign * leg.led.whole(last.first)
+
+    def _leader(self, avoid: int | None) -> tuple[Led, Node] | None:
+        """The parameter where it is fast enough, else the fastest variable that determines all."""
+        scale, parameter = self.leads.scale, self.leads.parameter
+        speed = np.abs(self.heading) / scale
+        first = parameter if speed[parameter] * self.options.slow >= speed.max() else None
+        return fastest_leader(self.leads, self.here, speed, avoid, first)
+
+    def _leg(self, led: Led, node: Node) -> tuple[Leg, object]:
+        """One leg: up to a change of leader, a pass of the starting value, or an end."""
+        opt = self.options
+        parameter, scale = self.leads.parameter, self.leads.scale
+        place = led.place(parameter)
+        sign = math.copysign(1.0, self.heading[led.lead])
+        weights = scale[led.order]
+        own = led.lead == parameter
+        passed: list[_Pass] = []
+
+        def done(before: Node, after: Node) -> bool:
+            speed = np.abs(after.first) / weights
+            if not own:
+                leaving = self.leaving if before is node else None
+                passed.extend(self._passes(led, before, after, leaving))
+                if passed or speed[place] * opt.slow >= speed.max():
+                    return True
+            if bool((np.abs(after.v / weights)[~self.leads.turns[led.order]] > opt.far).any()):
+                return True
+            return bool(speed.max() > opt.fast * speed[-1])
+
+        size = float(weights[-1])
+        if not self.leads.turns[led.lead]:  # a length on its way to infinity doubles in one leg
+            size = max(size, abs(node.t) / _LEG)
+        goal = node.t + sign * _LEG * size
+        if own:
+            goal = self._next_plane(node.t, sign, self.leaving)
+        path = replace(led.path, size=size)
+        nodes, end = follow(led.solver, path, node, goal, opt.track, watch=done)
+        chain = [node, *nodes]
+        if nodes:
+            self.leaving = None
+        if passed:
+            crossing = self._crossing(led, passed[0])
+            if crossing is not None:
+                chain[-1], self.leaving = crossing, passed[0].value
+                self.passes.append((len(self.legs), led.whole(crossing.v)))
+        elif own and nodes and nodes[-1].t == goal:
+            self.leaving = goal
+            self.passes.append((len(self.legs), led.whole(nodes[-1].v)))
+        return Leg(led=led, nodes=tuple(chain)), end
+
+    @property
+    def _period(self) -> float:
+        return 2.0 * np.pi if self.leads.turns[self.leads.parameter] else np.inf
+
+    def _next_plane(self, t: float, sign: float, leaving: float | None) -> float:
+        """The next value of the parameter that equals the starting one, whole turns aside.
+
+        ``leaving``: one of them that does not count.
+        """
+        home, period = float(self.start[self.leads.parameter]), self._period
+        if not np.isfinite(period):
+            if (home - t) * sign > 0.0 and home != leaving:
+                return home
+            return t + sign * 1e3 * float(self.leads.scale[self.leads.parameter])
+        turns = (t - home) / period
+        number = math.floor(turns) + 1 if sign > 0 else math.ceil(turns) - 1
+        while (home + number * period - t) * sign <= 0.0 or home + number * period == leaving:
+            number += int(sign)
+        return home + number * period
+
+    def _passes(self, led: Led, before: Node, after: Node, leaving: float | None) -> list[_Pass]:
+        """The first pass of the starting value (whole turns aside) between two nodes, if any."""
+        place = led.place(self.leads.parameter)
+        for low, high in itertools.pairwise(one_way(led, place, before, after)):
+            t0, t1 = float(low.v[place]), float(high.v[place])
+            if t0 != t1:
+                value = self._next_plane(t0, math.copysign(1.0, t1 - t0), leaving)
+                if (value - t0) * (value - t1) <= 0.0:
+                    return [_Pass(value=value, low=low, high=high)]
+            leaving = None
+        return []
+
+    def _crossing(self, led: Led, passed: _Pass) -> Node | None:
+        """The position in a piece of a step at which the parameter has the value, to rounding.
+
+        The piece is narrowed down at true positions: over a long step interpolation is not good
+        enough close to a dead point, where the value is passed twice.
+        """
+        place = led.place(self.leads.parameter)
+        value, low, high = passed.value, passed.low, passed.high
+        best: Node | None = None
+        off = _ON_PLANE * max(1.0, abs(value))
+        for _ in range(60):
+            here = node_between(led, low, high, share_at(place, low, high, value))
+            if here is None or here.t in (low.t, high.t):
+                break
+            gap = abs(float(here.v[place]) - value)
+            if gap <= off:
+                best, off = here, gap
+            if gap <= 2.0 * _UNIT * max(1.0, abs(value)):
+                break
+            if (here.v[place] < value) == (low.v[place] < value):
+                low = here
+            else:
+                high = here
+        if best is None and abs(float(high.v[place]) - value) <= off:
+            best = high
+        return None if best is None else self._polished(led, best, value)
+
+    def _polished(self, led: Led, here: Node, value: float) -> Node:
+        """The position with exactly the value, if the parameter determines it well enough."""
+        own = self.own
+        near = led.whole(here.v)
+        side = own.node(near).orientation
+        near[self.leads.parameter] = value
+        found = own.solver.solve(near[own.order][None, :])
+        v = own.whole(found.v[0])
+        same = np.abs((v - near) / self.leads.scale).max() < _SAME
+        same = same and np.array_equal(own.node(v).orientation, side)
+        return led.node(v) if found.status[0] == _CONVERGED and same else here
+
+    def _ending(self) -> CircuitEnd | None:
+        v, scale = self.here, self.leads.scale
+        lengths = ~self.leads.turns
+        if np.abs(v / scale)[lengths].max(initial=0.0) > self.options.far:
+            return CircuitEnd.RUNS_TO_INFINITY
+        passed = bool(self.passes) and self.passes[-1][0] == len(self.legs) - 1
+        if passed and same_position(self.leads, v, self.start):
+            return CircuitEnd.CLOSED
+        if abs(v - self.start)[self.leads.parameter] > self.options.most_turns * 2.0 * np.pi:
+            return CircuitEnd.NEVER_CLOSES
+        return None
+
+
+def _crossing_ahead(leg: Leg) -> ChangePoint | None:
+    """The change point at which a leg could not go on."""
+    first, last = leg.nodes[0], leg.nodes[-1]
+    for side in (1.0, -1.0) if first is last else (math.copysign(1.0, last.t - first.t),):
+        found = locate_change_point(leg.led.solver, leg.led.path, last, side)
+        if found is not None:
+            return found
+    return None

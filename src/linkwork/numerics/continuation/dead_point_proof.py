@@ -1,0 +1,202 @@
+"""Proof of a dead point: between two values of the leader the parameter's rate changes its sign.
+
+With another variable λ in the lead a dead point is an ordinary position. Kantorovich's theorem
+gives one solution x(λ) for every λ of a small interval, all of them in one box. The rates x'(λ)
+solve J x' = -F_λ; seen through A ≈ J⁻¹, with d the computed direction and e its error,
+
+    |e| ≤ |I - A J| |e| + |A J d| + |A J_k| |e_k|
+
+where J is taken anywhere in the box: it differs from J at the computed position by at most the
+bound of the second derivatives times the size of the box. If the parameter's rate has proved and
+opposite signs at both ends of the interval, the parameter turns back in between, and the dead point
+lies in the box.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.numerics.block_solver import Block, BlockSolver, Linearised
+from linkwork.numerics.continuation.local_parametrization import Led
+from linkwork.numerics.proof.kantorovich import Expansion
+from linkwork.numerics.proof.position_proof import expansions, prove, reach
+
+__all__ = ["FoldProof", "prove_dead_point"]
+
+_UNIT = np.finfo(float).eps / 2
+_SLACK = 1.0 + 1e-12
+_ROOM = 4.0  # times the error of the rate: how far apart the ends of the interval are taken
+_LEAST = 16.0  # units of rounding of the leader
+_WIDENINGS = 12  # tries, each with an interval so many times as wide
+_WIDER = 2.0
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FoldProof:
+    """``each`` (N,): how far the dead point may be from the position it was proved from, in the
+    solver's order, the leader's own last; ``alone`` (n,): within this no other position has the
+    same leader's value. ``radius``, ``unique``: both weighted.
+    """
+
+    each: Array
+    alone: Array
+    radius: float
+    unique: float
+
+
+def prove_dead_point(led: Led, v: Array, place: int) -> FoldProof | None:
+    """Prove that the parameter turns back next to a position.
+
+    Parameters
+    ----------
+    v : (N,)
+        The position, in the solver's order, at which the parameter's rate is zero to rounding.
+    place : int
+        Where the parameter stands in the solver's order.
+
+    Returns
+    -------
+    FoldProof or None
+        ``None`` where nothing is proved.
+    """
+    if not led.provable:
+        return None
+    solver, path = led.solver, led.path
+    with np.errstate(all="ignore"):
+        rates = solver.rates(v[None, :], path.rate)
+        bend = abs(float(rates.second[0, place]))
+        own = _rate_errors(solver, v[None, :], rates.first)
+    if own is None or not bend > 0.0:
+        return None
+    off = abs(float(rates.first[0, place])) + float(own.rates[0, place])
+    width = max(_ROOM * off / bend, _LEAST * _UNIT * max(1.0, abs(float(v[-1]))))
+    for _ in range(_WIDENINGS):
+        found = _turns_within(led, v, place, width)
+        if found is not None:
+            return found
+        width *= _WIDER
+    return None
+
+
+def _turns_within(led: Led, v: Array, place: int, width: float) -> FoldProof | None:
+    """The proof with an interval of the leader of that half width, or ``None``."""
+    solver = led.solver
+    whole = width + 2.0 * _UNIT * (abs(float(v[-1])) + width)  # the ends are rounded themselves
+    at_v = expansions(solver, v[None, :], exact=True)
+    box = reach(solver, v[None, :], np.full((1, 1), whole), at_v)
+    if not box.holds[0]:
+        return None
+    ends = solver.rates(v[None, :], led.path.rate).first * np.array([[-width], [width]]) + v
+    ends[:, -1] = v[-1] + np.array([-width, width])
+    found = solver.solve(ends).v
+    rates = solver.rates(found, led.path.rate).first
+    errors = _rate_errors(solver, found, rates)
+    if errors is None:
+        return None
+    off = np.abs(found - v)[:, :-1] + errors.each[:, :-1]
+    slow, error = rates[:, place], errors.rates[:, place]
+    turned = slow[0] * slow[1] < 0.0 and (np.abs(slow) > error).all()
+    if not (turned and (off < box.alone).all()):
+        return None
+    weights = solver.variable_scale
+    each = np.append(box.each[0], whole)
+    return FoldProof(
+        each=each,
+        alone=box.alone[0],
+        radius=float((each / weights).max()),
+        unique=float((box.alone[0] / weights[:-1]).min()),
+    )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Errors:
+    """How far true positions may be from computed ones, and their rates, (B, N) each."""
+
+    each: Array
+    rates: Array
+
+
+def _rate_errors(solver: BlockSolver, v: Array, rates: Array) -> _Errors | None:
+    """Bounds for positions v (B, N) at exactly their inputs; ``None`` where nothing is proved."""
+    linear = solver.linearise(v)
+    places = expansions(solver, v, linear, exact=True)
+    position = prove(solver, v, np.zeros((len(v), solver.variables - solver.unknowns)), places)
+    if not position.holds.all():
+        return None
+    errors = np.zeros_like(rates)
+    for block, part, at in zip(solver.blocks, linear, places, strict=True):
+        assert at is not None  # the position is proved
+        found = _block_errors(block, part, at, v, rates, position.each, errors)
+        if found is None:
+            return None
+        errors[:, block.unknowns] = found
+    return _Errors(each=position.each, rates=errors)
+
+
+def _block_errors(
+    block: Block,
+    part: Linearised,
+    at: Expansion,
+    v: Array,
+    rates: Array,
+    each: Array,
+    errors: Array,
+) -> Array | None:
+    """The errors of one block's rates (B, n), those of the blocks before in ``errors`` (B, N)."""
+    n, system = len(block.unknowns), block.system
+    here, box, d = (x[:, block.variables] for x in (v, each, rates))
+    bend = _Bend(at.phase, at.slide, at.weights, at.pair_length, at.pair_group)
+    # |A J d|: as computed, the rounding of J, and that of the products
+    size, along = np.abs(part.inverse), np.abs(d)
+    slip = _apply(system.curvature(here, part.inverse).jacobian_rounding, along)
+    slip += (d.shape[1] + n + 4) * _UNIT * _apply(np.abs(part.jacobian), along)
+    y = np.abs(_apply(part.inverse, _apply(part.jacobian, d))) + _apply(size, slip)
+    y += bend.between(box, along)
+    known = errors[:, block.variables]
+    known[:, :n] = 0.0
+    y = (y + _apply(at.slope, known[:, n:]) + bend.between(box, known)) * _SLACK
+    # e ≤ y + Z e, in the block's weights
+    w = system.variable_scale[:n]
+    unit = np.zeros_like(d)
+    unit[:, :n] = w
+    z = (_apply(at.defect, np.broadcast_to(w, y.shape)) + bend.between(box, unit)) * _SLACK
+    room = 1.0 - (z / w).max(axis=1)
+    if not (room > 0.0).all():
+        return None
+    norm = (y / w).max(axis=1) / room * _SLACK
+    found: Array = (y + z * norm[:, None]) * _SLACK
+    return found if np.isfinite(found).all() else None
+
+
+def _apply(matrix: Array, vector: Array) -> Array:
+    product: Array = (matrix @ vector[:, :, None])[:, :, 0]
+    return product
+
+
+class _Bend:
+    """|A (J(v + a) - J(v)) b| for changes and directions of known size, (B, n)."""
+
+    def __init__(
+        self,
+        phase: Array,
+        slide: Array,
+        weights: Array,
+        pair_length: IndexArray,
+        pair_group: IndexArray,
+    ) -> None:
+        self.phase, self.slide, self.weights = phase, slide, weights
+        self.length, self.group = pair_length, pair_group
+
+    def between(self, a: Array, b: Array) -> Array:
+        """For a and b (B, N), neither negative."""
+        turned, turning = a @ self.weights, b @ self.weights
+        rows = _apply(self.phase, turned * turning)
+        if self.length.size:
+            longer, slides = a[:, self.length], b[:, self.length]
+            by = turned[:, self.group], turning[:, self.group]
+            pairs = longer * by[1] + slides * by[0]
+            rows += _apply(self.slide, pairs)
+        return rows

@@ -1,0 +1,142 @@
+"""Leaders: the variables of a curve of positions that can be taken as known, one at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from linkwork.foundation.angles import FULL_TURN, within_half_a_turn
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.continuation.branch_tracking import InputPath, Node, node_at
+from linkwork.numerics.proof.position_proof import prove, reach
+
+__all__ = [
+    "Leads",
+    "Led",
+    "apart",
+    "coincide",
+    "fastest_leader",
+    "same_position",
+    "whole_turns",
+]
+
+_UNIT = np.finfo(float).eps
+_COINCIDE = 1e-6  # weighted: rounding of places that are ill-conditioned
+_NEAR = 1e-3  # weighted: positions further apart are not looked at
+_ON_VALUE = 1e-9  # of the parameter, weighted: positions at different values are different
+_ROUNDINGS = 8.0  # times the unit and the condition: how far two solutions that are one may be
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Led:
+    """The equations with the variable ``lead`` known.
+
+    ``order`` (N,): the variables of the whole in the solver's order, the leading one last.
+    """
+
+    lead: int
+    solver: BlockSolver
+    order: IndexArray
+
+    @property
+    def path(self) -> InputPath:
+        """The leading variable is its own path."""
+        size = float(self.solver.variable_scale[-1])
+        return InputPath(origin=np.zeros(1), rate=np.ones(1), size=size)
+
+    @property
+    def provable(self) -> bool:
+        """Whether the equations have known bounds of their curvature."""
+        return all(block.system.bends_boundedly for block in self.solver.blocks)
+
+    def node(self, v: Array) -> Node:
+        """The node of a position (N,) given in the whole's order."""
+        return node_at(self.solver, self.path, float(v[self.lead]), v[self.order])
+
+    def place(self, variable: int) -> int:
+        """Where a variable of the whole stands in the solver's order."""
+        return int(np.flatnonzero(self.order == variable)[0])
+
+    def whole(self, part: Array) -> Array:
+        """Variables (..., N) of the solver's order in the whole's order."""
+        found = np.empty_like(part)
+        found[..., self.order] = part
+        return found
+
+
+class Leads(Protocol):
+    """Equations that can be solved with any variable in the lead."""
+
+    parameter: int
+    scale: Array
+    turns: BoolArray
+
+    def by(self, lead: int) -> Led | None:
+        """The equations led by one variable; ``None`` if it does not determine the others."""
+
+    def repeats_after(self, turns: Array) -> bool:
+        """Whether variables (N,) moved by so many whole turns satisfy the same equations."""
+
+
+def fastest_leader(
+    leads: Leads, v: Array, speed: Array, avoid: int | None = None, first: int | None = None
+) -> tuple[Led, Node] | None:
+    """The fastest variable that determines all others at a position, and the node it gives."""
+    by_speed = [int(k) for k in np.argsort(-speed, kind="stable")]
+    for lead in by_speed if first is None else [first, *by_speed]:
+        led = leads.by(lead) if lead != avoid and speed[lead] > 0.0 else None
+        if led is not None:
+            node = led.node(v)
+            if np.isfinite(node.second).all():
+                return led, node
+    return None
+
+
+def apart(leads: Leads, a: Array, b: Array) -> Array:
+    """b - a with angles reduced to half a turn, (..., N)."""
+    return within_half_a_turn(b - a, leads.turns)
+
+
+def whole_turns(leads: Leads, a: Array, b: Array) -> Array:
+    """How many whole turns (N,) angles have made on the way from a position to another."""
+    return np.where(leads.turns, np.round((b - a) / FULL_TURN), 0.0)
+
+
+def coincide(leads: Leads, a: Array, b: Array) -> bool:
+    """Whether two places that are known to rounding, such as limits, agree, whole turns aside."""
+    return bool(np.abs(apart(leads, a, b) / leads.scale).max() < _COINCIDE)
+
+
+def same_position(leads: Leads, a: Array, b: Array) -> bool:
+    """Whether two positions at one value of the parameter are one, whole turns aside.
+
+    Both are iterated down to rounding with the parameter in the lead. Then it is a matter of proof:
+    one lies where only the other is. Where nothing is proved, they agree if they do to rounding.
+    """
+    turns, p = whole_turns(leads, a, b), leads.parameter
+    near = np.stack([a, b - FULL_TURN * turns])
+    gap = np.abs(near[1] - near[0]) / leads.scale
+    rounding = 8.0 * _UNIT * max(1.0, abs(float(a[p])), abs(float(b[p])))
+    own = leads.by(p)
+    if own is None or gap.max() > _NEAR or gap[p] > _ON_VALUE or not leads.repeats_after(turns):
+        return False
+    size = 1.0 + np.abs(near / leads.scale).max()
+    if gap.max() <= _ROUNDINGS * _UNIT * size:
+        return True
+    near[:, p] = a[p]
+    sharp = replace(own.solver.options, equation_tolerance=_UNIT)
+    found = own.solver.solve(near[:, own.order], sharp).v
+    off = np.abs(found[1] - found[0])
+    if own.provable:
+        spread = np.full((1, 1), rounding)
+        first, second = reach(own.solver, found[:1], spread), prove(own.solver, found[1:], spread)
+        if first.holds[0] and second.holds[0]:
+            return bool((off[:-1] + second.each[0, :-1] < first.alone[0]).all())
+    rates = own.solver.rates(found, own.path.rate)
+    allowed = min(_COINCIDE, _ROUNDINGS * _UNIT * float(rates.condition.max()) * size)
+    close = (off / own.solver.variable_scale).max() <= allowed
+    # two roots that a dead point joins have opposite signs of det J
+    return bool(close and np.array_equal(rates.orientation[0], rates.orientation[1]))

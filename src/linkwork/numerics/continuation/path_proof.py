@@ -1,0 +1,392 @@
+"""Proving that a row of positions lies on one branch: many steps at once, halved where needed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, CountArray, IndexArray
+from linkwork.foundation.status import Status
+from linkwork.numerics.block_solver import BlockSolver, Rates
+from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Watch, node_at
+from linkwork.numerics.proof.kantorovich import Expansion
+from linkwork.numerics.proof.position_proof import (
+    Proof,
+    expansions,
+    links_hold,
+    prove,
+    reach,
+    rounding_of_inputs,
+)
+
+__all__ = ["Beads", "ProvenPath", "follow_with_proof", "prove_path"]
+
+_CONVERGED = Status.CONVERGED.code
+_ROUNDS = 45  # halvings of one step before it counts as not proved
+_MOST = 30_000  # positions solved in between for the proof of one path
+_MOST_EACH = 8  # and so many more for each of its own positions
+_UNIT = np.finfo(float).eps / 2
+_PIECE = 1024  # positions proved together: arrays that fit the cache
+_LANES = 1024  # steps halved together
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Beads:
+    """Positions along a path with their derivatives by t: t (K,), the others (K, N).
+
+    ``spread`` (K, p): how far the inputs may be from those in v, in their own units.
+    """
+
+    t: Array
+    v: Array
+    first: Array
+    second: Array
+    spread: Array
+
+    def take(self, index: IndexArray | slice) -> Beads:
+        """Some of them, in the order of ``index``."""
+        return Beads(
+            t=self.t[index],
+            v=self.v[index],
+            first=self.first[index],
+            second=self.second[index],
+            spread=self.spread[index],
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ProvenPath:
+    """``position``: the proofs of K positions. ``linked`` (K-1,): which steps are proved.
+    ``pieces`` (K-1,): into how many steps each was divided for that. ``given_up`` (K-1,): which
+    are not proved because that would have taken too many.
+    """
+
+    position: Proof
+    linked: BoolArray
+    pieces: CountArray
+    given_up: BoolArray
+
+    def connected_to(self, anchor: int) -> BoolArray:
+        """The positions joined to one of them by proved steps and proved themselves, (K,)."""
+        return _outwards(self.linked, anchor) & self.position.holds
+
+    def given_up_before(self, anchor: int) -> BoolArray:
+        """The positions whose first step without a proof, on the way from one, was given up."""
+        joined = _outwards(self.linked, anchor)
+        as_if = _outwards(self.linked | self.given_up, anchor)
+        first_broken = as_if & ~joined
+        # beyond a step that was given up others may be broken for other reasons
+        right = np.logical_or.accumulate(first_broken[anchor:])
+        left = np.logical_or.accumulate(first_broken[: anchor + 1][::-1])[::-1]
+        return np.concatenate([left[:-1], right])
+
+
+def _outwards(linked: BoolArray, anchor: int) -> BoolArray:
+    """Which of K positions are joined to one of them, (K,)."""
+    right = np.logical_and.accumulate(linked[anchor:])
+    left = np.logical_and.accumulate(linked[:anchor][::-1])[::-1]
+    return np.concatenate([left, [True], right])
+
+
+def prove_path(
+    solver: BlockSolver,
+    path: InputPath,
+    beads: Beads,
+    *,
+    anchor: int | None = None,
+    most: int | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> ProvenPath:
+    """Prove every position and every step between neighbours.
+
+    Parameters
+    ----------
+    beads : Beads
+        In the order of t.
+    anchor : int, optional
+        The bead that the others have to be joined to: steps near it are proved first, and those
+        beyond one that cannot be proved are left alone. Without it all steps count alike.
+    most : int, optional
+        How many positions in between may be solved for the proof of the whole path; by default a
+        number that grows with the path's own.
+    progress : callable, optional
+        Called with the finished fraction.
+
+    Notes
+    -----
+    A step that is not proved from its left end is tried from its right end, then halved at a
+    position solved in between. Many open steps are worked on together.
+    """
+    count = len(beads.t)
+    allowance = _Allowance(_MOST + _MOST_EACH * count if most is None else most)
+    begins = list(range(0, max(count - 1, 1), _PIECE))
+    if anchor is not None:
+        begins.sort(key=lambda begin: abs(begin + _PIECE // 2 - anchor))
+    found: dict[int, ProvenPath] = {}
+    for k, begin in enumerate(begins, start=1):
+        part = beads.take(slice(begin, begin + _PIECE + 1))
+        inside = None if anchor is None else min(max(anchor - begin, 0), len(part.t) - 1)
+        found[begin] = _piece(solver, path, part, inside, allowance)
+        if progress is not None:
+            progress(k / len(begins))
+    pieces = [found[begin] for begin in sorted(begins)]
+    if len(pieces) == 1:
+        return pieces[0]
+    # neighbouring pieces share one position
+    proofs = [pieces[0].position, *[_behind_first(piece.position) for piece in pieces[1:]]]
+    return ProvenPath(
+        position=Proof(
+            holds=np.concatenate([p.holds for p in proofs]),
+            exists=np.concatenate([p.exists for p in proofs]),
+            unique=np.concatenate([p.unique for p in proofs]),
+            each=np.concatenate([p.each for p in proofs]),
+        ),
+        linked=np.concatenate([piece.linked for piece in pieces]),
+        pieces=np.concatenate([piece.pieces for piece in pieces]),
+        given_up=np.concatenate([piece.given_up for piece in pieces]),
+    )
+
+
+class _Allowance:
+    """How many positions may still be solved in between."""
+
+    def __init__(self, left: int) -> None:
+        self.left = left
+
+    def take(self, wanted: int) -> int:
+        """As many as there are, at most ``wanted``."""
+        given = min(wanted, self.left)
+        self.left -= given
+        return given
+
+
+def _behind_first(p: Proof) -> Proof:
+    return Proof(holds=p.holds[1:], exists=p.exists[1:], unique=p.unique[1:], each=p.each[1:])
+
+
+def _piece(
+    solver: BlockSolver, path: InputPath, beads: Beads, anchor: int | None, allowance: _Allowance
+) -> ProvenPath:
+    places = expansions(solver, beads.v)
+    position = prove(solver, beads.v, beads.spread, places)
+    steps = len(beads.t) - 1
+    nothing = np.zeros(steps, dtype=bool)
+    pieces = np.ones(steps, dtype=np.int64)
+    if not steps:
+        return ProvenPath(position=position, linked=nothing, pieces=pieces, given_up=nothing)
+    left, right = beads.take(slice(None, -1)), beads.take(slice(1, None))
+    near = np.maximum(position.each[1:], position.each[:-1])
+    linked = _steps(solver, left, right, near, _cut(places, slice(None, -1)))
+    linked &= position.holds[1:] & position.holds[:-1]
+    open_ = np.flatnonzero(~linked & position.holds[1:] & position.holds[:-1])
+    if len(open_):
+        back = _cut(places, open_ + 1)
+        linked[open_] = _steps(solver, right.take(open_), left.take(open_), near[open_], back)
+        open_ = open_[~linked[open_]]
+    if not len(open_):
+        return ProvenPath(position=position, linked=linked, pieces=pieces, given_up=nothing)
+    work = _Halving(solver, path, steps, anchor, position.holds)
+    work.run(
+        _Open(left=left.take(open_), right=right.take(open_), near=near[open_], owner=open_),
+        allowance,
+    )
+    linked[open_] = work.proved[open_]
+    return ProvenPath(
+        position=position, linked=linked, pieces=pieces + work.pieces, given_up=work.given_up
+    )
+
+
+def _cut(places: Sequence[Expansion | None], index: IndexArray | slice) -> list[Expansion | None]:
+    return [None if place is None else place.take(index) for place in places]
+
+
+def _steps(
+    solver: BlockSolver,
+    start: Beads,
+    goal: Beads,
+    near: Array,
+    places: Sequence[Expansion | None] | None = None,
+) -> BoolArray:
+    """Which steps are proved from their start, for all inputs from those of one end to the other's.
+
+    The inputs are taken from the positions: those of a row may differ from the path's by rounding.
+    """
+    spread = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
+    spread += start.spread + goal.spread
+    return links_hold(start.v, goal.v, reach(solver, start.v, spread, places), near)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Open:
+    """Steps to be proved (L,): their ends, how far the true positions may be from these (L, N),
+    and the number of the step of the path that they are a part of.
+    """
+
+    left: Beads
+    right: Beads
+    near: Array
+    owner: IndexArray
+
+    def take(self, index: IndexArray | slice) -> _Open:
+        return _Open(
+            left=self.left.take(index),
+            right=self.right.take(index),
+            near=self.near[index],
+            owner=self.owner[index],
+        )
+
+    def with_(self, other: _Open) -> _Open:
+        return _Open(
+            left=_joined(self.left, other.left),
+            right=_joined(self.right, other.right),
+            near=np.concatenate([self.near, other.near]),
+            owner=np.concatenate([self.owner, other.owner]),
+        )
+
+
+class _Halving:
+    """Steps of a path (K,) halved as often as their proof needs.
+
+    ``proved``, ``given_up`` (K,): what became of them. ``pieces`` (K,): how many positions were
+    solved in between.
+    """
+
+    def __init__(
+        self, solver: BlockSolver, path: InputPath, steps: int, anchor: int | None, holds: BoolArray
+    ) -> None:
+        self.solver, self.path, self.anchor = solver, path, anchor
+        self.proved = np.ones(steps, dtype=bool)
+        self.given_up = np.zeros(steps, dtype=bool)
+        self.pieces = np.zeros(steps, dtype=np.int64)
+        # beyond a step that cannot be proved no other is of use
+        self.cut = np.flatnonzero(~(holds[1:] & holds[:-1]))
+        self.width = np.zeros(steps)
+
+    def run(self, queue: _Open, allowance: _Allowance) -> None:
+        """Prove all steps of a queue as far as the allowance goes."""
+        self.width[queue.owner] = queue.right.t - queue.left.t
+        while True:
+            queue = self._of_use(queue)
+            if not len(queue.owner):
+                return
+            now = allowance.take(min(len(queue.owner), _LANES))
+            if not now:
+                self.proved[queue.owner] = False
+                self.given_up[queue.owner] = True
+                return
+            queue = self._halved(queue.take(slice(None, now))).with_(queue.take(slice(now, None)))
+
+    def _of_use(self, queue: _Open) -> _Open:
+        """What may still be proved, nearest to the anchor first."""
+        hopeful = self.proved[queue.owner]
+        if self.anchor is None:
+            return queue if hopeful.all() else queue.take(np.flatnonzero(hopeful))
+        below, above = queue.owner < self.anchor, queue.owner >= self.anchor
+        lowest = max(self.cut[self.cut < self.anchor], default=-1)
+        highest = min(self.cut[self.cut >= self.anchor], default=len(self.proved))
+        moot = (below & (queue.owner < lowest)) | (above & (queue.owner > highest))
+        self.proved[queue.owner[moot]] = False
+        keep = np.flatnonzero(hopeful & ~moot)
+        away = np.abs(queue.owner[keep] + 0.5 - self.anchor)
+        return queue.take(keep[np.argsort(away, kind="stable")])
+
+    def _halved(self, lanes: _Open) -> _Open:
+        """What is left to be proved of some steps after one more halving."""
+        solver = self.solver
+        np.add.at(self.pieces, lanes.owner, 1)
+        middle, found, places = _between(solver, self.path, lanes.left, lanes.right)
+        proof = prove(solver, middle.v, middle.spread, places)
+        good = found & proof.holds
+        good &= (lanes.left.t < middle.t) & (middle.t < lanes.right.t)
+        good &= (lanes.right.t - lanes.left.t) > self.width[lanes.owner] * 2.0**-_ROUNDS
+        lost = np.unique(lanes.owner[~good])
+        if len(lost):
+            self.proved[lost] = False
+            self.cut = np.union1d(self.cut, lost)
+        keep = np.flatnonzero(self.proved[lanes.owner])
+        if not len(keep):
+            return lanes.take(keep)
+        lanes, middle, places = lanes.take(keep), middle.take(keep), _cut(places, keep)
+        near = np.maximum(lanes.near, proof.each[keep])
+        halves = [
+            _Open(left=lanes.left, right=middle, near=near, owner=lanes.owner),
+            _Open(left=middle, right=lanes.right, near=near, owner=lanes.owner),
+        ]
+        # both halves from the middle, where everything is computed
+        for k, ends in enumerate((lanes.left, lanes.right)):
+            open_ = ~_steps(solver, middle, ends, near, places)
+            halves[k] = halves[k].take(np.flatnonzero(open_))
+        return halves[0].with_(halves[1])
+
+
+def _joined(a: Beads, b: Beads) -> Beads:
+    return Beads(
+        t=np.concatenate([a.t, b.t]),
+        v=np.concatenate([a.v, b.v]),
+        first=np.concatenate([a.first, b.first]),
+        second=np.concatenate([a.second, b.second]),
+        spread=np.concatenate([a.spread, b.spread]),
+    )
+
+
+def _between(
+    solver: BlockSolver, path: InputPath, left: Beads, right: Beads
+) -> tuple[Beads, BoolArray, list[Expansion | None]]:
+    """Positions halfway in t, started from the quintic through both ends; which were found; what
+    proofs take from them.
+    """
+    h = (right.t - left.t)[:, None]
+    guess = 0.5 * (left.v + right.v) + 5.0 / 32.0 * h * (left.first - right.first)
+    guess += h * h / 64.0 * (left.second + right.second)
+    t = 0.5 * (left.t + right.t)
+    guess[:, solver.unknowns :] = path.at(t)
+    done = solver.solve(guess)
+    linear = solver.linearise(done.v)
+    rates: Rates = solver.rates(done.v, path.rate, linear)
+    spread = rounding_of_inputs(done.v, solver.unknowns)
+    beads = Beads(t=t, v=done.v, first=rates.first, second=rates.second, spread=spread)
+    return beads, done.status == _CONVERGED, expansions(solver, done.v, linear)
+
+
+_FIRST_STEP = 0.01  # of the path's natural size
+_LEAST_STEP = 1e-13
+_MOST_PROVED = 2000  # steps of a path whose every step is proved before the next
+
+
+def follow_with_proof(
+    solver: BlockSolver, path: InputPath, start: Node, goal: float, watch: Watch
+) -> list[Node]:
+    """The branch of ``start`` towards ``t = goal``, every step proved before the next is taken.
+
+    The step size is what the proof allows: many short steps near a crossing of branches, and none
+    that could come onto the other one. Ends where ``watch`` has seen enough or nothing is proved.
+    """
+    nodes: list[Node] = []
+    here = start
+    near = prove(solver, here.v[None, :], rounding_of_inputs(here.v[None, :], solver.unknowns))
+    sign, h = np.sign(goal - start.t), _FIRST_STEP * path.size
+    for _ in range(_MOST_PROVED):
+        t = goal if h >= abs(goal - here.t) else here.t + sign * h
+        step = t - here.t
+        guess = here.v + step * here.first + 0.5 * step * step * here.second
+        guess[solver.unknowns :] = path.at(t)
+        found = solver.solve(guess[None, :])
+        if found.status[0] == _CONVERGED:
+            known = rounding_of_inputs(found.v, solver.unknowns)
+            proof = prove(solver, found.v, known)
+            spread = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
+            reached = reach(solver, here.v[None, :], spread + 2.0 * known)
+            both = np.maximum(proof.each, near.each)
+            if proof.holds[0] and links_hold(here.v[None, :], found.v, reached, both)[0]:
+                before, here, near = here, node_at(solver, path, t, found.v[0]), proof
+                nodes.append(here)
+                h *= 1.5
+                if t == goal or watch(before, here):
+                    break
+                continue
+        h = 0.5 * abs(step)
+        if h < _LEAST_STEP * max(path.size, abs(here.t)):
+            break
+    return nodes

@@ -1,0 +1,272 @@
+"""Dead points: where the parameter of a curve of positions turns back, to machine precision.
+
+With a fast unknown in the lead the dead point is an ordinary position at which the parameter's rate
+is zero, so Newton-Raphson on that rate finds it, and the branch through it can be proved.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.status import Status
+from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.continuation.branch_tracking import (
+    BOLD,
+    InputPath,
+    Node,
+    TrackOptions,
+    Watch,
+    follow,
+    node_at,
+)
+from linkwork.numerics.continuation.curve_proof import leg_is_proved
+from linkwork.numerics.continuation.curve_tracing import Curve, Leg
+from linkwork.numerics.continuation.dead_point_proof import FoldProof, prove_dead_point
+from linkwork.numerics.continuation.local_parametrization import Leads, Led, fastest_leader
+from linkwork.numerics.continuation.path_proof import follow_with_proof
+from linkwork.numerics.continuation.step_division import divided
+
+__all__ = ["TurnAhead", "TurningPoint", "turn_beyond", "turning_points"]
+
+_CONVERGED = Status.CONVERGED.code
+_UNIT = np.finfo(float).eps
+_MOST_STEPS = 400  # to a dead point ahead: it is near, unless it is none
+_RESTING = 1e-7  # weighted rate below which the parameter may not move at all,
+_LEVEL = 100.0  # nor does it if the rate's own rate is at most so many times that
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TurningPoint:
+    """Where the parameter turns back on a curve: a dead point.
+
+    ``v`` (N,) the position; ``bracket`` of the parameter around it; ``direction`` (N,) how the
+    variables move through it (weighted norm 1). ``proof``: that the parameter turns back there;
+    without it the place is not located. ``leg``, ``after``: behind which node of the curve it lies.
+    ``node``: the position as the leg's leader sees it.
+    """
+
+    t: float
+    bracket: tuple[float, float]
+    v: Array
+    direction: Array
+    proof: FoldProof | None
+    leg: int
+    after: int
+    node: Node
+
+    @property
+    def located(self) -> bool:
+        """Whether the parameter is proved to turn back within the bracket."""
+        return self.proof is not None
+
+
+def turning_points(leads: Leads, curve: Curve) -> Iterator[TurningPoint]:
+    """The dead points on a curve, in its order.
+
+    Where the parameter's rate by the leader changes sign, Newton-Raphson on that rate, kept inside
+    the sign change, finds the place. Steps in which the rate may change sign twice are divided.
+    """
+    for number, leg in enumerate(curve.legs):
+        if leg.led.lead == leads.parameter:
+            continue
+        place = leg.led.place(leads.parameter)
+        still = _RESTING * leads.scale[leads.parameter] / leads.scale[leg.led.lead]
+        level = _LEVEL * still / leads.scale[leg.led.lead]
+        for k, (a, b) in enumerate(itertools.pairwise(leg.nodes)):
+            if all(
+                abs(node.first[place]) < still and abs(node.second[place]) < level
+                for node in (a, b)
+            ):
+                continue
+            chain = divided(leg.led, place, a, b)
+            for low, high in itertools.pairwise(chain):
+                if _rises(low, place) is not _rises(high, place):
+                    yield _within(leads, leg.led, low, high, (number, k))
+
+
+def _within(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, int]) -> TurningPoint:
+    """The dead point between two nodes; where it is not proved at once, by proved steps to it."""
+    turn = _refined(leads, led, low, high, where)
+    if turn.located or not led.provable:
+        return turn
+    ahead = _first_turn(leads, led, low, math.copysign(1.0, high.t - low.t), follow_with_proof)
+    if ahead is None or not ahead.turn.located:
+        return turn
+    return replace(ahead.turn, leg=where[0], after=where[1])
+
+
+def _rises(node: Node, place: int) -> bool:
+    """Whether the parameter grows with the leader; a rate of exactly zero counts as growing."""
+    return bool(node.first[place] >= 0.0)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TurnAhead:
+    """A dead point and the way to it: ``leg`` from a position, with the dead point as its last
+    node; ``proved``: whether every step of it is.
+    """
+
+    leg: Leg
+    turn: TurningPoint
+    proved: bool
+
+    @property
+    def located(self) -> bool:
+        """Whether the branch is proved to end there."""
+        return self.proved and self.turn.located
+
+
+def turn_beyond(leads: Leads, v: Array, rates: Array, side: float) -> TurnAhead | None:
+    """The dead point ahead of a position at which a branch could not be followed further.
+
+    Parameters
+    ----------
+    v, rates : (N,)
+        The position and its derivatives by the parameter.
+    side : float
+        +1 if the parameter was growing, -1 if it was falling.
+
+    Returns
+    -------
+    TurnAhead or None
+        The way from the position to the dead point, led by the fastest variable; ``None`` if the
+        parameter does not turn back there.
+
+    Notes
+    -----
+    The way is followed boldly first. Where that cannot be proved, a step may have come onto another
+    branch: it is followed again with care, and then with every step proved before the next.
+    """
+    leader = fastest_leader(leads, v, np.abs(rates / leads.scale), avoid=leads.parameter)
+    if leader is None:
+        return None
+    led, node = leader
+    sign = math.copysign(1.0, side * rates[led.lead])
+    ways = (_followed(BOLD), _followed(TrackOptions()), follow_with_proof)
+    best: TurnAhead | None = None
+    for follow_leg in ways if led.provable else ways[1:2]:
+        found = _first_turn(leads, led, node, sign, follow_leg)
+        if found is not None and (best is None or found.located):
+            best = found
+        if best is not None and best.located:
+            break
+    return best
+
+
+#: Follows the branch of a node towards a goal until a watch has seen enough.
+_Following = Callable[[BlockSolver, InputPath, Node, float, Watch], list[Node]]
+
+
+def _followed(options: TrackOptions) -> _Following:
+    def follow_leg(
+        solver: BlockSolver, path: InputPath, node: Node, goal: float, watch: Watch
+    ) -> list[Node]:
+        limited = replace(options, most_steps=_MOST_STEPS)
+        return follow(solver, path, node, goal, limited, watch)[0]
+
+    return follow_leg
+
+
+def _first_turn(
+    leads: Leads, led: Led, node: Node, sign: float, follow_leg: _Following
+) -> TurnAhead | None:
+    """The first dead point on the way that the leader goes in a direction."""
+    place = led.place(leads.parameter)
+    turned: list[tuple[Node, Node]] = []
+
+    def has_turned(before: Node, after: Node) -> bool:
+        chain = itertools.pairwise(divided(led, place, before, after))
+        turned.extend(pair for pair in chain if _rises(pair[0], place) != _rises(pair[1], place))
+        return bool(turned)
+
+    goal = node.t + sign * float(leads.scale[led.lead])
+    nodes = follow_leg(led.solver, led.path, node, goal, has_turned)
+    if not turned:
+        return None
+    turn = _refined(leads, led, *turned[0], (0, len(nodes) - 1))
+    before = [node, *nodes[:-1]]
+    chain = (*before, turn.node) if turn.node.t != before[-1].t else tuple(before)
+    leg = Leg(led=led, nodes=chain)
+    return TurnAhead(leg=leg, turn=turn, proved=led.provable and leg_is_proved(leg))
+
+
+def _refined(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, int]) -> TurningPoint:
+    """The place between two nodes at which the parameter's rate is zero, with its proof."""
+    place, p = led.place(leads.parameter), leads.parameter
+    edges = sorted((float(low.v[place]), float(high.v[place])))
+    here = _level(led, place, low, high)
+    proof = prove_dead_point(led, here.v, place)
+    v, direction = led.whole(here.v), led.whole(here.first)
+    t = float(v[p])
+    if proof is None:
+        bracket = (min(edges[0], t), max(edges[1], t))
+    else:
+        off = float(proof.each[place])
+        bracket = (math.nextafter(t - off, -math.inf), math.nextafter(t + off, math.inf))
+    return TurningPoint(
+        t=t,
+        bracket=bracket,
+        v=v,
+        direction=direction / np.abs(direction / leads.scale).max(),
+        proof=proof,
+        leg=where[0],
+        after=where[1],
+        node=here,
+    )
+
+
+def _level(led: Led, place: int, low: Node, high: Node) -> Node:
+    """The node between two at which a variable's rate is nearest to zero.
+
+    Newton-Raphson on the rate, kept inside the sign change.
+    """
+    best = here = low if abs(low.first[place]) < abs(high.first[place]) else high
+    sharp = replace(led.solver.options, equation_tolerance=_UNIT)
+    for _ in range(60):
+        step = -here.first[place] / here.second[place] if here.second[place] else np.inf
+        if abs(step) <= 4.0 * _UNIT * max(1.0, abs(here.t)):
+            break
+        s = here.t + step
+        edges = sorted((low.t, high.t))
+        if not edges[0] < s < edges[1]:
+            s = 0.5 * (low.t + high.t)
+            step = s - here.t
+        guess = here.v + step * here.first + 0.5 * step * step * here.second
+        guess[-1] = s
+        found = led.solver.solve(guess[None, :], sharp)
+        if found.status[0] != _CONVERGED:
+            break
+        here = node_at(led.solver, led.path, s, found.v[0])
+        if here.first[place] * low.first[place] > 0.0:
+            low = here
+        else:
+            high = here
+        if abs(here.first[place]) < abs(best.first[place]):
+            best = here
+        elif abs(step) < 1e-9:
+            break  # to rounding
+    return _polished(led, best)
+
+
+def _polished(led: Led, here: Node) -> Node:
+    """The same node after one step of Newton-Raphson with residuals that are rounded once.
+
+    Where branches nearly cross, a residual that counts as none still moves the dead point. What a
+    block's own correction is goes into those of the blocks behind before anything is rounded.
+    """
+    solver = led.solver
+    change = np.zeros_like(here.v)
+    for block, part in zip(solver.blocks, solver.linearise(here.v[None, :]), strict=True):
+        n, own = len(block.unknowns), block.variables
+        residual = block.system.exact_residual(here.v[own])[0]
+        residual = residual + part.jacobian[0, :, n:] @ change[own[n:]]
+        change[block.unknowns] = -part.inverse[0] @ residual
+    if not np.isfinite(change).all():
+        return here
+    return node_at(solver, led.path, here.t, here.v + change)

@@ -1,0 +1,165 @@
+"""Bilinear systems: the closures of a planar mechanism with its directions as unknowns.
+
+Unknowns U and V, M = 2L complex numbers each, satisfy L linear equations each and M products:
+
+    left · (U, 1) = 0,     right · (V, 1) = 0,     U_p V_q = U_p' V_q'     (index M stands for 1).
+
+With U = e^{iθ} and V = e^{-iθ}: U_k V_k = 1 for an angle, U_z = V_z for a length along a fixed
+direction, U_z V_a = U_a V_z for one along a turning direction (Wampler 2001, J. Mech. Des. 123,
+382). The system of a real mechanism has right = conj(left), and its real solutions have
+V = conj(U). On the two null spaces the M products are bilinear equations in P^L × P^L.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.numerics.homotopy.polynomial_system import solved
+
+__all__ = ["BilinearSystem", "ProvedRoots", "proved_roots"]
+
+_UNIT = np.finfo(float).eps / 2
+_SLACK = 1.0 + 1e-12
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BilinearSystem:
+    """One system.
+
+    Parameters
+    ----------
+    left, right : (L, M + 1) complex
+        Sizes of order one: lengths are divided by a length of the mechanism.
+    rows : (4, M) int
+        p, q, p', q' of every product.
+    """
+
+    left: ComplexArray
+    right: ComplexArray
+    rows: IndexArray
+
+    @property
+    def loops(self) -> int:
+        """L."""
+        return len(self.left)
+
+    @property
+    def size(self) -> int:
+        """M = 2L, the unknowns in U and in V."""
+        return 2 * len(self.left)
+
+    @property
+    def products(self) -> tuple[tuple[int, ...], ...]:
+        """``rows`` as plain numbers."""
+        return tuple(map(tuple, self.rows.tolist()))
+
+    @property
+    def _curvature(self) -> Array:
+        """(M,) bounds of the second derivative of every product along unit directions."""
+        one = self.size
+        p, q, p1, q1 = self.rows
+        kappa: Array = 2.0 * (((p != one) & (q != one)).astype(float))
+        kappa += 2.0 * ((p1 != one) & (q1 != one))
+        return kappa
+
+    def residual_and_jacobian(self, x: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """F, (B, 2M), and its derivative, (B, 2M, 2M), at x = (U, V), (B, 2M)."""
+        count, m, loops = len(x), self.size, self.loops
+        u, v = _with_one(x[:, :m]), _with_one(x[:, m:])
+        p, q, p1, q1 = self.rows
+        f = np.concatenate(
+            [u @ self.left.T, v @ self.right.T, u[:, p] * v[:, q] - u[:, p1] * v[:, q1]], axis=1
+        )
+        wide = np.zeros((count, 2 * m, 2, m + 1), dtype=complex)
+        wide[:, :loops, 0] = self.left
+        wide[:, loops:m, 1] = self.right
+        r = np.arange(m, 2 * m)
+        wide[:, r, 0, p] += v[:, q]
+        wide[:, r, 0, p1] -= v[:, q1]
+        wide[:, r, 1, q] += u[:, p]
+        wide[:, r, 1, q1] -= u[:, p1]
+        return f, wide[:, :, :, :m].reshape(count, 2 * m, 2 * m)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ProvedRoots:
+    """What is proved of each root, (R,): ``holds``, and ``real`` or ``complex``.
+
+    A root is neither if that could not be decided. ``apart``: no two proved roots are the same.
+    """
+
+    holds: BoolArray
+    real: BoolArray
+    unreal: BoolArray
+    apart: bool
+
+
+def _with_one(u: ComplexArray) -> ComplexArray:
+    """(U, 1), (B, M + 1)."""
+    padded = np.ones((len(u), u.shape[1] + 1), dtype=complex)
+    padded[:, :-1] = u
+    return padded
+
+
+def proved_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> ProvedRoots:
+    """Newton-Kantorovich for complex roots, largest norm; for any coefficients within ``spread``.
+
+    Parameters
+    ----------
+    x : (R, 2M)
+    spread : (L, M + 1)
+        How far each coefficient of ``left`` (and of ``right``) may be from its true value.
+
+    Notes
+    -----
+    The constants are those of :mod:`linkwork.numerics.proof.kantorovich`; products have constant
+    second derivatives, so ω needs no radius. A root is real if the conjugate of its box meets
+    the ball in which it is the only one, and not real if the two boxes are apart.
+    """
+    count, m = len(x), system.size
+    f, j = system.residual_and_jacobian(x)
+    a = solved(j, np.broadcast_to(np.eye(2 * m, dtype=complex), j.shape))
+    good: BoolArray = np.asarray(np.isfinite(a).all(axis=(1, 2)))
+    a = np.where(good[:, None, None], a, 0.0)
+    size = np.abs(a)
+    u, v = np.abs(_with_one(x[:, :m])), np.abs(_with_one(x[:, m:]))
+    p, q, p1, q1 = system.rows
+    weight = 8.0 * (m + 6) * _UNIT
+    slip = spread + weight * np.abs(system.left)
+    slip_right = spread + weight * np.abs(system.right)
+    products = u[:, p] * v[:, q] + u[:, p1] * v[:, q1]
+    error = np.concatenate([u @ slip.T, v @ slip_right.T, weight * products], axis=1)
+    blur = np.zeros((2 * m, 2 * m))
+    blur[: system.loops, :m] = slip[:, :m]
+    blur[system.loops : m, m:] = slip_right[:, :m]
+    y = np.abs((a @ f[:, :, None])[:, :, 0]) + _apply(size, error + weight * np.abs(f))
+    z = np.abs(np.eye(2 * m) - a @ j) + size @ (blur + weight * np.abs(j))
+    y_max, z_max = _SLACK * y.max(axis=1), _SLACK * z.sum(axis=2).max(axis=1)
+    omega = _SLACK * (size[:, :, m:] @ system._curvature).max(axis=1)
+    room = 1.0 - z_max
+    square = room**2 - 2.0 * omega * y_max * _SLACK
+    holds = good & (room > 0.0) & (square > 0.0)
+    with np.errstate(all="ignore"):
+        root = np.sqrt(square)
+        exists = np.where(holds, 2.0 * y_max / (room + root) * _SLACK, np.inf)
+        unique = np.where(holds, (room + root) / np.maximum(omega, 1e-300) / _SLACK, 0.0)
+    mirrored = np.concatenate([x[:, m:], x[:, :m]], axis=1).conj()
+    gap = np.abs(x - mirrored).max(axis=1, initial=0.0)
+    apart = True
+    for k in range(count - 1):
+        away = np.abs(x[k + 1 :] - x[k]).max(axis=1)
+        apart &= bool((away > (exists[k + 1 :] + exists[k]) * _SLACK)[holds[k + 1 :]].all())
+    return ProvedRoots(
+        holds=holds,
+        real=holds & (gap + exists < unique),
+        unreal=holds & (gap > 2.0 * exists * _SLACK),
+        apart=apart,
+    )
+
+
+def _apply(matrix: Array, vector: Array) -> Array:
+    product: Array = (matrix @ vector[:, :, None])[:, :, 0]
+    return product

@@ -1,0 +1,239 @@
+"""All dead points of a family of mechanisms: homotopies of :class:`LockingSystem`.
+
+Unknowns are the homogeneous X = ((U, 1), (V, 1), ρ), each of the three on a random patch, or
+coordinates w in which X is linear. So all equations are at most quadratic, and their coefficients
+run straight from start to goal.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import combinations, pairwise
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.numerics.homotopy.bilinear_homotopy import null_space
+from linkwork.numerics.homotopy.column_sums import Columns, columns_of, random_closures
+from linkwork.numerics.homotopy.dead_point_system import LockingSystem, Slot, most_dead_points
+from linkwork.numerics.homotopy.isolated_roots import SEED, isolated_roots
+from linkwork.numerics.homotopy.polynomial_system import Roots
+
+__all__ = ["LockingFamily", "locking_roots"]
+
+
+def _normal(rng: np.random.Generator, *shape: int) -> ComplexArray:
+    drawn: ComplexArray = rng.normal(size=shape) + 1j * rng.normal(size=shape)
+    return drawn
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Straight:
+    """σ (K0 w, ½ wᵀT0w) + (1 - σ) (K1 w, ½ wᵀT1w) = 0 on ``patches`` (3, n) w = 1.
+
+    ``linear`` (2, C, n): K0, K1. ``slopes`` (2, n, E n): T0, T1, as w -> wᵀT. X = ``basis`` w with
+    parts of w of their own for each of the three projective spaces.
+    """
+
+    goal: LockingSystem
+    basis: ComplexArray
+    parts: tuple[slice, ...]
+    patches: ComplexArray
+    linear: ComplexArray
+    slopes: ComplexArray
+
+    def points(self, w: ComplexArray) -> tuple[ComplexArray, Array]:
+        """x (B, n), and the smaller homogenising coordinate of unit vectors, (B,)."""
+        x, last = self.goal.points(w @ self.basis.T)
+        scale: Array = np.abs(last).min(axis=0)
+        return x, scale
+
+    def on_patches(self, w: ComplexArray) -> ComplexArray:
+        """w (B, n) with each part on its patch."""
+        placed = w.copy()
+        for patch, part in zip(self.patches, self.parts, strict=True):
+            placed[:, part] /= (w[:, part] @ patch[part])[:, None]
+        return placed
+
+    def evaluate(
+        self, w: ComplexArray, sigma: Array
+    ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """H, ∂H/∂w and ∂H/∂σ."""
+        count, size = w.shape
+        (k0, k1), (t0, t1) = self.linear, self.slopes
+        s0, s1 = ((w @ t).reshape(count, t.shape[1] // size, size) for t in (t0, t1))
+        f0, f1 = (
+            np.concatenate([w @ k.T, 0.5 * (s @ w[:, :, None])[:, :, 0]], axis=1)
+            for k, s in ((k0, s0), (k1, s1))
+        )
+        x = sigma[:, None]
+        y = sigma[:, None, None]
+        jacobian = np.empty((count, size, size), dtype=complex)
+        lines = len(k0)
+        jacobian[:, :lines] = y * k0 + (1.0 - y) * k1
+        jacobian[:, lines:-3] = y * s0 + (1.0 - y) * s1
+        jacobian[:, -3:] = self.patches
+        value = np.concatenate([x * f0 + (1.0 - x) * f1, w @ self.patches.T - 1.0], axis=1)
+        change = np.concatenate([f0 - f1, np.zeros((count, 3))], axis=1)
+        return value, jacobian, change
+
+
+def _patches(rng: np.random.Generator, parts: tuple[slice, ...]) -> ComplexArray:
+    patches = np.zeros((3, parts[-1].stop), dtype=complex)
+    for k, part in enumerate(parts):
+        patches[k, part] = _normal(rng, part.stop - part.start)
+    return patches
+
+
+def _as_slopes(quadratic: ComplexArray) -> ComplexArray:
+    """w -> wᵀT of symmetric T (E, n, n)."""
+    return quadratic.transpose(1, 0, 2).reshape(quadratic.shape[1], -1)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _FromProducts(_Straight):
+    """With products of linear forms for the quadratic equations, in the closures' null space.
+
+    ``forms`` (2, E, n): both factors; the first is one of (U, 1) or (V, 1), the second of (V, 1) or
+    ρ.
+    """
+
+    forms: ComplexArray
+
+    @classmethod
+    def to(cls, goal: LockingSystem, rng: np.random.Generator) -> _FromProducts:
+        """A random start."""
+        own, count = goal.own, goal.size
+        spaces = [null_space(goal.left)[0], null_space(goal.right)[0], np.eye(2 * own)]
+        ends = np.cumsum([0, *(space.shape[1] for space in spaces)]).tolist()
+        u, v, rates = parts = tuple(slice(a, b) for a, b in pairwise(ends))
+        basis = np.zeros((goal.parts[2].stop, ends[-1]), dtype=complex)
+        for space, there, here in zip(spaces, goal.parts, parts, strict=True):
+            basis[there, here] = space
+        forms = np.zeros((2, count + 2 * own, ends[-1]), dtype=complex)
+        kinds = [(u, v)] * count + [(u, rates)] * own + [(v, rates)] * own
+        for k, pair in enumerate(kinds):
+            for side, part in enumerate(pair):
+                width = part.stop - part.start
+                forms[side, k, part] = _normal(rng, width) / np.sqrt(width)
+        turn = np.exp(2j * np.pi * rng.uniform())
+        product = turn * forms[0][:, :, None] * forms[1][:, None, :]
+        start = product + product.transpose(0, 2, 1)
+        return cls(
+            goal=goal,
+            basis=basis,
+            parts=parts,
+            patches=_patches(rng, parts),
+            linear=np.zeros((2, 0, ends[-1]), dtype=complex),
+            slopes=np.stack([_as_slopes(t) for t in (start, basis.T @ goal.quadratic @ basis)]),
+            forms=forms,
+        )
+
+    def starts(self) -> ComplexArray:
+        """2 own C(2L + 1, L): one row of the rates vanishes at U or V, the others at ρ."""
+        goal, (a, b) = self.goal, self.forms
+        u, v, rates = self.parts
+        count, loops, own = goal.size, goal.loops, goal.own
+
+        def point(part: slice, forms: ComplexArray) -> ComplexArray:
+            return null_space(forms[:, part])[0][:, 0]
+
+        found = []
+        for row in range(2 * own):
+            others = [count + k for k in range(2 * own) if k != row]
+            direction, mine = point(rates, b[others]), [count + row]
+            on_u = row < own
+            for some in combinations(range(count), loops if on_u else loops + 1):
+                rest = [k for k in range(count) if k not in some]
+                w = np.zeros(rates.stop, dtype=complex)
+                w[u] = point(u, a[[*some, *mine]] if on_u else a[list(some)])
+                w[v] = point(v, b[rest] if on_u else np.concatenate([b[rest], a[mine]]))
+                w[rates] = direction
+                found.append(w)
+        return self.on_patches(np.array(found))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _FromRelative(_Straight):
+    """From another member of the family; the closures move, so w = X."""
+
+    @classmethod
+    def between(
+        cls, start: LockingSystem, goal: LockingSystem, rng: np.random.Generator
+    ) -> _FromRelative:
+        """With coefficients that run straight from one to the other."""
+        return cls(
+            goal=goal,
+            basis=np.eye(goal.parts[2].stop, dtype=complex),
+            parts=goal.parts,
+            patches=_patches(rng, goal.parts),
+            linear=np.stack([start.linear, goal.linear]),
+            slopes=np.stack([_as_slopes(system.quadratic) for system in (start, goal)]),
+        )
+
+    def starts(self, x: ComplexArray) -> ComplexArray:
+        """Solutions x (B, n) of the other member on the patches."""
+        return self.on_patches(self.goal.whole(x))
+
+
+@dataclass(frozen=True)
+class LockingFamily:
+    """Systems with the same products and rates and the same sums within columns."""
+
+    rows: tuple[tuple[int, ...], ...]
+    columns: Columns
+    own: int
+    slots: tuple[Slot, ...]
+
+    @classmethod
+    def of(cls, system: LockingSystem) -> LockingFamily:
+        """The family of a system."""
+        return cls(
+            rows=tuple(map(tuple, system.rows.tolist())),
+            columns=columns_of(system.left),
+            own=system.own,
+            slots=system.slots,
+        )
+
+    def complete(self, found: int) -> bool:
+        """Whether so many solutions of a member are all, by Bézout's theorem."""
+        return found == most_dead_points(self.own, len(self.rows[0]))
+
+    def random(self, rng: np.random.Generator) -> LockingSystem:
+        """A member with random complex free coefficients."""
+        left, right = (random_closures(self.columns, rng) for _ in range(2))
+        return LockingSystem(
+            left=left, right=right, rows=np.array(self.rows), own=self.own, slots=self.slots
+        )
+
+    def generator(self, purpose: int) -> np.random.Generator:
+        """Random numbers of the family's own, the same in every run and in any order of calls."""
+        flat = [self.own, *(k for row in self.rows for k in row)]
+        flat += [w + 1 for column in self.columns for entry in column for w in (*entry, 2)]
+        flat += [abs(round(w)) for slot in self.slots for w in slot]
+        return np.random.default_rng([SEED, 1, purpose, *flat])
+
+    def from_products(self, goal: LockingSystem, rng: np.random.Generator) -> _FromProducts:
+        """2 own C(2L + 1, L) paths to all isolated solutions of a member."""
+        return _FromProducts.to(goal, rng)
+
+    def between(
+        self,
+        start: LockingSystem,
+        goal: LockingSystem,
+        rng: np.random.Generator,
+        *,
+        nearest: bool = False,
+    ) -> _FromRelative:
+        """Paths from member to member; phases of closures change the path but no solution."""
+        turns = np.exp(2j * np.pi * rng.uniform(size=2))
+        if nearest:
+            pairs = ((start.left, goal.left), (start.right, goal.right))
+            turns = np.array([np.exp(1j * np.angle(np.vdot(a, b))) for a, b in pairs])
+        turned = replace(start, left=turns[0] * start.left, right=turns[1] * start.right)
+        return _FromRelative.between(turned, goal, rng)
+
+
+def locking_roots(system: LockingSystem) -> Roots:
+    """All isolated dead points, complex ones among them."""
+    return isolated_roots(system, LockingFamily.of(system))

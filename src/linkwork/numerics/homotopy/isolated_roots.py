@@ -1,0 +1,342 @@
+"""All isolated solutions of a system, from the stored solutions of a random one of its family.
+
+Almost every member of a linear family has the same number of isolated solutions, and a straight
+path from a random complex member to any other one leads to all isolated solutions of the latter
+(Morgan & Sommese 1989, Appl. Math. Comput. 29, 123; Sommese & Wampler 2005, ch. 7). The random
+member is solved once per process from products of linear forms, and its set of solutions is
+completed until closed paths of systems lead to no new one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable
+from dataclasses import dataclass, replace
+from typing import Any, Generic, Protocol, TypeVar
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.numerics.homotopy.path_tracking import (
+    ARRIVED,
+    BOLD,
+    CAREFUL,
+    LOST,
+    SINGULAR,
+    Homotopy,
+    Paths,
+    TrackOptions,
+    track,
+)
+from linkwork.numerics.homotopy.polynomial_system import PolynomialSystem, Roots, polished
+
+__all__ = [
+    "SEED",
+    "Family",
+    "HomotopyFromProducts",
+    "HomotopyFromRelative",
+    "isolated_roots",
+    "nearest_solution",
+]
+
+#: All random numbers follow from this one, so that every run gives the same answer.
+SEED = 20_210_501
+
+_SAME = 1e-6  # two solutions are the same one
+_FINITE = 1e-8  # smallest homogenising coordinate, of vectors of length 1, of a finite solution
+_FADING = 0.5  # a singular path whose homogenising coordinate shrinks so much runs to infinity
+_FINITE_MULTIPLE = 1e-5  # the smallest one of a finite multiple solution, which is known roughly
+_ATTEMPTS = 5
+_FEW = 8  # paths that seldom meet, so that following them twice costs less than care
+_LOOPS = 2  # closed paths without a new solution after which a set counts as complete
+_STEPS_TO_MULTIPLE = 30  # of Gauss-Newton; each halves the distance to a double solution
+_TRIES = 30  # closed paths at most
+
+S = TypeVar("S", bound=PolynomialSystem)
+
+
+class _ToSystem(Homotopy, Protocol):
+    def points(self, w: ComplexArray) -> tuple[ComplexArray, Array]:
+        """The system's unknowns, (B, n), and how far from infinity, from 0 to 1, (B,)."""
+
+
+class HomotopyFromProducts(_ToSystem, Protocol):
+    """From products of linear forms to a system."""
+
+    def starts(self) -> ComplexArray:
+        """All solutions at σ = 1."""
+
+
+class HomotopyFromRelative(_ToSystem, Protocol):
+    """From one member of a family to another."""
+
+    def starts(self, x: ComplexArray) -> ComplexArray:
+        """Solutions x (B, n) of the first member as points at σ = 1."""
+
+
+class Family(Hashable, Protocol[S]):
+    """Systems that differ in free coefficients only."""
+
+    def complete(self, found: int) -> bool:
+        """Whether so many solutions of a member are all, by a theorem."""
+
+    def random(self, rng: np.random.Generator) -> S:
+        """A member with random complex free coefficients."""
+
+    def generator(self, purpose: int) -> np.random.Generator:
+        """Random numbers of the family's own, the same in every run and in any order of calls."""
+
+    def from_products(self, goal: S, rng: np.random.Generator) -> HomotopyFromProducts:
+        """Paths to all isolated solutions of a member."""
+
+    def between(
+        self, start: S, goal: S, rng: np.random.Generator, *, nearest: bool = False
+    ) -> HomotopyFromRelative:
+        """Paths from member to member: random ones, or those with the ``nearest`` start."""
+
+
+@dataclass(frozen=True)
+class _Goal:
+    """The end of a homotopy as a system in the coordinates of its patches."""
+
+    homotopy: Homotopy
+
+    def residual_and_jacobian(self, x: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """H and ∂H/∂w at σ = 0."""
+        value, jacobian, _ = self.homotopy.evaluate(x, np.zeros(len(x)))
+        return value, jacobian
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Ends:
+    """Where paths ended: finite regular, infinite, singular, failed."""
+
+    x: ComplexArray
+    regular: BoolArray
+    infinite: BoolArray
+    singular: BoolArray
+    failed: BoolArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Generic(Generic[S]):
+    """A random member of a family with its solutions; ``sure`` that these are all."""
+
+    system: S
+    x: ComplexArray
+    sure: bool = False
+
+
+_KNOWN: dict[Family[Any], _Generic[Any]] = {}
+
+
+def isolated_roots(system: S, family: Family[S]) -> Roots:
+    """All isolated solutions of a member of a family.
+
+    Paths that were lost, or that met, are followed again with more care and along other systems.
+    Where fewer solutions are found than random systems of the family have, a second set of paths
+    has to confirm it.
+    """
+    generic = _generic(family)
+    rng = family.generator(1)
+    expected = len(generic.x)
+    best: _Ends | None = None
+    for attempt in range(_ATTEMPTS):
+        care = CAREFUL if attempt else BOLD if expected <= _FEW else TrackOptions()
+        ends = _followed(family, generic, system, rng, care, nearest=not attempt)
+        if best is None or _quality(ends) >= _quality(best):
+            agreed = best is not None and _agree(ends, best)
+            best = ends
+            if ends.regular.all() or (agreed and not ends.failed.any()):
+                break
+    assert best is not None
+    return _roots(system, best, generic)
+
+
+def _quality(ends: _Ends) -> tuple[int, int]:
+    return (-int(ends.failed.sum()), int(ends.regular.sum()))
+
+
+def _agree(a: _Ends, b: _Ends) -> bool:
+    """Whether two sets of paths found the same regular solutions."""
+    x, y = a.x[a.regular], b.x[b.regular]
+    return len(x) == len(y) == len(_distinct(np.concatenate([x, y])))
+
+
+def _generic(family: Family[S]) -> _Generic[S]:
+    """The stored random member; solved when it is first wanted."""
+    if family not in _KNOWN:
+        rng = family.generator(0)
+        system = family.random(rng)
+        x = np.zeros((0, 0), dtype=complex)
+        clean = 0
+        for attempt in range(_ATTEMPTS):
+            start = family.from_products(system, rng)
+            ends = _read(system, start, track(start, start.starts(), CAREFUL))
+            found = ends.x[ends.regular]
+            x = _distinct(np.concatenate([x, found])) if attempt else _distinct(found)
+            clean += not (ends.failed | ends.singular | _meeting(ends)).any()
+            if (clean and len(x)) or clean == _LOOPS:
+                break
+        # closed paths say nothing where nothing is: all paths have to run to infinity twice
+        nothing = not len(x) and clean == _LOOPS
+        _KNOWN[family] = _closed(family, _Generic(system=system, x=x, sure=nothing), rng)
+    return _KNOWN[family]
+
+
+def _closed(family: Family[S], known: _Generic[S], rng: np.random.Generator) -> _Generic[S]:
+    """Solutions added until closed paths of systems lead to no new ones."""
+    quiet = tries = 0
+    while quiet < _LOOPS and tries < _TRIES and len(known.x) and not family.complete(len(known.x)):
+        away = family.random(rng)
+        there = _followed(family, known, away, rng, CAREFUL)
+        back = _Generic(system=away, x=_distinct(there.x[there.regular]))
+        ends = _followed(family, back, known.system, rng, CAREFUL)
+        x = _distinct(np.concatenate([known.x, ends.x[ends.regular]]))
+        whole = len(x) == len(known.x) and there.regular.all() and ends.regular.all()
+        quiet = quiet + 1 if whole else 0
+        tries += 1
+        known = _Generic(system=known.system, x=x)
+    sure = known.sure or quiet == _LOOPS or family.complete(len(known.x))
+    return replace(known, sure=sure)
+
+
+def _followed(
+    family: Family[S],
+    generic: _Generic[S],
+    goal: S,
+    rng: np.random.Generator,
+    options: TrackOptions,
+    *,
+    nearest: bool = False,
+) -> _Ends:
+    """Paths from all solutions of one system; those that were lost or met once more, with care."""
+    homotopy = family.between(generic.system, goal, rng, nearest=nearest)
+    start = homotopy.starts(generic.x)
+    paths = track(homotopy, start, options)
+    ends = _read(goal, homotopy, paths)
+    again = ends.failed | _meeting(ends)
+    if again.any() and options is not CAREFUL:
+        once_more = track(homotopy, start[again], CAREFUL)
+        w, near, state = paths.w.copy(), paths.near.copy(), paths.state.copy()
+        w[again], near[again], state[again] = once_more.w, once_more.near, once_more.state
+        joined = Paths(w=w, near=near, state=state, steps=paths.steps + once_more.steps)
+        ends = _read(goal, homotopy, joined)
+        again = ends.failed | _meeting(ends)
+    if not again.any():
+        return ends
+    return _Ends(
+        x=ends.x,
+        regular=ends.regular & ~again,
+        infinite=ends.infinite & ~again,
+        singular=ends.singular & ~again,
+        failed=again,
+    )
+
+
+def _read(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) -> _Ends:
+    """Ends of paths in the system's unknowns, sorted by what they are."""
+    (x, scale), (_, before) = homotopy.points(paths.w), homotopy.points(paths.near)
+    singular = paths.state == SINGULAR
+    infinite = (paths.state == ARRIVED) & (scale < _FINITE)
+    infinite |= singular & (scale < _FADING * before)
+    finite = (paths.state == ARRIVED) & ~infinite
+    regular = np.zeros(len(x), dtype=bool)
+    if finite.any():
+        with np.errstate(all="ignore"):
+            better, steps = polished(system, x[finite])
+        moved = np.abs(better - x[finite]).max(axis=1) < 1e-3 * (1 + np.abs(better).max(axis=1))
+        regular[finite] = (steps > 0) & (steps <= 6) & moved
+        x[np.flatnonzero(finite)[regular[finite]]] = better[regular[finite]]
+    for k in np.flatnonzero(finite & ~regular):
+        infinite[k] = _multiple_at_infinity(homotopy, paths.w[k], float(scale[k]))
+    finite &= ~infinite
+    return _Ends(
+        x=x,
+        regular=regular,
+        infinite=infinite,
+        singular=(singular & ~infinite) | (finite & ~regular),
+        failed=paths.state == LOST,
+    )
+
+
+def _multiple_at_infinity(homotopy: _ToSystem, w: ComplexArray, scale: float) -> bool:
+    """Whether a path that jumped to a multiple solution w (n,) ended at infinity.
+
+    Such an end is off by a root of the rounding, so a homogenising coordinate that ought to vanish
+    does not. In the coordinates of the patches the solution is finite and can be sharpened.
+    """
+    end = nearest_solution(_Goal(homotopy), w, _STEPS_TO_MULTIPLE)
+    _, sharp = homotopy.points(end[None])
+    return bool(sharp[0] < max(_FINITE_MULTIPLE, _FADING * scale))
+
+
+def _meeting(ends: _Ends) -> BoolArray:
+    """Paths that ended at the same regular solution: one of them has jumped."""
+    met = np.zeros(len(ends.x), dtype=bool)
+    place = np.flatnonzero(ends.regular)
+    met[place] = _near_another(ends.x[place])
+    return met
+
+
+def _near_another(x: ComplexArray) -> BoolArray:
+    """Which rows have an equal one among the others."""
+    if len(x) < 2:
+        return np.zeros(len(x), dtype=bool)
+    size = 1.0 + np.abs(x).max(axis=1)
+    gap = np.abs(x[:, None, :] - x[None, :, :]).max(axis=2)
+    close = gap < _SAME * np.minimum(size[:, None], size[None, :])
+    np.fill_diagonal(close, False)
+    near: BoolArray = close.any(axis=1)
+    return near
+
+
+def _distinct(x: ComplexArray, same: float = _SAME) -> ComplexArray:
+    """The rows without repetitions, first ones kept."""
+    kept: list[int] = []
+    for k in range(len(x)):
+        size = 1.0 + np.abs(x[k]).max()
+        if not kept or np.abs(x[kept] - x[k]).max(axis=1).min() >= same * size:
+            kept.append(k)
+    return x[kept]
+
+
+def _roots(system: S, ends: _Ends, generic: _Generic[S]) -> Roots:
+    multiple = _distinct(ends.x[ends.singular], 1e-2)
+    curved = np.array([_on_a_curve(system, x) for x in multiple], dtype=bool)
+    return Roots(
+        x=ends.x[ends.regular],
+        multiple=multiple[~curved],
+        paths=len(generic.x),
+        at_infinity=int(ends.infinite.sum()),
+        singular=int(ends.singular.sum()),
+        failed=int(ends.failed.sum()),
+        expected=len(generic.x),
+        sure=generic.sure,
+        continuum=bool(curved.any()),
+        curves=multiple[curved],
+    )
+
+
+def _on_a_curve(system: PolynomialSystem, x: ComplexArray) -> bool:
+    """Whether a singular solution can move: a step along the null direction leads to others."""
+    reach = 1e-2
+    with np.errstate(all="ignore"):
+        x = nearest_solution(system, x, 30)
+        _, jacobian = system.residual_and_jacobian(x[None])
+        _, _, rows = np.linalg.svd(jacobian[0])
+        size = 1.0 + float(np.abs(x).max())
+        away = nearest_solution(system, x + reach * size * rows[-1].conj(), 8)
+        f, _ = system.residual_and_jacobian(away[None])
+    moved = float(np.abs(away - x).max()) / size
+    return bool(np.abs(f).max() < 1e-11 * size * size and moved > 0.1 * reach)
+
+
+def nearest_solution(system: PolynomialSystem, x: ComplexArray, steps: int) -> ComplexArray:
+    """Gauss-Newton with the shortest corrections."""
+    for _ in range(steps):
+        f, jacobian = system.residual_and_jacobian(x[None])
+        if not math.isfinite(float(np.abs(f).max())):
+            break
+        x = x - np.linalg.lstsq(jacobian[0], f[0], rcond=1e-7)[0]
+    return x

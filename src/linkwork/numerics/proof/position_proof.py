@@ -1,0 +1,219 @@
+"""Proofs for a decomposed system: positions block by block, and that steps stay on one branch.
+
+A block is proved for every value that the blocks before it may have, so errors are carried from
+block to block. The step from one position to the next is proved by a ball around the first that
+contains exactly one solution for *every* input in between, and contains the second.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.numerics.block_solver import Block, BlockSolver, Linearised
+from linkwork.numerics.proof.kantorovich import Expansion, Majorant, Radii, expansion, radii
+
+__all__ = [
+    "Proof",
+    "Reach",
+    "expansions",
+    "links_hold",
+    "prove",
+    "prove_block",
+    "reach",
+    "rounding_of_inputs",
+]
+
+_UNIT = np.finfo(float).eps / 2
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Proof:
+    """What is proved at B positions with K blocks.
+
+    ``holds`` (B,): all blocks proved. ``exists``, ``unique`` (B, K): radii per block, weighted.
+    ``each`` (B, N): how far every variable may be from its value, in its own unit; for the inputs
+    what was given.
+    """
+
+    holds: BoolArray
+    exists: Array
+    unique: Array
+    each: Array
+
+    @property
+    def radius(self) -> Array:
+        """Within this a true position lies, (B,), weighted."""
+        radius: Array = self.exists.max(axis=1, initial=0.0)
+        return radius
+
+    @property
+    def alone_within(self) -> Array:
+        """Within this there is no other, (B,), weighted."""
+        alone: Array = self.unique.min(axis=1, initial=np.inf)
+        return alone
+
+
+def rounding_of_inputs(v: Array, unknowns: int) -> Array:
+    """How far an input may be from the value it stands for, (B, p): conversion of units."""
+    spread: Array = 2.0 * _UNIT * np.abs(v[:, unknowns:])
+    return spread
+
+
+def expansions(
+    solver: BlockSolver,
+    v: Array,
+    linear: Sequence[Linearised] | None = None,
+    *,
+    exact: bool = False,
+) -> list[Expansion | None]:
+    """What proofs take from positions v (B, N), block by block.
+
+    ``exact``: see :func:`~linkwork.numerics.proof.kantorovich.expansion`. ``None`` for a block
+    without a curvature bound (function rows).
+    """
+    parts = solver.linearise(v) if linear is None else linear
+    found: list[Expansion | None] = []
+    with np.errstate(all="ignore"):
+        for block, part in zip(solver.blocks, parts, strict=True):
+            here = v[:, block.variables]
+            bounded = block.system.bends_boundedly
+            found.append(
+                expansion(block.system, here, part.jacobian, part.inverse, exact=exact)
+                if bounded
+                else None
+            )
+    return found
+
+
+def prove(
+    solver: BlockSolver,
+    v: Array,
+    spread: Array,
+    places: Sequence[Expansion | None] | None = None,
+) -> Proof:
+    """Prove positions for all inputs within ``spread`` of those in v.
+
+    Parameters
+    ----------
+    v : (B, N)
+    spread : (B, p)
+        In each input's own unit.
+    places : list of Expansion, optional
+        ``expansions(solver, v)``, if they are there already.
+
+    Notes
+    -----
+    A block without a curvature bound (function rows) proves nothing: ``holds`` is false.
+    """
+    count = len(v)
+    each = np.zeros((count, solver.variables))
+    each[:, solver.unknowns :] = spread
+    holds = np.ones(count, dtype=bool)
+    exists = np.full((count, len(solver.blocks)), np.inf)
+    unique = np.zeros((count, len(solver.blocks)))
+    places = expansions(solver, v) if places is None else places
+    for k, (block, place) in enumerate(zip(solver.blocks, places, strict=True)):
+        if place is None:
+            holds[:] = False
+            continue
+        found = _position(block, place, each)
+        holds &= found.holds
+        exists[:, k], unique[:, k] = found.exists, found.unique
+        each[:, block.unknowns] = found.each
+    return Proof(holds=holds, exists=exists, unique=unique, each=each)
+
+
+def prove_block(block: Block, part: Linearised, v: Array, each: Array) -> Radii:
+    """Prove one block at v (B, N) for all values of what it takes as known within ``each`` (B, N).
+
+    Parameters
+    ----------
+    part : Linearised
+        The block at v. Its system has to have a curvature bound.
+    """
+    with np.errstate(all="ignore"):
+        place = expansion(block.system, v[:, block.variables], part.jacobian, part.inverse)
+    return _position(block, place, each)
+
+
+def _position(block: Block, place: Expansion, each: Array) -> Radii:
+    """In the block's own weights; where they do not suffice, in fitted ones."""
+    found = _radii(block, place, each)
+    open_ = np.flatnonzero(~found.holds)
+    if not len(open_):
+        return found
+    fitted = _radii(block, place.take(open_), each[open_], fitted=True)
+    weights = block.system.variable_scale[: len(block.unknowns)]
+    found.holds[open_], found.each[open_] = fitted.holds, fitted.each
+    found.alone[open_] = fitted.alone
+    found.exists[open_] = (fitted.each / weights).max(axis=1)
+    found.unique[open_] = (fitted.alone / weights).min(axis=1)
+    return found
+
+
+def _radii(block: Block, place: Expansion, each: Array, fitted: bool = False) -> Radii:
+    """In the block's own weights or in fitted ones."""
+    n = len(block.unknowns)
+    weights = block.system.variable_scale[:n]
+    with np.errstate(all="ignore"):
+        majorant = Majorant(place, each[:, block.variables[n:]])
+        if fitted:
+            weights = majorant.fitted(weights)
+        return radii(majorant.bounds(weights), weights)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Reach:
+    """Boxes around B positions with one solution for all inputs of a step.
+
+    ``holds`` (B,): proved for all blocks. ``each`` (B, n): how far the solution may be from the
+    position, unknown by unknown. ``alone`` (B, n): how far all others are, in one unknown at least.
+    """
+
+    holds: BoolArray
+    each: Array
+    alone: Array
+
+
+def reach(
+    solver: BlockSolver, v: Array, spread: Array, places: Sequence[Expansion | None] | None = None
+) -> Reach:
+    """How far around positions v (B, N) there is one solution for all inputs within ``spread``.
+
+    As :func:`prove`, in weights fitted to each step.
+    """
+    count = len(v)
+    each = np.zeros((count, solver.variables))
+    each[:, solver.unknowns :] = spread
+    holds = np.ones(count, dtype=bool)
+    alone = np.zeros((count, solver.unknowns))
+    places = expansions(solver, v) if places is None else places
+    for block, place in zip(solver.blocks, places, strict=True):
+        if place is None:
+            holds[:] = False
+            continue
+        found = _radii(block, place, each, fitted=True)
+        holds &= found.holds
+        each[:, block.unknowns], alone[:, block.unknowns] = found.each, found.alone
+    return Reach(holds=holds, each=each[:, : solver.unknowns], alone=alone)
+
+
+def links_hold(v: Array, following: Array, reached: Reach, near: Array) -> BoolArray:
+    """Whether each step from v to ``following`` is proved to stay on its branch, (B,).
+
+    Parameters
+    ----------
+    v, following : (B, N)
+    reached : Reach
+        Of ``v`` for all inputs up to those of ``following``.
+    near : (B, N)
+        How far the true positions at both ends may be from ``v`` and ``following``.
+    """
+    n = reached.alone.shape[1]
+    inside = np.abs(following - v)[:, :n] + near[:, :n] < reached.alone
+    held: BoolArray = reached.holds & inside.all(axis=1)
+    return held

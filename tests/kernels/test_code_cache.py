@@ -1,0 +1,171 @@
+"""Programs written out as functions do what the machine does, and are kept on disk."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.foundation.aligned import aligned
+from linkwork.foundation.arrays import Array
+from linkwork.kernels.march import sweep_kernel
+from linkwork.kernels.march.sweep_kernel import LaneKernel, Steps
+from linkwork.kernels.program import execution
+from linkwork.kernels.program.code_cache import is_written, written
+from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.program.interpreter import LANES, run
+from linkwork.kernels.program.printing import trial_source
+from linkwork.kernels.program.program import SOURCES, Op
+from linkwork.motion.by_kernels import block_parts
+
+PLACES = 5
+
+
+@pytest.fixture(autouse=True)
+def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setenv("LINKWORK_CACHE", str(tmp_path / "kernels"))
+    before = set(sys.modules)
+    yield
+    for name in set(sys.modules) - before:
+        if name.startswith("linkwork_kernel"):
+            del sys.modules[name]
+
+
+def every_operation(rng: np.random.Generator, height: int) -> np.ndarray:
+    """A program of every instruction with registers by chance, the targets in place 0."""
+    code = []
+    for op in [op for op in Op if op not in (Op.COS, Op.INPUT, Op.CONSTANT)] * 3:
+        target, beside = rng.choice(height, 2, replace=False)
+        sources = rng.integers(0, PLACES * height + 6, 3)
+        if op is Op.SIN:
+            sources[2] = beside
+        sources[SOURCES[op] :] = beside if op is Op.SIN else target
+        code.append([op, target, *sources])
+    return np.array(code, dtype=np.uint32)
+
+
+def test_every_instruction_written_out_is_that_of_the_machine() -> None:
+    rng = np.random.default_rng(7)
+    height = 6
+    for _ in range(3):
+        code = every_operation(rng, height)
+        space = rng.choice([0.0, 1.0, -2.0, 0.3, 5.5, np.nan], (PLACES * height + 6, LANES))
+        constants = dict(enumerate([0.25, -np.inf, np.inf, np.nan], PLACES * height + 2))
+        for register, value in constants.items():
+            space[register] = value
+        other = space.copy()
+        run(code, space)
+        source = trial_source([code[:20], code[20:]], height, set(range(height)), constants)
+        number = ctypes.POINTER(ctypes.c_double)
+        places = [other[k * height :].ctypes.data_as(number) for k in range(PLACES + 1)]
+        written(source, "trial").ctypes(*places, LANES)
+        np.testing.assert_allclose(other, space, rtol=1e-12, atol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("name", "dimension", "value", "certify"),
+    [
+        ("four-bar", "O2 A", 40.0, True),
+        ("four-bar", "A B", 60.0, False),  # with dead points
+        ("coupled-six-link", "a2", 100.0, False),
+    ],
+)
+def test_families_are_the_same_with_compiled_equations(
+    name: str, dimension: str, value: float, certify: bool, tmp_path: Path
+) -> None:
+    family = lw.example(name).family({dimension: np.linspace(0.98, 1.03, 70) * value})
+    usual = family.sweep(certify=certify, specialised=False)
+    assert not (tmp_path / "kernels").exists()
+    special = family.sweep(certify=certify, specialised=True)
+    assert len(list((tmp_path / "kernels").glob("*.py"))) == 1
+    assert usual.found.any()
+    assert (special.status == usual.status).all()
+    assert (special.certified == usual.certified).all()
+    away = np.abs(special.rows.v - usual.rows.v)
+    assert np.nanmax(away) <= 1e-11 * np.nanmax(np.abs(usual.rows.v))
+
+
+def kernel() -> LaneKernel:
+    model = lw.example("crank-slider").model
+    return LaneKernel(model.compiled.table, block_parts(model), frozenset(), False)
+
+
+def test_many_positions_are_worth_a_compilation(monkeypatch: pytest.MonkeyPatch) -> None:
+    few, many = kernel(), kernel()
+    few.shift(Gear(positions=99_999_999))
+    assert few.trial == 0
+    many.shift(Gear(positions=100_000_000))
+    assert many.trial != 0
+    again = kernel()
+    again.shift(Gear(positions=999_999))
+    assert again.trial == 0
+    again.shift(Gear(positions=1_000_000))  # what the run before has compiled
+    assert again.trial == many.trial
+    again.shift(Gear(specialised=False, positions=1 << 40))  # and no more
+    assert again.trial == 0
+    monkeypatch.setattr(execution, "_LONGEST", 10)
+    long = kernel()
+    long.shift(Gear(positions=1 << 40))
+    assert long.trial == 0
+
+
+def test_a_changed_file_is_written_anew(tmp_path: Path) -> None:
+    source = trial_source([np.array([[Op.NEG, 0, 1, 0, 0]], np.uint32)], 2, {0}, {})
+    assert not is_written(source)
+    written(source, "trial")
+    (file,) = (tmp_path / "kernels").glob("*.py")
+    assert file.read_text() == source
+    assert is_written(source)
+    del sys.modules[file.stem]
+    file.write_text("raise SystemExit('somebody else')")
+    written(source, "trial")
+    assert file.read_text() == source
+    assert not list((tmp_path / "kernels").glob("*.part"))
+
+
+def test_threads_that_want_the_same_module_wait_until_it_is_whole() -> None:
+    source = "import time\n\ntime.sleep(0.2)\n\n\ndef trial():\n    return 7\n"
+    with ThreadPoolExecutor(4) as pool:
+        functions = list(pool.map(lambda _: written(source, "trial"), range(4)))
+    assert [function() for function in functions] == [7] * 4
+    assert len(set(functions)) == 1
+
+
+def test_threads_share_a_kernel_and_its_workspaces(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another thread asks for a workspace of other steps while one is being made."""
+    shared, mine, other = kernel(), Steps(tolerance=1e-3), Steps(tolerance=1e-4)
+    tolerance = shared.registers.named["tolerance"]
+    others = []
+
+    def meanwhile(*size: int) -> Array:
+        monkeypatch.setattr(sweep_kernel, "aligned", aligned)
+        others.append(shared._space(other))
+        return aligned(*size)
+
+    monkeypatch.setattr(sweep_kernel, "aligned", meanwhile)
+    assert shared._space(mine)[tolerance, 0] == 1e-3
+    assert others[0][tolerance, 0] == 1e-4
+
+
+def test_without_a_folder_to_write_to_the_machine_serves(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    taken = tmp_path / "taken"
+    taken.write_text("")
+    monkeypatch.setenv("LINKWORK_CACHE", str(taken))
+    with pytest.raises(lw.InputError) as told:
+        kernel().shift(Gear(specialised=True))
+    assert str(told.value) == (
+        f"compiled code cannot be kept in {taken} ({os.strerror(17)}): "
+        "name another folder in LINKWORK_CACHE, or ask for specialised=False"
+    )
+    mine = kernel()
+    mine.shift(Gear(positions=1 << 40))
+    assert mine.trial == 0
