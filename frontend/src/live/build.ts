@@ -80,9 +80,9 @@ export class Build {
   constructor(private readonly desk: Desk) {
     this.input = this.group("Input", true);
     this.palette = this.group("Add", true);
-    const label = html("label", { class: "lw-toggle", title: "What stands between several changes need not be a mechanism" });
+    const label = html("label", { class: "lw-toggle", title: "The states between queued changes need not be valid mechanisms" });
     this.collect = html("input", { type: "checkbox" }, label);
-    label.append("Collect changes, then make them as one");
+    label.append("Queue changes and apply them together");
     this.waiting = html("div", { class: "lw-waiting" });
     this.palette.append(label, this.waiting);
     this.collect.addEventListener("change", () => this.pending());
@@ -143,14 +143,14 @@ export class Build {
     if (!this.collected.length) return;
     const list = html("ol", {}, this.waiting);
     for (const edit of this.collected) html("li", {}, list, described(edit));
-    const apply = html("button", { type: "button", class: "lw-wanted lw-save" }, this.waiting, `Make ${this.collected.length} as one`);
+    const apply = html("button", { type: "button", class: "lw-wanted lw-save" }, this.waiting, `Apply ${this.collected.length} change${this.collected.length > 1 ? "s" : ""}`);
     apply.addEventListener("click", () => {
       this.desk.ask({ kind: "together", edits: this.collected });
       this.collected = [];
       this.pending();
       this.pieces(this.desk.file());
     });
-    const drop = html("button", { type: "button" }, this.waiting, "Forget them");
+    const drop = html("button", { type: "button" }, this.waiting, "Discard");
     drop.addEventListener("click", () => {
       this.collected = [];
       this.pending();

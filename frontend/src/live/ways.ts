@@ -14,7 +14,7 @@ export class Ways {
 
   constructor(private readonly desk: Desk) {
     html("p", { class: "lw-lead" }, this.element, "The same links, put together in every possible way at the position shown. Choose one to move it.");
-    const find = html("button", { type: "button" }, this.element, "Find again here");
+    const find = html("button", { type: "button" }, this.element, "List again at this position");
     find.addEventListener("click", () => this.find());
     this.state = html("p", { class: "lw-summary", role: "status" }, this.element);
     this.list = html("div", { class: "lw-way-list" }, this.element);

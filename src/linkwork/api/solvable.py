@@ -137,7 +137,9 @@ class SolvableMechanism:
         """
         if configuration is not None:
             if from_guess or with_steps:
-                raise InputError("a configuration has no steps from the guess: ask for one of both")
+                raise InputError(
+                    "a configuration has no steps from the guess: leave one of the two out"
+                )
             return motion.solve_configuration(self.model, at, configuration, throw=throw)
         return motion.solve(
             self.model,

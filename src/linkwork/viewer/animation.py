@@ -74,7 +74,7 @@ def check_animation(path: str | Path, options: FilmOptions | None = None) -> str
         raise InputError(f'cannot animate "{path}": its suffix must be one of {known}')
     if not 0 < chosen.fps <= 240:
         raise InputError(
-            f"a film has more than 0 and at most 240 pictures a second: {chosen.fps:g}"
+            f"a film needs more than 0 and at most 240 frames per second, got {chosen.fps:g}"
         )
     if chosen.rows is not None and chosen.rows < 2:
         raise InputError(f"a film needs at least 2 rows, not {chosen.rows}")

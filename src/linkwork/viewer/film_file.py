@@ -43,7 +43,7 @@ def check_film(kind: str, fps: float) -> None:
         _ffmpeg()
         return
     if kind == "gif" and fps > _FASTEST_GIF:
-        raise InputError(f"a GIF shows at most {_FASTEST_GIF} pictures a second, not {fps:g}")
+        raise InputError(f"a GIF plays at most {_FASTEST_GIF} frames per second, not {fps:g}")
     _pillow()
 
 

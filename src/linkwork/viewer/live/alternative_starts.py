@@ -44,7 +44,7 @@ def sketch_at(mechanism: Solvable, at: Mapping[str, float]) -> tuple[MovePoint, 
     """
     description = mechanism.description
     if not isinstance(description, Linkage):
-        raise InputError("only the points of a sketch can be put elsewhere")
+        raise InputError("only the points of a sketch can be moved")
     still = description.links[GROUND]
     return tuple(
         MovePoint(point=name, x=x, y=y)

@@ -124,7 +124,9 @@ class MechanismFile:
                 continue
             except OSError as error:
                 raise InputError(f'"{beside}" cannot be written: {error.strerror}') from None
-        raise InputError(f'"{beside}" and all before it exist already: remove some of them')
+        raise InputError(
+            f'"{beside}" and all earlier names exist already: remove some of these files'
+        )
 
     def _stamp_now(self) -> tuple[int, int, int] | None:
         try:

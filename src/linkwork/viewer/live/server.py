@@ -211,7 +211,7 @@ def _listening(port: int) -> socket.socket:
         found.close()
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(
-            f"port {port} cannot be used: {reason}; leave --port out to take one that is free"
+            f"port {port} cannot be used: {reason}; leave out --port to use a free port"
         ) from None
     return found
 

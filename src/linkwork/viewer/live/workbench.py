@@ -198,13 +198,13 @@ class Workbench:
     @_handle.register
     def _(self, request: ask.Undo) -> Events:
         if self._history.undone() is None:
-            raise InputError("there is nothing to take back")
+            raise InputError("there is nothing to undo")
         return self._went()
 
     @_handle.register
     def _(self, request: ask.Redo) -> Events:
         if self._history.redone() is None:
-            raise InputError("there is nothing to do again")
+            raise InputError("there is nothing to redo")
         return self._went()
 
     @_handle.register
