@@ -47,7 +47,7 @@ def test_animate_goes_on_through_dead_points_where_the_range_is_not_reached(
         (("x.avi",), 'cannot animate "x.avi": its suffix must be one of .html, .gif, .mp4'),
         (
             ("x.gif", "--all"),
-            "--all needs a page, since a film shows one circuit: use the suffix .html",
+            "--all needs a page: use the suffix .html",
         ),
         (("x.html", "--rows", "9"), "--rows is for films only: a page shows all rows"),
         (("x.gif", "--force", "B=1,2"), "--force needs a page: use the suffix .html"),

@@ -131,9 +131,7 @@ class Mechanism(SolvableMechanism):
         """
         kind = viewer.check_animation(path, options)
         if all_circuits and (motion is not None or kind != "html"):
-            raise InputError(
-                "only the page of a mechanism shows all circuits: use the suffix .html"
-            )
+            raise InputError("all circuits need the page of a mechanism: use the suffix .html")
         if forces and kind != "html":
             raise InputError("only a page shows forces: use the suffix .html")
         motions = self._shown(motion, all_circuits, progress)

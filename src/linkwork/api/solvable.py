@@ -137,9 +137,7 @@ class SolvableMechanism:
         """
         if configuration is not None:
             if from_guess or with_steps:
-                raise InputError(
-                    "a configuration has no steps from the guess: leave one of the two out"
-                )
+                raise InputError("configuration= has no steps from a guess: leave one out")
             return motion.solve_configuration(self.model, at, configuration, throw=throw)
         return motion.solve(
             self.model,

@@ -70,7 +70,7 @@ def animate(
     options = FilmOptions(fps=fps, rows=rows)
     kind = check_animation(output, options)
     if every and kind != "html":
-        raise InputError("--all needs a page, since a film shows one circuit: use the suffix .html")
+        raise InputError("--all needs a page: use the suffix .html")
     if every and configuration is not None:
         raise InputError("--all shows every circuit: leave out --configuration")
     if rows is not None and kind == "html":

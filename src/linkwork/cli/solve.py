@@ -76,9 +76,7 @@ _POSITIVE = _Tolerance(min=0.0, min_open=True, max=math.inf, max_open=True)
     show_default=True,
     help="Give up after so many iterations.",
 )
-@click.option(
-    "--full-steps", is_flag=True, help="Take full Newton steps, even where a link turns far."
-)
+@click.option("--full-steps", is_flag=True, help="Take full Newton steps, however far links turn.")
 @set_option
 @json_option
 @debug_option

@@ -40,9 +40,7 @@ def view(file: str, port: int, no_browser: bool) -> None:
     page. At the end, unsaved changes are written to a file next to FILE.
     """
     if file == "-":
-        raise InputError(
-            "the page edits a file, and standard input cannot be saved: give the name of a file"
-        )
+        raise InputError("standard input cannot be edited and saved: give the name of a file")
     workbench = Workbench(MechanismFile(file), loads)
     server = LiveServer(workbench, port)
 

@@ -164,14 +164,14 @@ class Contacts:
         if cam.contact == "flat" and bend <= 0.0:
             self.problems.add(
                 key,
-                f"is concave at {where}: a flat face cannot follow it; make the outline convex there",
+                f"is concave at {where}, where a flat face cannot follow: make it convex",
             )
         size = self.frames.linkage.numbers(cam.radius)
         if 1.0 + size * bend <= 0.0:
             self.problems.add(
                 key,
-                f"is too concave at {where}: its radius of curvature is {-1.0 / bend:.4g}, smaller than "
-                "that of the roller",
+                f"is too concave at {where}: its radius of curvature is {-1.0 / bend:.4g}, "
+                "smaller than that of the roller",
             )
 
     def _put(self, body: str, point: str, place: Place, key: Key) -> None:

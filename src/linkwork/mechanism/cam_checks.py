@@ -170,9 +170,7 @@ class CamChecks(PartChecks):
             )
             places.append(vector(x, y))
         if closed and places[0] == places[-1]:
-            self.problems.add(
-                key, "is closed automatically: leave out the last point, it repeats the first"
-            )
+            self.problems.add(key, "is closed automatically: leave out the repeated last point")
         for k in range(1, len(places)):
             if places[k] == places[k - 1]:
                 self.problems.add((*key, k), "is the same point as the one before")

@@ -373,7 +373,7 @@ def _upright(z: Mapping[str, complex], points: tuple[str, ...]) -> dict[str, com
     axis = z[points[1]] - z[points[0]]
     if axis == 0:
         raise ShapeError(
-            f"{points[0]} and {points[1]} coincide: a link's angle needs two different points"
+            f"{points[0]} and {points[1]} coincide: the angle of a link needs two places"
         )
     size = abs(axis)
     turned = {p: (z[p] - z[points[0]]) * axis.conjugate() / size for p in points[2:]}

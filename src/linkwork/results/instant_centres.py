@@ -82,9 +82,7 @@ def instant_centres(position: Position) -> tuple[InstantCentre, ...]:
         raise InputError(f'"{position.mechanism}" has no position here: {position.message}')
     bodies = link_motions(position)
     if len(bodies) < 2:
-        raise InputError(
-            f'"{position.mechanism}" has no links with points and so no instant centres'
-        )
+        raise InputError(f'"{position.mechanism}" has no links with points, so no instant centres')
     lost = [b.link for b in bodies if not (np.isfinite(b.shift[0]) and np.isfinite(b.spin[0]))]
     if lost:
         raise InputError(

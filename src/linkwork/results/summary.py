@@ -10,7 +10,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from linkwork.results.circuits import Circuits
-    from linkwork.results.configurations import Configurations
+    from linkwork.results.configurations import Configurations, PathCount
     from linkwork.results.motion import Motion
     from linkwork.results.position import Position
 
@@ -20,6 +20,7 @@ __all__ = [
     "configurations_summary",
     "motion_summary",
     "position_summary",
+    "solution_counts",
 ]
 
 

@@ -104,9 +104,7 @@ class TextEdits:
                     new.trivia.indent = "\n"
                 rows.append(new)
                 return
-            raise InputError(
-                f"[{table}] is written as a single table: make it [[{table}]] to add more"
-            )
+            raise InputError(f"[{table}] is a single table: write it as [[{table}]] to add more")
         rows = tomlkit.aot()
         rows.append(new)
         _end_with_blank_line(self._document)

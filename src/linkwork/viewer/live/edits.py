@@ -183,9 +183,7 @@ def _(edit: ask.SetInput, text: TextEdits, before: Before) -> Followed:
         raise InputError(f"there is no input {edit.number + 1}: the mechanism has {count}")
     here: tuple[str | int, ...] = ("input", edit.number)
     if (edit.drive is None) != (edit.name is None):
-        raise InputError(
-            "an input drives a part with a kind and a name: send drive and name, or neither"
-        )
+        raise InputError("an input has a kind and a name: send drive and name, or neither")
     if edit.drive is not None:
         if edit.drive not in _DRIVES:
             raise UnknownNameError(
