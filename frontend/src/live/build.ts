@@ -34,7 +34,7 @@ const one = (name: string, entry: string, required = true): Field => ({ name, en
 export const PIECES: readonly Piece[] = [
   {
     title: "Point",
-    doc: "x and y are its place in the sketch of the file, where the mechanism is first put together",
+    doc: "x and y are its coordinates in the sketch of the file, from which the mechanism is first assembled",
     fields: [one("name", "text"), one("x", "plain number"), one("y", "plain number"), one("on link", "link", false)],
     edit: (v) => ({
       kind: "add_point",
@@ -199,7 +199,7 @@ export class Build {
     const open = Array.from(this.palette.querySelectorAll(".lw-piece[open] > summary"), (one) => one.textContent);
     this.palette.querySelectorAll("details, p").forEach((old) => old.remove());
     const sketched = file.form === "points-and-links";
-    if (!sketched) html("p", { class: "lw-empty" }, this.palette, "Equations are added in the text of the file.");
+    if (!sketched) html("p", { class: "lw-empty" }, this.palette, "To add equations, edit the text of the file.");
     for (const piece of sketched ? [...PIECES].reverse() : []) {
       const box = html("details", { class: "lw-piece" });
       this.palette.querySelector("summary")!.after(box);

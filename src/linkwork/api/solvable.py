@@ -168,7 +168,7 @@ class SolvableMechanism:
         Parameters
         ----------
         start, stop, step : number, optional
-            Replace the range of the (only) input, in everyday units.
+            Replace the range of the (only) input, in file units.
         configuration : str, optional
             Start from the configuration of this name at the guess's own input value, or on this
             branch of ``circuits()``.
@@ -257,7 +257,7 @@ class SolvableMechanism:
         Parameters
         ----------
         dimensions : Mapping[str, number or (D,)]
-            What varies, everyday units: dimensions, lengths (``"O2 A"``), angles, coordinates
+            What varies, file units: dimensions, lengths (``"O2 A"``), angles, coordinates
             (``"O4.x"``); a plan of :mod:`linkwork.batch`.
         """
         return batch.family_of(self.model, dimensions)

@@ -49,7 +49,7 @@ class Family:
 
     @property
     def dimensions(self) -> Mapping[str, Array]:
-        """What varies, (D,) each, everyday units."""
+        """What varies, (D,) each, file units."""
         return self.designs.dimensions
 
     def take(self, index: Sequence[int] | IndexArray | BoolArray | slice) -> Family:

@@ -48,7 +48,7 @@ class Column:
         What it measures, in a word: ``angle``, ``length``, ``velocity``; columns of one measure
         and unit share a panel. "" for numbers that share it with nothing.
     values : array (N,)
-        Everyday units, NaN where there is no position.
+        File units, NaN where there is no position.
     turn : float
         A full turn in that unit, 0 if it is no angle.
     slope : array (N,), optional

@@ -1,4 +1,4 @@
-"""Where else a sketch can begin: an input at which the mechanism closes, and the points there."""
+"""Alternative starts of a sketch: an input value at which the loops close, and the points there."""
 
 from __future__ import annotations
 

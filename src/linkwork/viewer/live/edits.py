@@ -1,4 +1,4 @@
-"""Every change of a mechanism as a change of its text; the reader judges what comes out."""
+"""Edits of a mechanism as edits of its text; the file reader checks the result."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def applied(edit: ask.Edit, text: TextEdits, before: Before) -> Followed:
     Raises
     ------
     InputError, UnknownNameError
-        For names that do not exist, or exist already; the text is then worth nothing.
+        For names that do not exist, or exist already; the text is then invalid.
     """
     raise TypeError(f"{type(edit).__name__} is not an edit of a file")
 

@@ -1,8 +1,8 @@
 """Requests from JSON, strictly, and events to JSON.
 
 A message is an object with its ``kind``, an optional whole number ``id`` that the answers repeat,
-and the fields of its dataclass. Nothing is guessed: what is missing, unknown, of another type, not
-finite or too long is refused with its place in the message.
+and the fields of its dataclass. Nothing is guessed: a field that is missing, unknown, of another
+type, not finite or too long is rejected with its path in the message.
 """
 
 from __future__ import annotations

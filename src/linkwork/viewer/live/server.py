@@ -1,4 +1,4 @@
-"""The live page on this machine's own address: one file, one page, one connection."""
+"""The server of the live page, on this machine only: one file, one page, one connection."""
 
 from __future__ import annotations
 
@@ -196,8 +196,8 @@ class LiveServer:
 
 
 _OCCUPIED_MESSAGE = (
-    "another page shows this file already, and two could not edit it together: "
-    "close that one, then load this one again"
+    "another page shows this file already, and only one page can edit it: "
+    "close that page, then reload this page"
 )
 
 
