@@ -37,7 +37,7 @@ else:
             "iterating": ("guessed_points", "iterates", "pulled_guess"),
             "model": ("Model", "model_of"),
             "nearest_assembling": ("nearest_assembly",),
-            "renewing": ("renewed",),
+            "warm_start": ("renewed",),
             "solving": ("solve",),
             "sweeping": ("sweep",),
             "vector_loops": ("moving_loops", "vector_loops"),
