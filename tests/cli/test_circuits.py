@@ -15,7 +15,7 @@ Four-bar
   circuit 1  from crank [deg]           to  at the guess's input
   branch 1        18.19487234  341.8051277  open
   branch 2        18.19487234  341.8051277  crossed
-  closed      the motion comes back to where it began; proved
+  closed      the motion returns to its start; proved
   input       turns back at the dead points
   rocking     crank, coupler, rocker
   dead point  crank = 341.805127661 deg, where loop "O2 A B O4" locks (coupler

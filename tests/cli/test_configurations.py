@@ -17,7 +17,7 @@ Four-bar
   open         18.376018     64.943481  yes
   crossed     -65.202467   -111.769930  yes
 
-  complete  every configuration is listed, and that is proved: as many solutions
+  complete  the list of configurations is proved complete: as many solutions
             were certified as can exist at most
   paths     2 complex solutions, 2 of them real
 """

@@ -91,7 +91,7 @@ branches
                    (coupler and rocker in line)
   maximum          mu = 114.9530208 deg at crank = 180 deg
   minimum          mu = -114.9530208 deg at crank = 180 deg
-  circuit          closed: the motion comes back to where it began
+  circuit          closed: the motion returns to its start
   certified        70
 """
 

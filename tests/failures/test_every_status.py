@@ -31,7 +31,7 @@ def singular_jacobian() -> Reached:
     )
     return mechanism.solve(), (
         "the Jacobian became singular during the iteration: the derivative is singular at an "
-        "iterate, where Newton-Raphson has no next step: start from a guess beside it; "
+        "iterate, where Newton-Raphson has no next step: start from a guess near it; "
         "a damped iteration does find θ3 = 14.40014098°, θ4 = 58.22758874°; "
         "2 configurations exist there: open (θ3 = 14.40014098°, θ4 = 58.22758874°) or "
         "crossed (θ3 = -74.40014098°, θ4 = -118.2275887°)"
@@ -97,7 +97,7 @@ def out_of_circuit() -> Reached:
     place = 'where loop "O2 A B O4" locks (coupler and rocker in line)'
     return motion, (
         "9 of 9 positions were not found; this circuit does not reach the input value on any of "
-        "its branches: the motion turns back at the limits reported, ask for values between them; "
+        "its branches: the motion reverses at the limits reported, ask for values between them; "
         f"dead point at crank = 46.5674634422 deg, {place}; "
         f"dead point at crank = 313.432536558 deg, {place}"
     )
@@ -116,8 +116,8 @@ def start_singular() -> Reached:
     crank = math.degrees(math.acos((40**2 + 100**2 - 120**2) / (2 * 40 * 100)))
     rod = math.degrees(math.acos((120**2 + 100**2 - 40**2) / (2 * 120 * 100)))
     return mechanism.solve(at=100), (
-        "the start itself is a dead point or change point, where the motion has no direction: "
-        "start from a guess beside it (met at s = 160); "
+        "the start is a dead point or change point, where the direction of motion is not determined: "
+        "start from a guess near it (met at s = 160); "
         f"2 configurations exist there: open (crank = {crank:.10g}°, rod = -{rod:.10g}°) or "
         f"crossed (crank = -{crank:.10g}°, rod = {rod:.10g}°)"
     )
@@ -134,7 +134,7 @@ def lost() -> Reached:
     (limit,) = mechanism.sweep().limits
     assert 0 < limit.input < 1e-12
     return mechanism.solve(at=-1), (
-        "the branch could not be followed with safety up to this input value: ask for a value "
+        "the branch could not be followed reliably up to this input value: ask for a value "
         "before the last one reached, or start from a guess beyond it "
         f"(met at u = {limit.input:.10g}); no position was found there from other guesses either"
     )

@@ -23,7 +23,7 @@ SKETCHES = {
         Status.CONVERGED,
         NewtonTrouble.ANOTHER_ROOT,
         "position found, but Newton-Raphson went past the root beside the guess and found another "
-        "one: start nearer to the one that is meant; the root beside the guess is x = 2; "
+        "one: start nearer to the intended root; the root beside the guess is x = 2; "
         "3 roots exist there (perhaps not all): x = 1 or x = 2 or x = 3",
     ),
     "newton-extremum": (
@@ -62,7 +62,7 @@ def test_a_flat_point_that_is_no_extremum_is_a_singular_derivative() -> None:
     assert trouble(position) is NewtonTrouble.SINGULAR_DERIVATIVE
     assert position.message == (
         "the Jacobian became singular during the iteration: the derivative is singular at an "
-        "iterate, where Newton-Raphson has no next step: start from a guess beside it; "
+        "iterate, where Newton-Raphson has no next step: start from a guess near it; "
         "1 root exists there (perhaps not all): x = 2"
     )
 

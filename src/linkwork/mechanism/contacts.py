@@ -11,9 +11,21 @@ __all__ = ["Belt", "Cam", "Curve", "Gear", "Rack", "Rolling", "Segment", "Weld",
 
 @dataclass(frozen=True, kw_only=True)
 class Weld:
-    """Two links that share a point and turn together.
+    """A weld: two links share a point and turn together.
 
-    ``angle`` leads from the first link's direction to the second's; measured if left out.
+    Parameters
+    ----------
+    links : (str, str)
+        The two links.
+    angle : number, optional
+        Angle from the direction of the first link to that of the second [file's angle unit]; by
+        default measured in the sketch.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Weld(links=["pulley", "crank"], angle=0).links
+    ('pulley', 'crank')
     """
 
     links: tuple[str, str]
@@ -29,17 +41,31 @@ class Gear:
 
     Parameters
     ----------
-    wheels, centers : (str, str)
-        Links, and the points at which they turn on ``arm``.
+    name : str
+        The name of the gear pair.
+    wheels : (str, str)
+        The two links that turn.
+    centers : (str, str)
+        The points about which they turn on ``arm``.
     arm : str
-        The link that carries both centres: ground, or the carrier of a planetary gear.
-    radii, teeth : (number, number)
-        One of both; with teeth the radii follow from the distance of the centres.
+        The link with both centres: ground, or the carrier of a planetary gear.
+    radii : (number, number), optional
+        Pitch radii [length]; either these or ``teeth``.
+    teeth : (number, number), optional
+        Numbers of teeth; the radii follow from the distance of the centres.
     internal : bool
-        The larger wheel is a ring around the smaller one.
+        Whether the larger wheel is a ring gear around the smaller one.
     phase : number, optional
-        The second wheel's angle against the arm where the first one's is zero; as sketched if
-        left out.
+        Angle of the second wheel relative to the arm where that of the first is zero [file's angle
+        unit]; by default as sketched.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Gear(name="mesh", wheels=("left", "right"), centers=("O", "P"), teeth=(20, 40)).teeth
+    (20, 40)
+    >>> round(lw.example("geared-five-bar").solve(at=45)["right"], 6)
+    -60.0
     """
 
     name: str
@@ -57,9 +83,35 @@ class Gear:
 
 @dataclass(frozen=True, kw_only=True)
 class Belt:
-    """A belt or chain around two wheels, open or crossed; it keeps r1 θ1 ∓ r2 θ2 against the arm.
+    """A belt or chain around two wheels: r1 (θ1 - θ_arm) ∓ r2 (θ2 - θ_arm) is constant.
 
-    Fields as of :class:`Gear`.
+    Parameters
+    ----------
+    name : str
+        The name of the belt.
+    wheels : (str, str)
+        The two links that turn.
+    centers : (str, str)
+        The points about which they turn on ``arm``.
+    arm : str
+        The link with both centres.
+    radii : (number, number), optional
+        Pitch radii [length]; either these or ``teeth``.
+    teeth : (number, number), optional
+        Numbers of teeth.
+    crossed : bool
+        Whether the belt crosses itself, so that the wheels turn in opposite directions.
+    phase : number, optional
+        Angle of the second wheel relative to the arm where that of the first is zero [file's angle
+        unit]; by default as sketched.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Belt(name="b", wheels=("m", "p"), centers=("M", "O"), radii=(25, 50)).crossed
+    False
+    >>> round(lw.example("belt-drive").solve(at=90)["pulley"], 6)
+    45.0
     """
 
     name: str
@@ -77,10 +129,33 @@ class Belt:
 
 @dataclass(frozen=True, kw_only=True)
 class Rack:
-    """Rack and pinion: a slider's displacement is rolled off by a pinion.
+    """A rack and pinion: the displacement of a slider is the rolled arc of the pinion.
 
-    ``slider`` names a slider; the pinion turns about ``center`` on the link along which it slides.
-    The sketch tells on which side of the rack's line the pinion stands.
+    The sketch decides on which side of the rack the pinion is.
+
+    Parameters
+    ----------
+    name : str
+        The name of the rack and pinion.
+    pinion : str
+        The link that turns.
+    center : str
+        The point about which it turns, on the link along which the rack slides.
+    slider : str
+        The name of the slider of the rack.
+    radius : number
+        Pitch radius of the pinion [length].
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Rack(name="mesh", pinion="pinion", center="G", slider="s", radius=20).slider
+    's'
+    >>> motion = lw.example("rack-and-pinion").sweep(start=90, stop=180, step=90)
+    >>> turn = motion["pinion"][0] - motion["pinion"][1]
+    >>> stroke = motion["s"][0] - motion["s"][1]
+    >>> round(float(abs(stroke / turn)) * 180 / 3.141592653589793, 6)
+    20.0
     """
 
     name: str
@@ -92,20 +167,37 @@ class Rack:
 
 @dataclass(frozen=True, kw_only=True)
 class Rolling:
-    """A wheel that rolls without slipping on a line or a circle of a link.
+    """A wheel that rolls without slipping on a line or on a circle of another link.
 
     Parameters
     ----------
     name : str
-        The way of the point of contact along ``line``, zero at its first point; on a circle the
-        angle of the line of centres.
-    wheel, center, radius
-        The link that rolls, its centre and size.
+        The displacement of the point of contact along ``line``, zero at its first point [length];
+        on a circle the angle of the line of centres.
+    wheel : str
+        The link that rolls.
+    center : str
+        The centre of the wheel.
+    radius : number
+        The radius of the wheel [length].
     on : str
         The link on which it rolls.
     line : (str, str), optional
-    circle, circle_radius : str, number, optional
-        Centre and size of the circle; with ``inside`` one runs inside the other.
+        Two points of that link; either this or ``circle``.
+    circle : str, optional
+        The centre of a circle on that link.
+    circle_radius : number, optional
+        The radius of the circle [length].
+    inside : bool
+        Whether the smaller of wheel and circle rolls inside the larger one.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Rolling(name="x", wheel="w", center="C", radius=40, line=("S", "T")).on
+    'ground'
+    >>> round(lw.example("rolling-wheel").solve(at=-180)["x"] / 40, 6)
+    1.570796
     """
 
     name: str
@@ -124,7 +216,23 @@ class Rolling:
 
 @dataclass(frozen=True, kw_only=True)
 class Segment:
-    """A part of a cam's turn: ``over`` an angle the follower moves by ``lift``."""
+    """A segment of a cam: the follower moves by ``lift`` while the cam turns by ``over``.
+
+    Parameters
+    ----------
+    law : str
+        The motion law: ``dwell``, ``cycloidal``, ``modified sine``, …; see the page on files.
+    over : number
+        Angle of the cam [file's angle unit].
+    lift : number
+        Displacement of the follower: a length, or an angle of an oscillating follower.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Segment(law="cycloidal", over=100, lift=25)
+    Segment(law='cycloidal', over=100, lift=25)
+    """
 
     law: str
     over: Number
@@ -133,28 +241,42 @@ class Segment:
 
 @dataclass(frozen=True, kw_only=True)
 class Cam:
-    """A cam that moves a follower, by the follower's motion or by the cam's own outline.
+    """A cam with its follower, given by the motion of the follower or by the outline of the cam.
 
     Parameters
     ----------
+    name : str
+        The name of the cam.
     cam, center : str
         The link that turns, and the point about which it turns.
     slider : str, optional
-        The slider that is moved; its first point is the knife edge, the roller's centre or on the
-        flat face.
+        A translating follower: the slider that moves. Its first point is the knife edge, the centre
+        of the roller, or on the flat face.
     link, pivot, point : str, optional
-        Else the link that swings about ``pivot``, with the edge or the roller's centre ``point``;
-        a flat face leads from the pivot to ``point``.
+        An oscillating follower: the link, the point about which it turns, and its knife edge or the
+        centre of its roller; a flat face runs from the pivot to ``point``.
     contact : str
         ``knife``, ``roller`` or ``flat``.
     radius : number
-        Of the roller.
+        Radius of the roller [length].
     base : number, optional
-        Radius of the base circle, with ``segments``.
+        Radius of the base circle [length], with ``segments``.
     segments : tuple of Segment
-        What the follower does in one turn, from the cam's angle ``start`` on.
+        The motion of the follower in one turn of the cam.
+    start : number
+        The cam's angle at which the first segment begins [file's angle unit].
     profile : tuple of (x, y), optional
-        Else the cam's outline, closed, in the cam's own frame about its centre.
+        Instead of segments: the closed outline of the cam in its own frame about its centre
+        [length].
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> rise = lw.Segment(law="cycloidal", over=180, lift=25)
+    >>> fall = lw.Segment(law="cycloidal", over=180, lift=-25)
+    >>> cam = lw.Cam(name="c", cam="disc", center="O", slider="s", base=40, segments=[rise, fall])
+    >>> len(cam.segments), cam.contact
+    (2, 'knife')
     """
 
     name: str
@@ -178,19 +300,31 @@ class Cam:
 
 @dataclass(frozen=True, kw_only=True)
 class Curve:
-    """A point that runs along a curve of a link.
+    """A point that moves along a curve of another link.
 
     Parameters
     ----------
     name : str
-        The place on the curve: an angle from 0 to a turn if it is closed, else a length.
-    point, on : str
-        The point of another link, and the link that carries the curve.
+        The place on the curve: an angle from 0 to a full turn if the curve is closed, otherwise a
+        length.
+    point : str
+        The point that moves, of another link.
+    on : str
+        The link with the curve.
     origin : str
-        A point of ``on``; the curve's coordinates are in that link's own frame about it.
+        A point of that link; the coordinates of the curve are relative to it in the link's own
+        frame.
     through : tuple of (x, y)
-        Points of the curve.
+        Points of the curve [length]; a spline runs through them.
     closed : bool
+        Whether the curve returns to its first point.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> path = [(80, 0), (57, 57), (0, 80)]
+    >>> lw.Curve(name="slot", point="B", on="ground", origin="O4", through=path).through[1]
+    (57, 57)
     """
 
     name: str

@@ -30,22 +30,36 @@ def as_tuples(part: object, *fields: str) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class Input:
-    """What is driven, and over which values.
+    """An input: the driven quantity, its range and its speed.
 
-    Exactly one of ``link`` (its angle), ``joint`` (the angle between the two links of a pin),
-    ``slider``, ``cylinder`` (their displacement or length) or ``variable`` (a name of the
-    equations) is given.
+    Exactly one of ``link``, ``joint``, ``slider``, ``cylinder`` and ``variable`` is given.
 
     Parameters
     ----------
+    link : str, optional
+        The link whose angle is driven.
+    joint : str, optional
+        The pin between two links whose relative angle is driven.
+    slider, cylinder : str, optional
+        The slider or slot whose displacement, or the cylinder whose length, is driven.
+    variable : str, optional
+        The driven variable of loop equations.
     relative_to : str, optional
-        With ``link``: the link against which the angle is measured, ground unless given.
+        With ``link``: the link from which the angle is measured; by default ground.
     start, stop, step : number or formula, optional
-        The table's input values in the file's unit (``from``, ``to``, ``step`` in a file).
-        An angle without them goes once around by one degree.
+        The input values in file units (``from``, ``to``, ``step`` in a file). An angle without them
+        makes one turn in steps of one degree.
     speed : str or number, optional
-        ``"300 rpm"``, ``"25 rad/s"``, ``"90 deg/s"``, for lengths ``"50 mm/s"``;
-        a bare number is the file's unit per second.
+        ``"300 rpm"``, ``"25 rad/s"``, ``"90 deg/s"``, for lengths ``"50 mm/s"``; a number is in
+        file units per second.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Input(link="crank", start=0, stop=90, step=30, speed="300 rpm").column
+    'crank'
+    >>> lw.Input(link="stick", relative_to="boom").column
+    'stick-boom'
     """
 
     link: str | None = None
@@ -79,9 +93,26 @@ class Input:
 
 @dataclass(frozen=True, kw_only=True)
 class Slot:
-    """Pin in slot: ``point`` runs along the line through two points of the link ``on``.
+    """A pin in a slot: a point of one link moves along a line of another link.
 
-    The displacement ``name`` is zero at the first point of ``line``, positive to the second.
+    Parameters
+    ----------
+    name : str
+        The displacement, zero at the first point of ``line``, positive towards the second [length].
+    point : str
+        The pin.
+    on : str
+        The link with the slot.
+    line : (str, str)
+        Two points of that link.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Slot(name="s", point="A", on="lever", line=("O4", "Q")).name
+    's'
+    >>> round(lw.example("crank-shaper").solve(at=90)["s"], 6)
+    210.0
     """
 
     name: str
@@ -95,10 +126,32 @@ class Slot:
 
 @dataclass(frozen=True, kw_only=True)
 class Slider:
-    """Prismatic joint: ``link`` translates along a line of ``on`` without turning against it.
+    """A prismatic joint: a link slides along a line of another link without turning.
 
-    ``points`` (one or two of the sliding link) keep the distance ``offset`` from the line,
-    positive to its left; with one point, ``angle`` leads from the line to the link's direction.
+    Parameters
+    ----------
+    name : str
+        The displacement, zero at the first point of ``line``, positive towards the second [length].
+    link : str
+        The sliding link.
+    points : tuple of str
+        One or two points of the sliding link at the distance ``offset`` from the line.
+    on : str
+        The link on which it slides.
+    line : (str, str)
+        Two points of that link.
+    offset : number
+        Distance of the points from the line, positive to its left [length].
+    angle : number, optional
+        With one point: the angle from the line to the sliding link's direction [file's angle unit].
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Slider(name="d", link="block", points=("B",), on="ground", line=("S", "T")).offset
+    0
+    >>> round(lw.example("slider-crank").solve(at=60)["d"], 3)
+    126.838
     """
 
     name: str
@@ -115,7 +168,21 @@ class Slider:
 
 @dataclass(frozen=True, kw_only=True)
 class Cylinder:
-    """A link of variable length between two points; ``name`` is its length."""
+    """A link of variable length between two points, such as a hydraulic cylinder.
+
+    Parameters
+    ----------
+    name : str
+        The variable length.
+    between : (str, str)
+        The two points.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Cylinder(name="ram", between=("P", "Q")).angle_name
+    'ram_angle'
+    """
 
     name: str
     between: tuple[str, str]
@@ -132,7 +199,21 @@ class Cylinder:
 
 @dataclass(frozen=True, kw_only=True)
 class Spring:
-    """A spring between two points: drawn, and no constraint."""
+    """A spring between two points; it is drawn and does not constrain the motion.
+
+    Parameters
+    ----------
+    name : str
+        The name of the spring.
+    between : (str, str)
+        The two points.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Spring(name="return", between=("O4", "B")).between
+    ('O4', 'B')
+    """
 
     name: str
     between: tuple[str, str]

@@ -20,18 +20,26 @@ _NOTHING = 1e-12  # rounding, shown as 0
 
 @dataclass(frozen=True, kw_only=True)
 class Remedy:
-    """One length that alone would let the loops just close.
+    """One length whose change alone closes the loops.
 
     Parameters
     ----------
     length : str
-        Its name, as the user wrote it.
+        The name of the length in the file.
     now, needed : float
-        Its value and the one with which the loops just close [length].
+        Its value, and the value at which the loops just close [length].
     exact : bool
-        Whether this follows from a closed form and holds wherever the search begins (dyads).
-        Otherwise it is the value nearest to first order, corrected until the loops just close,
-        and checked by a position found a little further.
+        Whether ``needed`` follows from a closed form (dyads) and does not depend on the guess.
+        Otherwise it was found by linearisation, corrected until the loops just close, and checked
+        by a position a little further.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> short = {"O2 A": 40, "A B": 30, "O4 B": 20, "O2 O4": 100}
+    >>> remedies = lw.example("four-bar").changed(lengths=short).solve().failure.remedies
+    >>> [(remedy.length, round(remedy.change, 3)) for remedy in remedies]
+    [('A B', 18.366), ('O4 B', 18.366), ('O2 O4', -19.551)]
     """
 
     length: str
@@ -47,44 +55,57 @@ class Remedy:
 
 @dataclass(frozen=True, kw_only=True)
 class Failure:
-    """What was found out about a position that does not exist, or is not the one meant.
+    """Why a position does not exist, or differs from the intended one.
 
     Parameters
     ----------
     what : str
-        What happened, in a sentence.
+        What happened, as a sentence.
+    asked : Mapping[str, float]
+        The requested input values, file units.
     loops : tuple of str
-        The loops that do not close or lock.
+        The loops that do not close or that lock.
     gap : float, optional
-        How much is missing at best near the guess [length]; the root of the sum of squares for
-        coupled loops.
+        The closure error that remains near the guess [length]; for coupled loops the root of the
+        sum of squares.
     remedies : tuple of Remedy
-        Smallest relative change first.
+        Lengths whose change alone closes the loops.
     nearest_input : Mapping[str, float]
-        The input values nearest to those asked that the mechanism's circuit reaches (the circuit
-        through the start, or, if there is none, the one found nearest to the guess); everyday
-        units, empty if none is known.
+        The reachable input values nearest to the requested ones, file units, on the circuit through
+        the start, or, without a start, on the circuit found nearest to the guess; empty if unknown.
     nearest_kind : str
-        What is there: ``dead point``, ``end of what was followed``; empty if the circuit reaches
-        the values asked.
+        What limits the circuit there: ``dead point``, ``end of what was followed``; "" if the
+        circuit reaches the requested values.
     nearest_proved : bool
         Whether the circuit was followed with proof.
     through : Mapping[str, float]
-        The dead point behind which the circuit reaches the values asked.
+        The dead point behind which the circuit reaches the requested values.
     unreachable : bool
         Whether no input value was found at which the mechanism can be assembled.
     trouble : NewtonTrouble, optional
-        Which of the four ways of missing a root it was.
-    meant : Mapping[str, float]
-        The root beside the guess, if Newton-Raphson missed it.
+        In which of four ways Newton-Raphson missed the root.
     configurations : tuple of Mapping[str, float]
-        The positions that exist at the values asked: unknowns by name.
+        The positions that exist at the requested values: unknowns by name.
     configuration_names : tuple of str
-        What they are called, where configurations can be listed.
+        Their names, where configurations can be listed.
     complete : bool, optional
-        Whether these are all; ``None`` if none were looked for.
+        Whether these are all configurations; ``None`` if they were not searched.
     complete_likely : bool
-        Whether that is so with probability one, not proved.
+        Whether that holds with probability one only.
+    meant : Mapping[str, float]
+        The root nearest to the guess, if Newton-Raphson missed it.
+    units : Units
+        Units of the numbers.
+    kinds : Mapping[str, Kind]
+        The kind (angle, length, number) of every name.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> short = {"O2 A": 40, "A B": 30, "O4 B": 20, "O2 O4": 100}
+    >>> failure = lw.example("four-bar").changed(lengths=short).solve().failure
+    >>> round(failure.gap, 3), failure.remedies[0].length
+    (18.366, 'A B')
     """
 
     what: str

@@ -83,7 +83,24 @@ class ListOf:
 
 @dataclass(frozen=True)
 class Table:
-    """A table whose keys are known."""
+    """Named columns of equal length, with the unit of each column.
+
+    Parameters
+    ----------
+    columns : Mapping[str, array (N,)]
+        Numbers as float arrays; ``status``, ``branch``, ``limit`` as text; ``certified`` as bool.
+    units : Mapping[str, str]
+        The unit of every column; "" for none.
+    index : str
+        The column of the leading input.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> table = lw.example("four-bar").sweep(start=0, stop=90, step=30).table()
+    >>> len(table), table.units["rocker"], table["rocker"][2].round(3)
+    (4, 'deg', 64.943)
+    """
 
     keys: tuple[Key, ...]
 
