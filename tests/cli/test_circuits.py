@@ -35,9 +35,9 @@ No circuits driven by crank
 
   why        loop "O2 A B O4" cannot be closed at crank = 29.7449°: nearest to
              the guess a gap of 117.081 mm remains
-  remedy     it just closes with "O4 B" = 197.081 mm (117.081 longer) or a =
+  remedy     the loops just close with "O4 B" = 197.081 mm (117.081 longer) or a =
              280.573 mm (119.427 shorter) or "O2 O4" = 322.49 mm (222.49 longer)
-  nearest    no input value was found at which it could be assembled
+  nearest    no input value was found at which the mechanism can be assembled
   elsewhere  no configuration exists there
   complete   every circuit is listed, with probability one: all dead points were
              found, and all configurations at the guess's input (there is no

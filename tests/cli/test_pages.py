@@ -394,7 +394,7 @@ def test_ranges_leave_out_rows_that_were_not_found(run: Run) -> None:
 def test_sweep_without_a_start_says_why_and_what_to_do(run: Run) -> None:
     text = " ".join(run("sweep", "open.toml").stdout.split())
     assert 'no start 361 at 0 to 360 deg why loop "O2 A B O4" cannot be closed' in text
-    assert " remedy it just closes with " in text
+    assert " remedy the loops just close with " in text
     assert text.endswith("To see the iterations: linkwork solve open.toml --show-steps")
 
 

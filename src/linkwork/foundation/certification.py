@@ -39,9 +39,7 @@ class Certification(Enum):
     SUBSET_CERTIFIED = (
         "proved for the mechanism without its redundant links; these fit to rounding, without proof"
     )
-    CONFIGURATION_CERTIFIED = (
-        "proved: a true position lies within the radius, and no other near it"
-    )
+    CONFIGURATION_CERTIFIED = "proved: a true position lies within the radius, and no other near it"
     PROOF_TOO_LONG = (
         "the position is proved; the proof that the motion from the start stays on one branch "
         "would take too many steps"

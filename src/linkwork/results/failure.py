@@ -137,14 +137,14 @@ class Failure:
         yield "why", self.what
         if self.meant:
             another = self.trouble is NewtonTrouble.ANOTHER_ROOT
-            which = "the root beside the guess is" if another else "a damped iteration does find"
+            which = "the root nearest to the guess is" if another else "a damped iteration finds"
             yield "beside", f"{which} {self._values(self.meant, _MOST_VALUES)}"
         if self.remedies:
             yield "remedy", self._remedy_text()
         if self.nearest_input:
             yield "nearest", self._nearest_text()
         elif self.unreachable:
-            yield "nearest", "no input value was found at which it could be assembled"
+            yield "nearest", "no input value was found at which the mechanism can be assembled"
         if self.complete is not None:
             yield "elsewhere", self._configurations_text()
 
@@ -159,15 +159,15 @@ class Failure:
             change = f"{abs(remedy.change):.6g} {way}"
             texts.append(f"{name} = {remedy.needed:.6g} {unit} ({change})")
         where = "" if all(remedy.exact for remedy in self.remedies) else " near the guess"
-        return f"it just closes{where} with {' or '.join(texts)}"
+        return f"the loops just close{where} with {' or '.join(texts)}"
 
     def _nearest_text(self) -> str:
         where = self._values(self.nearest_input)
         if self.through:
             passed = self._values(self.through)
-            return f"the same circuit does reach it, through the dead point at {passed}"
+            return f"the circuit reaches this input through the dead point at {passed}"
         if not self.nearest_kind:
-            return "the circuit nearest to the guess does reach it"
+            return "the circuit nearest to the guess reaches this input"
         return f"nearest reachable input: {where} ({self.nearest_kind})"
 
     def _configurations_text(self) -> str:
