@@ -22,7 +22,7 @@ export const PALETTE: readonly PalettePart[] = [
   {
     "table": "slots",
     "title": "Pin in slot",
-    "doc": "Pin in slot: a point runs along a line of another link",
+    "doc": "Pin in slot: a point moves along a line of another link",
     "fields": [
       {
         "name": "name",
@@ -198,7 +198,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "arm",
-        "doc": "The link that carries both centres; ground if left out",
+        "doc": "The link with both centres; default ground",
         "entry": "link",
         "required": false,
         "words": [],
@@ -269,7 +269,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "arm",
-        "doc": "The link that carries both centres; ground if left out",
+        "doc": "The link with both centres; default ground",
         "entry": "link",
         "required": false,
         "words": [],
@@ -301,7 +301,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "crossed",
-        "doc": "The belt crosses itself: the wheels turn against each other",
+        "doc": "The belt crosses itself: the wheels turn in opposite directions",
         "entry": "flag",
         "required": false,
         "words": [],
@@ -363,7 +363,7 @@ export const PALETTE: readonly PalettePart[] = [
     "fields": [
       {
         "name": "name",
-        "doc": "Way of the point of contact along the line, or angle of the centres",
+        "doc": "Displacement of the point of contact along the line, or angle of the line of centres",
         "entry": "text",
         "required": true,
         "words": [],
@@ -395,7 +395,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "on",
-        "doc": "The link on which it rolls; ground if left out",
+        "doc": "The link on which it rolls; default ground",
         "entry": "link",
         "required": false,
         "words": [],
@@ -427,7 +427,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "inside",
-        "doc": "One of wheel and circle runs inside the other",
+        "doc": "The smaller of wheel and circle is inside the larger one",
         "entry": "flag",
         "required": false,
         "words": [],
@@ -474,7 +474,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "link",
-        "doc": "Or the link that it swings",
+        "doc": "Or the oscillating link that it moves",
         "entry": "link",
         "required": false,
         "words": [],
@@ -482,7 +482,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "pivot",
-        "doc": "With link: the point about which that swings",
+        "doc": "With link: the point about which it oscillates",
         "entry": "point",
         "required": false,
         "words": [],
@@ -490,7 +490,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "point",
-        "doc": "With link: its edge, its roller's centre or the end of its face",
+        "doc": "With link: its knife edge, the centre of its roller or the end of its face",
         "entry": "point",
         "required": false,
         "words": [],
@@ -498,7 +498,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "contact",
-        "doc": "Kind of the follower; knife if left out",
+        "doc": "Kind of the follower; default knife",
         "entry": "choice",
         "required": false,
         "words": [
@@ -526,7 +526,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "start",
-        "doc": "Angle of the cam at which the segments begin; 0 if left out",
+        "doc": "Angle of the cam at which the segments begin; default 0",
         "entry": "number",
         "required": false,
         "words": [],
@@ -534,7 +534,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "segments",
-        "doc": "What the follower does in one turn of the cam",
+        "doc": "Motion of the follower in one turn of the cam",
         "entry": "lines",
         "required": false,
         "words": [],
@@ -560,11 +560,11 @@ export const PALETTE: readonly PalettePart[] = [
   {
     "table": "curves",
     "title": "Curve",
-    "doc": "A point runs along a curve of another link",
+    "doc": "A point moves along a curve of another link",
     "fields": [
       {
         "name": "name",
-        "doc": "Name of the place on the curve",
+        "doc": "Name of the coordinate along the curve",
         "entry": "text",
         "required": true,
         "words": [],
@@ -572,7 +572,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "point",
-        "doc": "The point that runs along it, of another link",
+        "doc": "The point that moves along it, of another link",
         "entry": "point",
         "required": true,
         "words": [],
@@ -580,7 +580,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "on",
-        "doc": "The link that carries the curve",
+        "doc": "The link with the curve",
         "entry": "link",
         "required": true,
         "words": [],
@@ -588,7 +588,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "origin",
-        "doc": "The point of that link about which coordinates are given",
+        "doc": "The point of that link from which coordinates are measured",
         "entry": "point",
         "required": true,
         "words": [],
@@ -607,7 +607,7 @@ export const PALETTE: readonly PalettePart[] = [
       },
       {
         "name": "closed",
-        "doc": "Whether the curve leads back to its first point",
+        "doc": "Whether the curve is closed",
         "entry": "flag",
         "required": false,
         "words": [],
@@ -618,7 +618,7 @@ export const PALETTE: readonly PalettePart[] = [
   {
     "table": "springs",
     "title": "Spring",
-    "doc": "A spring between two points: drawn, and no constraint",
+    "doc": "A spring between two points; drawn, without constraint",
     "fields": [
       {
         "name": "name",

@@ -164,7 +164,7 @@ RAPIER = """\
 """
 
 EXTREMUM = """\
-  chain       not known: plain equations tell nothing of links and joints
+  chain       not known: plain equations do not determine links and joints
 
 """
 
@@ -334,7 +334,11 @@ def test_sweep_through_dead_points_tells_of_the_whole_circuit(run: Run) -> None:
 
 @pytest.mark.parametrize(
     ("policy", "said"),
-    [("straight", "; went straight on\n"), ("turn", "; turned off\n"), ("stop", "")],
+    [
+        ("straight", "; went straight on\n"),
+        ("turn", "; turned onto the other branch\n"),
+        ("stop", ""),
+    ],
 )
 def test_sweep_tells_how_the_motion_went_on_at_change_points(
     run: Run, policy: str, said: str

@@ -62,7 +62,7 @@ def cannot_close() -> Reached:
     ground = math.sqrt(70**2 - 40**2)
     angle = math.degrees(math.acos((40**2 + 100**2 - 70**2) / (2 * 40 * 100)))
     return four_bar(40, 30, 40, 100).solve(), (
-        f'loop "O2 A B O4" cannot be closed at crank = 90°: nearest to the guess a gap of '
+        f'loop "O2 A B O4" cannot be closed at crank = 90°: near the guess a gap of at least '
         f'{gap:.6g} mm remains; the loops just close with "A B" = {30 + gap:.6g} mm ({gap:.6g} longer) '
         f'or "O4 B" = {40 + gap:.6g} mm ({gap:.6g} longer) '
         f'or "O2 O4" = {ground:.6g} mm ({100 - ground:.6g} shorter); '
@@ -135,7 +135,7 @@ def lost() -> Reached:
     return mechanism.solve(at=-1), (
         "the branch could not be followed reliably up to this input value: ask for a value "
         "before the last one reached, or start from a guess beyond it "
-        f"(met at u = {limit.input:.10g}); no position was found there from other guesses either"
+        f"(met at u = {limit.input:.10g}); other guesses also lead to no position there"
     )
 
 
@@ -144,7 +144,7 @@ def no_start() -> Reached:
     gap = math.hypot(10, 100) - 20
     ground = math.sqrt(20**2 - 10**2)
     return motion, (
-        f'loop "O2 A B O4" cannot be closed at crank = 90°: nearest to the guess a gap of '
+        f'loop "O2 A B O4" cannot be closed at crank = 90°: near the guess a gap of at least '
         f'{gap:.6g} mm remains; the loops just close with "A B" = {10 + gap:.6g} mm ({gap:.6g} longer) '
         f'or "O4 B" = {10 + gap:.6g} mm ({gap:.6g} longer) '
         f'or "O2 O4" = {ground:.6g} mm ({100 - ground:.6g} shorter); '

@@ -87,7 +87,7 @@ def test_without_a_root_there_is_no_reason_to_miss_it_and_the_least_value_is_tol
     assert position.message == (
         "no position after the largest allowed number of iterations: start from a nearer guess "
         'or allow more iterations; "f" stays at 1 at best nearby; '
-        "no position was found there from other guesses either"
+        "other guesses also lead to no position there"
     )
 
 

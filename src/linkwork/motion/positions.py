@@ -21,8 +21,8 @@ __all__ = ["Evidence", "Found", "found_message", "input_rate", "position_of", "t
 
 _HOPELESS = 1e12  # condition beyond which derivatives mean nothing
 _SINGULAR = (
-    "position found, at a dead point or change point: there its derivatives do not exist, "
-    "and a motion cannot start"
+    "position found at a dead point or change point, where its derivatives do not exist and no "
+    "motion can start"
 )
 
 

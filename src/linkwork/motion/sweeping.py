@@ -133,7 +133,7 @@ def _begun(
     asked = Asked(t=rows[:, lead], inputs=rows, everyday=model.everyday_rows)
     entry = _onto_path(drive, start, asked.t, certify)
     if entry is None:
-        message = "no row of the table could be reached from the guess's own input values"
+        message = "no row of the table can be reached from the input values of the guess"
         return replace(start, message=message)
     work = _Sweep(drive, certify, Report(progress, entry[0].t, *_span(asked.t)))
     work.message = start.message

@@ -222,4 +222,4 @@ class Inversion:
     @property
     def text(self) -> str:
         """``coupler: double-rocker (GRCR): …``."""
-        return f"{self.ground}: {self.type or self.problem or 'no name of its own'}"
+        return f"{self.ground}: {self.type or self.problem or 'unnamed'}"

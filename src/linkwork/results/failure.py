@@ -175,7 +175,7 @@ class Failure:
             if self.complete:
                 sure = " (with probability one)" if self.complete_likely else ""
                 return f"no configuration exists there{sure}"
-            return "no position was found there from other guesses either"
+            return "other guesses also lead to no position there"
         shown = [self._values(c, _MOST_VALUES) for c in self.configurations[:_MOST_CONFIGURATIONS]]
         names = self.configuration_names
         if names:

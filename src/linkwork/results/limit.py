@@ -112,7 +112,11 @@ class Limit:
         if self.in_line:
             text += f" ({' and '.join(self.in_line)} in line)"
         if self.passed:
-            text += "; went straight on" if self.passed == "straight" else "; turned off"
+            text += (
+                "; went straight on"
+                if self.passed == "straight"
+                else "; turned onto the other branch"
+            )
         return text
 
 

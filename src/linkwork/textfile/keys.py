@@ -183,11 +183,11 @@ _HEAD = (
         "The version of this file format; write format = 1",
         required=True,
     ),
-    Key("name", Text(), "What the mechanism is called"),
+    Key("name", Text(), "Name of the mechanism"),
     Key("length", Text(), "Unit of every length in this file; nothing is converted"),
     Key("angle", Text(("deg", "rad")), "Unit of every angle in this file"),
     Key("source", Text(), "Where the mechanism comes from: book, page, drawing"),
-    Key("family", Text(), 'The kind of mechanism it is listed with: "straight line", "engine"'),
+    Key("family", Text(), 'The family in lists of mechanisms: "straight line", "engine"'),
     Key(
         "configuration",
         Text(),
@@ -206,24 +206,32 @@ _OUTPUTS = Key(
 _TRACE = Key(
     "trace",
     Table((Key("points", _NAME_LIST, "Points whose path is drawn", required=True),)),
-    "What leaves a trace in pictures",
+    "Traces in pictures",
 )
 _GUESS = Key(
     "guess",
     Named(Number()),
-    "Estimates of all unknowns and the input value they belong to",
+    "Estimates of all unknowns at one input value",
     required=True,
 )
 _RANGE = (
     Key("from", Number(), "First input value"),
     Key("to", Number(), "Last input value"),
-    Key("step", Number(), "Step between input values; its sign leads from the first to the last"),
-    Key("speed", Speed(), 'Speed of the input, "300 rpm"; a bare number is the unit per second'),
+    Key(
+        "step",
+        Number(),
+        "Step between input values; its sign points from the first value to the last",
+    ),
+    Key(
+        "speed",
+        Speed(),
+        'Speed of the input, "300 rpm"; a plain number is in file units per second',
+    ),
 )
 _DRIVES = (
     Key("link", Text(), "The link whose angle is driven"),
-    Key("relative_to", Text(), "The link against which the angle is measured; ground if left out"),
-    Key("joint", Text(), "The pin whose two links are driven against each other"),
+    Key("relative_to", Text(), "The link relative to which the angle is measured; default ground"),
+    Key("joint", Text(), "The pin whose relative angle is driven"),
     Key("slider", Text(), "The slider or slot whose displacement is driven"),
     Key("cylinder", Text(), "The cylinder whose length is driven"),
     *_RANGE,
@@ -271,7 +279,7 @@ _WELD = (
 _WHEELS = (
     Key("wheels", ListOf(Text(), "link", 2, 2), "The two links that turn", required=True),
     Key("centers", ListOf(Text(), "point", 2, 2), "The points at which they turn", required=True),
-    Key("arm", _LINK, "The link that carries both centres; ground if left out"),
+    Key("arm", _LINK, "The link with both centres; default ground"),
     Key("radii", _NUMBER_PAIR, "Pitch radii"),
     Key("teeth", _NUMBER_PAIR, "Numbers of teeth, instead of radii"),
     Key("phase", Number(), "Angle of the second wheel where the first one's is zero"),
@@ -284,7 +292,7 @@ _GEAR = (
 _BELT = (
     Key("name", Text(), "Name of the belt or chain", required=True),
     *_WHEELS,
-    Key("crossed", Flag(), "The belt crosses itself: the wheels turn against each other"),
+    Key("crossed", Flag(), "The belt crosses itself: the wheels turn in opposite directions"),
 )
 _RACK = (
     Key("name", Text(), "Name of the rack and pinion", required=True),
@@ -295,49 +303,56 @@ _RACK = (
 )
 _ROLLING = (
     Key(
-        "name", Text(), "Way of the point of contact along the line, or angle of the centres", True
+        "name",
+        Text(),
+        "Displacement of the point of contact along the line, or angle of the line of centres",
+        True,
     ),
     Key("wheel", _LINK, "The link that rolls", required=True),
     Key("center", _POINT, "Its centre", required=True),
     Key("radius", Number(), "Its radius", required=True),
-    Key("on", _LINK, "The link on which it rolls; ground if left out"),
+    Key("on", _LINK, "The link on which it rolls; default ground"),
     Key("line", _POINT_PAIR, "Two points of that link: it rolls along this line"),
     Key("circle", _POINT, "Or the centre of the circle on which it rolls"),
     Key("circle_radius", Number(), "The radius of that circle"),
-    Key("inside", Flag(), "One of wheel and circle runs inside the other"),
+    Key("inside", Flag(), "The smaller of wheel and circle is inside the larger one"),
 )
 _SEGMENT = (
-    Key("law", Text(LAWS), "How the follower moves", required=True),
-    Key("over", Number(), "The angle by which the cam turns meanwhile", required=True),
-    Key("lift", Number(), "How far the follower moves; away from the centre is positive"),
+    Key("law", Text(LAWS), "Motion law of the follower", required=True),
+    Key("over", Number(), "Angle by which the cam turns", required=True),
+    Key("lift", Number(), "Displacement of the follower, positive away from the centre"),
 )
 _CAM = (
     Key("name", Text(), "Name of the cam", required=True),
     Key("cam", _LINK, "The link that turns", required=True),
     Key("center", _POINT, "The point about which it turns", required=True),
     Key("slider", _SLIDING, "The slider that it moves"),
-    Key("link", _LINK, "Or the link that it swings"),
-    Key("pivot", _POINT, "With link: the point about which that swings"),
-    Key("point", _POINT, "With link: its edge, its roller's centre or the end of its face"),
-    Key("contact", Text(("knife", "roller", "flat")), "Kind of the follower; knife if left out"),
+    Key("link", _LINK, "Or the oscillating link that it moves"),
+    Key("pivot", _POINT, "With link: the point about which it oscillates"),
+    Key(
+        "point",
+        _POINT,
+        "With link: its knife edge, the centre of its roller or the end of its face",
+    ),
+    Key("contact", Text(("knife", "roller", "flat")), "Kind of the follower; default knife"),
     Key("radius", Number(), "Radius of the roller"),
     Key("base", Number(), "Radius of the base circle, with segments"),
-    Key("start", Number(), "Angle of the cam at which the segments begin; 0 if left out"),
-    Key("segments", Tables(_SEGMENT), "What the follower does in one turn of the cam"),
+    Key("start", Number(), "Angle of the cam at which the segments begin; default 0"),
+    Key("segments", Tables(_SEGMENT), "Motion of the follower in one turn of the cam"),
     Key("profile", _COORDINATES, "Or the outline, in the cam's frame about its centre"),
 )
 _CURVE = (
-    Key("name", Text(), "Name of the place on the curve", required=True),
-    Key("point", _POINT, "The point that runs along it, of another link", required=True),
-    Key("on", _LINK, "The link that carries the curve", required=True),
-    Key("origin", _POINT, "The point of that link about which coordinates are given", True),
+    Key("name", Text(), "Name of the coordinate along the curve", required=True),
+    Key("point", _POINT, "The point that moves along it, of another link", required=True),
+    Key("on", _LINK, "The link with the curve", required=True),
+    Key("origin", _POINT, "The point of that link from which coordinates are measured", True),
     Key("through", _COORDINATES, "Points of the curve in that link's own frame", required=True),
-    Key("closed", Flag(), "Whether the curve leads back to its first point"),
+    Key("closed", Flag(), "Whether the curve is closed"),
 )
 
 LINKAGE = Form(
     "points-and-links",
-    "A mechanism by its points and the links that carry them",
+    "A mechanism given by points and links",
     "",
     (
         *_HEAD,
@@ -346,13 +361,13 @@ LINKAGE = Form(
         Key(
             "points",
             Named(ListOf(Number(), "coordinate", 2, 2)),
-            "One assembled position: A = [35, 20]; exact for ground, elsewhere a sketch will do",
+            "One assembled position: A = [35, 20]; exact for ground, elsewhere a sketch is enough",
             required=True,
         ),
         Key(
             "links",
             Named(ListOf(Text(), "point", 1)),
-            'The points each link carries: crank = ["O2", "A"]; "ground" stands still',
+            'The points each link carries: crank = ["O2", "A"]; "ground" is fixed',
             required=True,
         ),
         Key("lengths", Named(Number(), 2), 'Exact distances in one link: "O2 A" = 40'),
@@ -361,7 +376,7 @@ LINKAGE = Form(
             Named(Number(), 3),
             'Exact angles in one link: "B A P" = 30, at A from AB to AP, counter-clockwise',
         ),
-        Key("slots", Tables(_SLOT), "Pin in slot: a point runs along a line of another link"),
+        Key("slots", Tables(_SLOT), "Pin in slot: a point moves along a line of another link"),
         Key("sliders", Tables(_SLIDER), "A link slides along a line of another without turning"),
         Key("cylinders", Tables(_CYLINDER), "A link of variable length between two points"),
         Key("welds", Tables(_WELD), "Two links that share a point and turn together"),
@@ -370,16 +385,16 @@ LINKAGE = Form(
         Key("racks", Tables(_RACK), "A rack that slides and the pinion that drives it"),
         Key("rolling", Tables(_ROLLING), "A wheel that rolls without slipping"),
         Key("cams", Tables(_CAM), "A cam and its follower"),
-        Key("curves", Tables(_CURVE), "A point runs along a curve of another link"),
-        Key("springs", Tables(_SPRING), "A spring between two points: drawn, and no constraint"),
-        Key("input", Tables(_DRIVES, single=True), "What is driven, and over which values"),
+        Key("curves", Tables(_CURVE), "A point moves along a curve of another link"),
+        Key("springs", Tables(_SPRING), "A spring between two points; drawn, without constraint"),
+        Key("input", Tables(_DRIVES, single=True), "The driven quantity and its range"),
         _TRACE,
         _OUTPUTS,
     ),
 )
 LOOPS = Form(
     "loops",
-    "A mechanism by its vector loop-closure equations",
+    "A mechanism given by vector loop-closure equations",
     "loops",
     (
         *_HEAD,
@@ -394,18 +409,18 @@ LOOPS = Form(
         Key(
             "input",
             Tables(_VARIABLE, single=True),
-            'What is driven: variable = "theta2"',
+            'The driven variable: variable = "theta2"',
             required=True,
         ),
         Key(
             "points",
             Named(Formula()),
-            'Points as formulas, A = "a2*e^(i*theta2)"; they make it drawable',
+            'Points as formulas, A = "a2*e^(i*theta2)", for drawings',
         ),
         Key(
             "links",
             Named(ListOf(Text(), "point", 1)),
-            'Points drawn as one link: crank = ["A0", "A"]; "ground" stands still',
+            'Points drawn as one link: crank = ["A0", "A"]; "ground" is fixed',
         ),
         _TRACE,
         _OUTPUTS,
@@ -425,7 +440,7 @@ EQUATIONS = Form(
             required=True,
         ),
         _GUESS,
-        Key("input", Tables(_VARIABLE, single=True), 'What is driven: variable = "x"'),
+        Key("input", Tables(_VARIABLE, single=True), 'The driven variable: variable = "x"'),
         _OUTPUTS,
     ),
 )

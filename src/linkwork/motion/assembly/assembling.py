@@ -121,7 +121,7 @@ class _Assembly:
                 break
         if self.model.equations.redundant:
             self._keep(misfit(self.model.equations, self.v) <= FITS)
-            self.notes.append("positions that a redundant link does not fit are left out")
+            self.notes.append("positions that do not fit a redundant link are left out")
         theorems = self.theorems if self.completeness.complete else []
         notes = [self.completeness.value, *theorems, *self.notes]
         return Assemblies(

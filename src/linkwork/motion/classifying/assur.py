@@ -170,10 +170,10 @@ def _group(
         return AssurGroup(links=names, name=name, class_number=class_number, order=order)
 
     if holds_input:
-        return told("no Assur group: an input holds the angle of a link that is not at its pin")
+        return told("not an Assur group: an input drives the angle of a link away from its pin")
     higher = next((joint for joint, _ in joints if not joint.kind.lower), None)
     if higher is not None:
-        return told(f"no Assur group: it has a {higher.kind.noun}")
+        return told(f"not an Assur group: it has a {higher.kind.noun}")
     outer = sum(len(ends) == 1 for _, ends in joints)
     if len(links) == 2:
         return told(f"dyad {_dyad(joints)}", 2, outer)
