@@ -318,7 +318,7 @@ def test_sweep_summary_names_what_failed_and_where_the_motion_ends(run: Run) -> 
     done = run("sweep", "double-rocker.toml")
     assert done.stdout.startswith(SWEPT)
     assert done.stdout.endswith(
-        "\nThe whole table: --csv double-rocker.csv. A picture: --draw double-rocker.png.\n"
+        "\nFor the table add --csv double-rocker.csv, for a picture --draw\ndouble-rocker.png.\n"
     )
 
 

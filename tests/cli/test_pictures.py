@@ -299,8 +299,8 @@ def test_unknowns_that_are_left_out_are_told(
         ),
         (
             "crank",
-            "Error: --of crank: curves are drawn over the input: name an unknown, a link,\n"
-            "  an output or the coordinate of a point\n",
+            "Error: --of crank: curves are drawn over the input: name an unknown, a link, an\n"
+            "  output or the coordinate of a point\n",
         ),
     ],
 )

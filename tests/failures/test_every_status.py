@@ -62,8 +62,9 @@ def cannot_close() -> Reached:
     ground = math.sqrt(70**2 - 40**2)
     angle = math.degrees(math.acos((40**2 + 100**2 - 70**2) / (2 * 40 * 100)))
     return four_bar(40, 30, 40, 100).solve(), (
-        f'loop "O2 A B O4" cannot be closed at crank = 90°: near the guess a gap of at least '
-        f'{gap:.6g} mm remains; the loops just close with "A B" = {30 + gap:.6g} mm ({gap:.6g} longer) '
+        f'loop "O2 A B O4" cannot be closed at crank = 90°: near the guess a gap of at '
+        f"least {gap:.6g} mm remains; "
+        f'the loops just close with "A B" = {30 + gap:.6g} mm ({gap:.6g} longer) '
         f'or "O4 B" = {40 + gap:.6g} mm ({gap:.6g} longer) '
         f'or "O2 O4" = {ground:.6g} mm ({100 - ground:.6g} shorter); '
         f"nearest reachable input: crank = {angle:.10g}° (dead point); "
@@ -144,11 +145,13 @@ def no_start() -> Reached:
     gap = math.hypot(10, 100) - 20
     ground = math.sqrt(20**2 - 10**2)
     return motion, (
-        f'loop "O2 A B O4" cannot be closed at crank = 90°: near the guess a gap of at least '
-        f'{gap:.6g} mm remains; the loops just close with "A B" = {10 + gap:.6g} mm ({gap:.6g} longer) '
+        f'loop "O2 A B O4" cannot be closed at crank = 90°: near the guess a gap of at '
+        f"least {gap:.6g} mm remains; "
+        f'the loops just close with "A B" = {10 + gap:.6g} mm ({gap:.6g} longer) '
         f'or "O4 B" = {10 + gap:.6g} mm ({gap:.6g} longer) '
         f'or "O2 O4" = {ground:.6g} mm ({100 - ground:.6g} shorter); '
-        "no input value was found at which the mechanism can be assembled; no configuration exists there"
+        "no input value was found at which the mechanism can be assembled; "
+        "no configuration exists there"
     )
 
 
