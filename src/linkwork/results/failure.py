@@ -138,7 +138,7 @@ class Failure:
         if self.meant:
             another = self.trouble is NewtonTrouble.ANOTHER_ROOT
             which = "the root nearest to the guess is" if another else "a damped iteration finds"
-            yield "beside", f"{which} {self._values(self.meant, _MOST_VALUES)}"
+            yield "root", f"{which} {self._values(self.meant, _MOST_VALUES)}"
         if self.remedies:
             yield "remedy", self._remedy_text()
         if self.nearest_input:
