@@ -7,8 +7,7 @@ from pathlib import Path
 
 import click
 
-from linkwork.api import example_text
-from linkwork.api import examples as example_names
+from linkwork.api import example_text, examples as example_names
 from linkwork.cli.options import debug_option
 from linkwork.cli.output_file import check_outputs, write_text
 from linkwork.cli.terminal import fields, print_lines, title_lines

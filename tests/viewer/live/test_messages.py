@@ -8,8 +8,7 @@ from dataclasses import fields
 from typing import Any, get_args
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.events import EVENTS, Refused

@@ -12,8 +12,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.mechanism.linkage import Linkage
-from linkwork.viewer.live import events as tell
-from linkwork.viewer.live import requests as ask
+from linkwork.viewer.live import events as tell, requests as ask
 from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.workbench import Workbench
 from linkwork.viewer.packing import unpacked

@@ -14,9 +14,7 @@ from linkwork.foundation.status import Status
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Motion
 from linkwork.textfile.text_edits import TextEdits
-from linkwork.viewer.live import events as tell
-from linkwork.viewer.live import requests as ask
-from linkwork.viewer.live import result_events as telling
+from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
 from linkwork.viewer.live.alternative_starts import closing_input, sketch_at
 from linkwork.viewer.live.edits import Before, Followed, applied
 from linkwork.viewer.live.history import History
@@ -325,7 +323,7 @@ class Workbench:
     def _swept(self, live: bool) -> tuple[Motion, str]:
         mechanism = self._mechanism
         if live:
-            return mechanism.sweep_beside(self._motion), ""
+            return mechanism.approximate_sweep(self._motion), ""
         description = mechanism.description
         rows = [description.rows(which) for which in description.inputs]
         count = max(map(len, rows))
