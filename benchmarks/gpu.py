@@ -23,7 +23,7 @@ from linkwork.foundation.errors import InputError
 from linkwork.kernels.gpu.compiling import graphics_card, name_of
 from linkwork.kernels.gpu.kernel import DeviceKernel
 from linkwork.kernels.march.sweep_kernel import Steps
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.program.execution import Execution
 from linkwork.mechanism.quantities import quantities
 
 __all__ = ["FAMILIES", "Compared", "compared", "family_of", "kernel_speed", "main"]
@@ -108,7 +108,7 @@ def kernel_speed(family: Family, certify: bool, positions: int) -> tuple[int, fl
     model = family.designs.base
     path = Path.of(model)
     assert path is not None
-    march = path.march(family.designs, certify, 1, Gear(device="gpu"))
+    march = path.march(family.designs, certify, 1, Execution(device="gpu"))
     kernel = march.kernel
     assert isinstance(kernel, DeviceKernel)
     rows = np.sort(model.rows[:, path.lead])

@@ -10,7 +10,7 @@ from linkwork.batch import Family
 from linkwork.batch.lane_rows import March, Path
 from linkwork.kernels.march.rowwise import _proved, _smooth
 from linkwork.kernels.march.work_arrays import Found
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.program.execution import Execution
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.mechanism.linkage import Linkage
 from tests.described import described_as
@@ -21,7 +21,7 @@ def _march(family: Family, certify: bool) -> tuple[March, np.ndarray]:
     path = Path.of(designs.base)
     assert path is not None
     t = designs.base.rows[:, path.lead]
-    return path.march(designs, certify, 1, Gear()), np.ascontiguousarray(t)
+    return path.march(designs, certify, 1, Execution()), np.ascontiguousarray(t)
 
 
 @pytest.mark.parametrize("certify", [False, True])

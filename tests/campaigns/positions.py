@@ -189,7 +189,7 @@ def _library() -> tuple[tuple[str, LoopTable, Array], ...]:
             continue
         motion = mechanism.sweep(certify=False)
         solver = mechanism.model.compiled.solver
-        if not all(block.system.bends_boundedly for block in solver.blocks):
+        if not all(block.system.has_curvature_bound for block in solver.blocks):
             continue
         v = np.concatenate([motion.q[motion.asked], mechanism.model.rows], axis=1)
         v = v[motion.found[motion.asked]]

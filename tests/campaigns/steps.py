@@ -10,8 +10,8 @@ import numpy.typing as npt
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath
-from linkwork.numerics.continuation.path_proof import Beads, prove_path
-from linkwork.numerics.proof.position_proof import links_hold, prove, reach, rounding_of_inputs
+from linkwork.numerics.continuation.path_proof import PathPoints, prove_path
+from linkwork.numerics.proof.position_proof import prove, reach, rounding_of_inputs, steps_connected
 from tests.campaigns.certificates import Verdict
 from tests.campaigns.positions import closed
 from tests.numerics.systems import Term, blocks_of, loop_table
@@ -94,10 +94,10 @@ def _branch(table: LoopTable, v: Array, length: float) -> Array | None:
     return np.stack(found)
 
 
-def beads_of(solver: BlockSolver, v: Array) -> Beads:
-    """Positions as beads along their own input."""
+def beads_of(solver: BlockSolver, v: Array) -> PathPoints:
+    """Positions as points along their own input."""
     rates = solver.rates(v, PATH.rate)
-    return Beads(
+    return PathPoints(
         t=v[:, solver.unknowns],
         v=v,
         first=rates.first,
@@ -119,7 +119,7 @@ def _true_step(
         spread = np.abs(following - v)[:, n:] + 2 * rounding_of_inputs(following, n)
         around = reach(solver, v, spread)
         arrival = prove(solver, following, rounding_of_inputs(following, n))
-        if not (arrival.holds[0] and links_hold(v, following, around, arrival.each)[0]):
+        if not (arrival.holds[0] and steps_connected(v, following, around, arrival.each)[0]):
             verdict.counts["steps not proved at once"] += 1
             continue
         verdict.counts["steps proved at once"] += 1
@@ -163,9 +163,9 @@ def _wrong_steps(
         stops, wrong = stops[::-1], wrong[::-1]
     right = prove_path(solver, PATH, beads_of(solver, np.ascontiguousarray(stops)))
     verdict.counts["right steps"] += len(stops) - 1
-    verdict.counts["right steps proved"] += int(right.linked.sum())
+    verdict.counts["right steps proved"] += int(right.connected.sum())
     found = prove_path(solver, PATH, beads_of(solver, np.ascontiguousarray(wrong)))
-    return ["a step to another root is proved"] * int(found.linked.sum())
+    return ["a step to another root is proved"] * int(found.connected.sum())
 
 
 def _others(rng: np.random.Generator, table: LoopTable, v: Array) -> Array:

@@ -16,10 +16,10 @@ import linkwork as lw
 from linkwork.foundation.aligned import aligned
 from linkwork.foundation.arrays import Array
 from linkwork.kernels.march import sweep_kernel
-from linkwork.kernels.march.sweep_kernel import LaneKernel, Steps
+from linkwork.kernels.march.sweep_kernel import Steps, SweepKernel
 from linkwork.kernels.program import execution
 from linkwork.kernels.program.code_cache import is_written, written
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.program.execution import Execution
 from linkwork.kernels.program.interpreter import LANES, run
 from linkwork.kernels.program.printing import trial_source
 from linkwork.kernels.program.program import SOURCES, Op
@@ -92,27 +92,27 @@ def test_families_are_the_same_with_compiled_equations(
     assert np.nanmax(away) <= 1e-11 * np.nanmax(np.abs(usual.rows.v))
 
 
-def kernel() -> LaneKernel:
+def kernel() -> SweepKernel:
     model = lw.example("crank-slider").model
-    return LaneKernel(model.compiled.table, block_parts(model), frozenset(), False)
+    return SweepKernel(model.compiled.table, block_parts(model), frozenset(), False)
 
 
 def test_many_positions_are_worth_a_compilation(monkeypatch: pytest.MonkeyPatch) -> None:
     few, many = kernel(), kernel()
-    few.shift(Gear(positions=99_999_999))
+    few.shift(Execution(positions=99_999_999))
     assert few.trial == 0
-    many.shift(Gear(positions=100_000_000))
+    many.shift(Execution(positions=100_000_000))
     assert many.trial != 0
     again = kernel()
-    again.shift(Gear(positions=999_999))
+    again.shift(Execution(positions=999_999))
     assert again.trial == 0
-    again.shift(Gear(positions=1_000_000))  # what the run before has compiled
+    again.shift(Execution(positions=1_000_000))  # what the run before has compiled
     assert again.trial == many.trial
-    again.shift(Gear(specialised=False, positions=1 << 40))  # and no more
+    again.shift(Execution(specialised=False, positions=1 << 40))  # and no more
     assert again.trial == 0
     monkeypatch.setattr(execution, "_LONGEST", 10)
     long = kernel()
-    long.shift(Gear(positions=1 << 40))
+    long.shift(Execution(positions=1 << 40))
     assert long.trial == 0
 
 
@@ -161,11 +161,11 @@ def test_without_a_folder_to_write_to_the_machine_serves(
     taken.write_text("")
     monkeypatch.setenv("LINKWORK_CACHE", str(taken))
     with pytest.raises(lw.InputError) as told:
-        kernel().shift(Gear(specialised=True))
+        kernel().shift(Execution(specialised=True))
     assert str(told.value) == (
         f"compiled code cannot be kept in {taken} ({os.strerror(17)}): "
         "name another folder in LINKWORK_CACHE, or ask for specialised=False"
     )
     mine = kernel()
-    mine.shift(Gear(positions=1 << 40))
+    mine.shift(Execution(positions=1 << 40))
     assert mine.trial == 0

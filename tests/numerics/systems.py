@@ -55,7 +55,7 @@ class Cubic:
         return np.asarray((6 * v[:, 0] * d[:, 0] ** 2 + 2 * d[:, 0] * d[:, 1])[:, None])
 
     @property
-    def bends_boundedly(self) -> bool:
+    def has_curvature_bound(self) -> bool:
         return False
 
     def curvature(self, v: Array, matrix: Array) -> NoReturn:

@@ -1,4 +1,4 @@
-"""The everyday objects: mechanisms, made and used."""
+"""Mechanisms, as users make and use them."""
 
 from __future__ import annotations
 

@@ -168,7 +168,7 @@ class SolvableMechanism:
         Parameters
         ----------
         start, stop, step : number, optional
-            Replace the range of the (only) input, in everyday units.
+            Replace the range of the (only) input, in file units.
         configuration : str, optional
             Start from the configuration of this name at the guess's own input value, or on this
             branch of ``circuits()``.
@@ -204,10 +204,10 @@ class SolvableMechanism:
         Newton-Raphson starts from the neighbour's positions, at all rows at once. Where that
         would not be safe, the branch is followed anew; see :func:`linkwork.motion.renewed`.
         """
-        renewed = None if neighbour is None else motion.renewed(self.model, neighbour)
-        if renewed is None:
-            renewed = motion.sweep(self.model, certify=False, explained=False)
-        return renewed
+        warm_started = None if neighbour is None else motion.warm_started(self.model, neighbour)
+        if warm_started is None:
+            warm_started = motion.sweep(self.model, certify=False, explained=False)
+        return warm_started
 
     def moving_loops(self, cycle: Motion) -> tuple[MovingLoop, ...]:
         """The loop equations over a motion, as vectors; none if there are no loops."""
@@ -257,7 +257,7 @@ class SolvableMechanism:
         Parameters
         ----------
         dimensions : Mapping[str, number or (D,)]
-            What varies, everyday units: dimensions, lengths (``"O2 A"``), angles, coordinates
+            What varies, in file units: dimensions, lengths (``"O2 A"``), angles, coordinates
             (``"O4.x"``); a plan of :mod:`linkwork.batch`.
         """
         return batch.family_of(self.model, dimensions)

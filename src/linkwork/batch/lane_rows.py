@@ -11,14 +11,14 @@ from linkwork.batch.designs import Designs
 from linkwork.batch.limits import LIMIT_KINDS
 from linkwork.batch.path_entry import led_to_rows
 from linkwork.batch.rows import DesignRows
-from linkwork.batch.single_sweep import sweep_alone
+from linkwork.batch.single_sweep import sweep_single
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.kernels.march.dead_points import dead_points
 from linkwork.kernels.march.sweep_kernel import LaneRows, RowsOfOne, Steps
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.program.execution import Execution
 from linkwork.motion.by_kernels import are_served, kernel_of
 from linkwork.motion.drive import Drive
 from linkwork.motion.lock_step import lock_step
@@ -34,7 +34,7 @@ _UNIT = float(np.finfo(float).eps) / 2.0
 
 
 def design_rows(
-    designs: Designs, *, certify: bool, threads: int = 1, gear: Gear | None = None
+    designs: Designs, *, certify: bool, threads: int = 1, execution: Execution | None = None
 ) -> DesignRows:
     """Every design over the rows of the mechanism's table, on the branch of its own start.
 
@@ -55,9 +55,9 @@ def design_rows(
     if march is None:
         found.clear(np.ones(found.status.shape, dtype=bool), certify)
     else:
-        left &= ~march.fill(designs, found, certify, threads, gear or Gear())
+        left &= ~march.fill(designs, found, certify, threads, execution or Execution())
     for k in np.flatnonzero(left):
-        sweep_alone(designs, int(k), found, certify)
+        sweep_single(designs, int(k), found, certify)
     return found
 
 
@@ -98,10 +98,10 @@ class Path:
         return spread
 
     def fill(
-        self, designs: Designs, found: DesignRows, certify: bool, threads: int, gear: Gear
+        self, designs: Designs, found: DesignRows, certify: bool, threads: int, execution: Execution
     ) -> BoolArray:
         """Designs that went through all rows are filled in; which they are, (D,)."""
-        march = self.march(designs, certify, threads, gear)
+        march = self.march(designs, certify, threads, execution)
         t = self.model.rows[:, self.lead]
         way = slice(None, None, -1 if self.falling else 1)
         whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
@@ -111,13 +111,13 @@ class Path:
         march.note_limits(found, whole)
         return whole
 
-    def march(self, designs: Designs, certify: bool, threads: int, gear: Gear) -> March:
+    def march(self, designs: Designs, certify: bool, threads: int, execution: Execution) -> March:
         """The march of designs whose start lies on the path, or can be led to it."""
         inputs = designs.start[:, self.model.compiled.solver.unknowns :]
         start = inputs[:, self.lead]
         away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
         served: BoolArray = np.all(away <= _ON_PATH * np.maximum(1.0, np.abs(inputs)), axis=1)
-        return March(self, designs, served, certify, threads, gear)
+        return March(self, designs, served, certify, threads, execution)
 
     def _note(self, found: DesignRows, reached: BoolArray, whole: BoolArray, certify: bool) -> None:
         """Statuses of rows that were reached, and of the others of designs that are done."""
@@ -141,7 +141,7 @@ class March:
         served: BoolArray,
         certify: bool,
         threads: int,
-        gear: Gear,
+        execution: Execution,
     ) -> None:
         self.path, self.certify, self.threads = path, certify, threads
         compiled, model = path.model.compiled, path.model
@@ -149,8 +149,8 @@ class March:
         fine = designs.problem == 0
         self.coefficients = _coefficients(path, designs)
         self.zeros = zero_coefficients(designs, self.coefficients)
-        self.kernel = kernel_of(model, frozenset(self.zeros), certify, gear.device)
-        self.kernel.shift(gear)
+        self.kernel = kernel_of(model, frozenset(self.zeros), certify, execution.device)
+        self.kernel.shift(execution)
         self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # else not found
         self.start = designs.start[:, n + path.lead].copy()
         self._enter(designs, np.flatnonzero(fine & ~served))

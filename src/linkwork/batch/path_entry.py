@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwork.batch.designs import Designs
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.kernels.march.sweep_kernel import LaneKernel, LaneRows, Steps
+from linkwork.kernels.march.sweep_kernel import LaneRows, Steps, SweepKernel
 
 __all__ = ["led_to_rows"]
 
@@ -19,7 +19,7 @@ _CHUNK = 1 << 22  # distances held at a time
 def led_to_rows(
     designs: Designs,
     rows: Array,
-    kernel: LaneKernel,
+    kernel: SweepKernel,
     coefficients: Mapping[str, Array],
     which: IndexArray,
     threads: int,

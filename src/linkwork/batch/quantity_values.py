@@ -32,7 +32,7 @@ class QuantityValues:
     ----------
     designs : Designs
     inputs : (R, p)
-        As asked, everyday units.
+        As asked, in file units.
     v : (n, R, D)
         Unknowns, internal units; NaN where there is no position.
     turns : (R, D)
@@ -68,7 +68,7 @@ class QuantityValues:
         return quantity_names(self.model)
 
     def of(self, name: str) -> Array:
-        """A quantity by name, (D, R), everyday units.
+        """A quantity by name, (D, R), in file units.
 
         Raises
         ------
@@ -88,7 +88,7 @@ class QuantityValues:
         return places
 
     def jet(self, name: str) -> tuple[Kind, Jet]:
-        """What is named, (R, D): the value in everyday units, rates in radians and lengths.
+        """What is named, (R, D): the value in file units, rates in radians and lengths.
 
         Raises
         ------
@@ -180,7 +180,7 @@ class QuantityValues:
         return value * s.v, first, value * second
 
     def _output(self, name: str) -> Jet:
-        """Formulas see and give everyday units; derivatives of angles come back in radians."""
+        """Formulas see and give file units; derivatives of angles come back in radians."""
         output, shape = self.equations.outputs[name], self._lost.shape
         scale = self.model.units.scale(Kind(output.kind))
         with np.errstate(all="ignore"):
@@ -200,10 +200,10 @@ class QuantityValues:
         for variable in equations.variables:
             if variable.symbol in used:
                 jet = self._variable(variable.symbol)
-                found[variable.symbol] = self._everyday(jet, Kind(variable.kind))
+                found[variable.symbol] = self._in_file_units(jet, Kind(variable.kind))
         for link in equations.links:
             if canonical(link) in used and canonical(link) not in found:
-                found[canonical(link)] = self._everyday(self._link(link), Kind.ANGLE)
+                found[canonical(link)] = self._in_file_units(self._link(link), Kind.ANGLE)
         for point in equations.points:
             for axis in "xy":
                 symbol = coordinate_name(point, axis)
@@ -211,7 +211,7 @@ class QuantityValues:
                     found[symbol] = self._coordinate(point, axis)
         return found
 
-    def _everyday(self, jet: Jet, kind: Kind) -> Jet:
+    def _in_file_units(self, jet: Jet, kind: Kind) -> Jet:
         scale = 1.0 / self.model.units.scale(kind)
         return Jet(jet.v * scale, jet.d1 * scale, jet.d2 * scale)
 

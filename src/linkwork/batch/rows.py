@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from linkwork.batch.single_rows import OwnRows
+from linkwork.batch.single_rows import SingleRows
 from linkwork.foundation.aligned import aligned
 from linkwork.foundation.arrays import Array, BoolArray, StatusArray, TurnArray
 from linkwork.foundation.certification import Certification
@@ -34,7 +34,7 @@ class DesignRows:
     limits: Array
     limit_kinds: StatusArray
     alone: BoolArray
-    own: dict[int, OwnRows] = field(default_factory=dict)
+    own: dict[int, SingleRows] = field(default_factory=dict)
 
     @classmethod
     def blank(

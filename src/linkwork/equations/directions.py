@@ -165,7 +165,7 @@ def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
         If it has none.
     """
     if table.functions:
-        cams = table.bends_boundedly
+        cams = table.has_curvature_bound
         raise NoDirectionForm(
             "contain a cam or a curve" if cams else "are plain equations, not loops"
         )

@@ -177,14 +177,14 @@ class LoopTable:
         )
 
     @property
-    def bends_boundedly(self) -> bool:
+    def has_curvature_bound(self) -> bool:
         """Whether :meth:`curvature` knows a bound: not for rows of any formula."""
         return len(self._bounded) == len(self.functions)
 
     @property
     def is_straight(self) -> bool:
         """Whether no equation bends with the unknowns: lines, and laws of what is known."""
-        if self.loops.rows or not self.bends_boundedly:
+        if self.loops.rows or not self.has_curvature_bound:
             return False
         return not any(
             weight and variable < self.unknowns

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from linkwork.motion.solving import solve
     from linkwork.motion.sweeping import sweep
     from linkwork.motion.vector_loops import moving_loops, vector_loops
-    from linkwork.motion.warm_start import renewed
+    from linkwork.motion.warm_start import warm_started
 else:
     __getattr__ = loader(
         __name__,
@@ -37,7 +37,7 @@ else:
             "iterating": ("guessed_points", "iterates", "pulled_guess"),
             "model": ("Model", "model_of"),
             "nearest_assembling": ("nearest_assembly",),
-            "renewing": ("renewed",),
+            "warm_start": ("warm_started",),
             "solving": ("solve",),
             "sweeping": ("sweep",),
             "vector_loops": ("moving_loops", "vector_loops"),
@@ -61,10 +61,10 @@ __all__ = [
     "moving_loops",
     "nearest_assembly",
     "pulled_guess",
-    "renewed",
     "solve",
     "solve_configuration",
     "started_in",
     "sweep",
     "vector_loops",
+    "warm_started",
 ]

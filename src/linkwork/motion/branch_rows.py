@@ -43,11 +43,13 @@ class Asked:
 
     t: Array
     inputs: Array
-    everyday: Array
+    in_file_units: Array
 
     def take(self, where: IndexArray) -> Asked:
         """Some of them."""
-        return Asked(t=self.t[where], inputs=self.inputs[where], everyday=self.everyday[where])
+        return Asked(
+            t=self.t[where], inputs=self.inputs[where], in_file_units=self.in_file_units[where]
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -111,7 +113,7 @@ def rows_of_branch(
     The track is bold first; where that leaves rows unproved it is followed again with care. With a
     ``passage`` that led to the anchor the branch is followed onwards only.
     """
-    provable = all(block.system.bends_boundedly for block in drive.solver.blocks)
+    provable = all(block.system.has_curvature_bound for block in drive.solver.blocks)
     tries = (BOLD, None) if certify and provable else (None,)
     for care in tries:
         track = _covering(drive, anchor, asked.t, care, report, passage)
@@ -214,7 +216,7 @@ class _Rows:
 
     def _blank(self) -> SolvedRows:
         variables = self.drive.solver.variables
-        found = SolvedRows.blank(self.asked.everyday, variables, Status.CONVERGED)
+        found = SolvedRows.blank(self.asked.in_file_units, variables, Status.CONVERGED)
         if not self.certify:
             found.certification[:] = Certification.NOT_ASKED.code
         return found

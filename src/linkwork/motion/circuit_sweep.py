@@ -150,5 +150,5 @@ def _asked_on(branch: CurveBranch, asked: Asked, parameter: int, free: bool) -> 
     if len(order):  # 0 and 360 degrees are one row here
         keep = np.concatenate([[True], np.abs(np.diff(t[order])) > 1e-12])
         order = order[keep]
-    everyday = asked.everyday[row[order]]
-    return Asked(t=t[order], inputs=asked.inputs[row[order]], everyday=everyday)
+    in_file_units = asked.in_file_units[row[order]]
+    return Asked(t=t[order], inputs=asked.inputs[row[order]], in_file_units=in_file_units)

@@ -98,7 +98,7 @@ def _enter(drive: Drive, v: Array, row: int, rows: SolvedRows) -> Proof | None:
     rows.residual[row], rows.condition[row] = solver.residual(here)[0], rates.condition[0]
     if rows.certification[row] == Certification.NOT_ASKED.code:
         return None
-    bounded = all(block.system.bends_boundedly for block in solver.blocks)
+    bounded = all(block.system.has_curvature_bound for block in solver.blocks)
     why = Certification.POSITION_NOT_PROVED if bounded else Certification.NO_BOUND
     rows.certification[row] = why.code
     rounding = 4.0 * _UNIT * np.abs(here[:, solver.unknowns :])

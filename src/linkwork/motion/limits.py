@@ -23,7 +23,7 @@ from linkwork.numerics.continuation.change_point import (
     most_singular,
 )
 from linkwork.numerics.continuation.curve_proof import same_solution
-from linkwork.numerics.continuation.local_parametrization import Led
+from linkwork.numerics.continuation.local_parametrization import Parametrization
 from linkwork.numerics.continuation.passage import Passage, pass_change_points
 from linkwork.numerics.continuation.turning_point import TurnAhead, TurningPoint, turn_beyond
 from linkwork.results.motion import Limit, LimitKind
@@ -65,7 +65,7 @@ class BranchEnd:
     crossings: tuple[ChangePoint, ...] = ()
     nodes: tuple[Node, ...] = ()
     passage: Passage | None = None
-    led: Led | None = None
+    led: Parametrization | None = None
     node: Node | None = None
     ahead: TurnAhead | None = None
     certification: Certification = Certification.NOT_ASKED
@@ -153,7 +153,7 @@ def _dead_end(drive: Drive, last: Node, ahead: TurnAhead, side: float, certify: 
 
 
 def end_at_dead_point(
-    drive: Drive, turn: TurningPoint, led: Led, certify: bool, joined: bool = False
+    drive: Drive, turn: TurningPoint, led: Parametrization, certify: bool, joined: bool = False
 ) -> BranchEnd:
     """The end of a branch at a dead point, seen by the leader ``led``.
 
@@ -173,7 +173,7 @@ def end_at_dead_point(
     if not certify:
         return found
     if turn.proof is None:
-        bounded = all(block.system.bends_boundedly for block in drive.solver.blocks)
+        bounded = all(block.system.has_curvature_bound for block in drive.solver.blocks)
         why = Certification.POSITION_NOT_PROVED if bounded else Certification.NO_BOUND
         return replace(found, certification=why)
     return replace(
@@ -185,7 +185,7 @@ def end_at_dead_point(
 
 
 def dead_point_limit(drive: Drive, turn: TurningPoint) -> Limit:
-    """What is told of a dead point, everyday units."""
+    """What is told of a dead point, in file units."""
     return _located(drive, turn, LimitKind.DEAD_POINT, _locking(drive, turn.v))
 
 
@@ -196,7 +196,7 @@ def _locking(drive: Drive, v: Array) -> tuple[int, ...]:
 
 
 def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
-    """What is told of a change point between two curves, everyday units."""
+    """What is told of a change point between two curves, in file units."""
     leads = drive.leads
     p = leads.parameter
     rates = []

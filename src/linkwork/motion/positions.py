@@ -64,7 +64,7 @@ def found_message(status: Status, condition: float, failure: Failure | None = No
 
 
 def target_values(model: Model, at: float | Mapping[str, float] | None) -> Array:
-    """The input values asked for, everyday units, (p,); the guess's own for ``None``.
+    """The input values asked for, in file units, (p,); the guess's own for ``None``.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def target_values(model: Model, at: float | Mapping[str, float] | None) -> Array
         For input values that do not fit the mechanism.
     """
     if at is None:
-        return model.everyday_start
+        return model.start_in_file_units
     if not isinstance(at, Mapping):
         inputs = model.equations.inputs
         at = {inputs[0].name if len(inputs) == 1 else "": at}

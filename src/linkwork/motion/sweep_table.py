@@ -112,7 +112,7 @@ class SweepTable:
         one put between them does the same, inside the table's range if it can.
         """
         lead, scale = self.drive.lead, self.drive.unit
-        named = self.asked.everyday[:, lead] * scale
+        named = self.asked.in_file_units[:, lead] * scale
         beside = np.argsort(np.abs(self.asked.t - here), kind="stable")[:2]
         turns = [round(float(named[k] - self.asked.t[k]) / FULL_TURN) for k in beside]
         slack = _slack_at(abs(here))
@@ -147,7 +147,7 @@ class SweepTable:
         if not named.limit.located:
             return named
         for row in np.flatnonzero(np.abs(self.asked.t - here) <= _slack_at(here)):
-            asked = float(self.asked.everyday[row, lead])
+            asked = float(self.asked.in_file_units[row, lead])
             if low <= asked <= high:
                 return replace(named, limit=replace(named.limit, input=asked))
         return named
@@ -235,7 +235,7 @@ class SweepTable:
     def _inputs(self, end: BranchEnd, here: float) -> Array:
         """Everyday inputs at an end, shifted by the whole turns to ``here``, (1, p)."""
         scale, path = self.drive.model.input_scale, self.drive.path
-        everyday = np.array([short_number(x) for x in path.at(end.t) / scale])
-        everyday[self.drive.lead] = end.limit.input
+        in_file_units = np.array([short_number(x) for x in path.at(end.t) / scale])
+        in_file_units[self.drive.lead] = end.limit.input
         turns = round((here - end.t) / FULL_TURN) + self.turns_at(here)
-        return (everyday + turns * path.rate * (FULL_TURN / scale))[None, :]
+        return (in_file_units + turns * path.rate * (FULL_TURN / scale))[None, :]

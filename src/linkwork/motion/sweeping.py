@@ -130,7 +130,7 @@ def _begun(
         return start
     lead, rate = lock_step(rows)
     drive = Drive.through(model, rows[0], rate, lead)
-    asked = Asked(t=rows[:, lead], inputs=rows, everyday=model.everyday_rows)
+    asked = Asked(t=rows[:, lead], inputs=rows, in_file_units=model.rows_in_file_units)
     entry = _onto_path(drive, start, asked.t, certify)
     if entry is None:
         message = "no row of the table could be reached from the guess's own input values"
@@ -333,8 +333,8 @@ class _Sweep:
         path, scale = self.drive.path, self.model.input_scale
         inputs = path.at(np.array([t]))
         turns = round((here - t) / FULL_TURN) + table.turns_at(here)
-        everyday = inputs / scale + turns * path.rate * (FULL_TURN / scale)
-        asked = Asked(t=np.array([t]), inputs=inputs, everyday=everyday)
+        in_file_units = inputs / scale + turns * path.rate * (FULL_TURN / scale)
+        asked = Asked(t=np.array([t]), inputs=inputs, in_file_units=in_file_units)
         anchor = track.nodes[track.start]
         return self._branch(anchor, asked, branch.name, branch.standing).rows
 
@@ -400,7 +400,9 @@ def _led_to(drive: Drive, start: Start, t: float, certify: bool) -> tuple[Node, 
 
 
 def _no_rows(model: Model) -> SolvedRows:
-    return SolvedRows.blank(model.everyday_rows, model.compiled.solver.variables, Status.NO_START)
+    return SolvedRows.blank(
+        model.rows_in_file_units, model.compiled.solver.variables, Status.NO_START
+    )
 
 
 def _without_start(model: Model, start: Start) -> Motion:

@@ -46,7 +46,7 @@ class System(Protocol):
         """D²F[d, d], (B, m)."""
 
     @property
-    def bends_boundedly(self) -> bool:
+    def has_curvature_bound(self) -> bool:
         """Whether :meth:`curvature` knows a bound."""
 
     def curvature(self, v: Array, matrix: Array) -> Curvature:

@@ -25,7 +25,7 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class Units:
-    """The units of one mechanism: everyday values and rates."""
+    """The units of one mechanism: values in file units and rates."""
 
     angle: AngleUnit
     length: str
@@ -39,7 +39,7 @@ class Units:
         return {Kind.ANGLE: "rad", Kind.LENGTH: self.length}.get(kind, "1")
 
     def scale(self, kind: Kind) -> float:
-        """Internal units (radians) per everyday unit."""
+        """Internal units (radians) per file unit."""
         return self.angle.radians if kind is Kind.ANGLE else 1.0
 
 

@@ -122,7 +122,7 @@ class _Reader:
         )
         columns = len(model.equations.unknowns) + 4 + len(job.keep)
         size = self.content.get("chunk") or usual_chunk(
-            plan.count, len(model.everyday_rows), columns
+            plan.count, len(model.rows_in_file_units), columns
         )
         return Study(
             name=self.content.get("name", stem),
@@ -280,7 +280,7 @@ class _Reader:
     ) -> dict[str, Any]:
         """Everything on which results depend, as JSON would hold it."""
         content = self.content
-        first, last = model.everyday_rows[[0, -1]].tolist()
+        first, last = model.rows_in_file_units[[0, -1]].tolist()
         return {
             "linkwork": job.version,
             "mechanism": mechanism.replace("\r\n", "\n"),
@@ -289,7 +289,7 @@ class _Reader:
             "seed": content.get("seed"),
             "dimensions": [[name, entry] for name, entry in content.get("dimensions", {}).items()],
             "table": _digest(plan) if content["sampling"] == "table" else None,
-            "input": {"first": first, "last": last, "rows": len(model.everyday_rows)},
+            "input": {"first": first, "last": last, "rows": len(model.rows_in_file_units)},
             "keep": list(job.keep),
             "reductions": {name: str(reduced) for name, reduced in job.reductions.items()},
             "filters": {name: str(condition) for name, condition in job.filters.items()},
@@ -308,7 +308,7 @@ def _digest(plan: Plan) -> str:
 
 
 def _units(motion: FamilyMotion, names: set[str]) -> dict[str, str]:
-    """The everyday units of quantities."""
+    """The file units of quantities."""
     if not names:
         return {}
     arrays = motion.to_xarray(*names)

@@ -127,7 +127,7 @@ def _files_of(study: Study) -> ZarrFiles:
         _IDENTITY: json.dumps(study.identity, ensure_ascii=False),
         **({"coordinates": " ".join(others)} if others else {}),
     }
-    sizes = {DESIGN: study.plan.count, lead: len(study.model.everyday_rows)}
+    sizes = {DESIGN: study.plan.count, lead: len(study.model.rows_in_file_units)}
     return ZarrFiles(study.variables, sizes, study.chunk_size, attributes)
 
 

@@ -27,14 +27,14 @@ from linkwork.kernels.march.step_trial import (
     settled,
 )
 from linkwork.kernels.march.work_arrays import FOUND, TABLE, TASKS, Found, Table, Tasks
-from linkwork.kernels.program.compiling import compiled_for, types, uncounted
+from linkwork.kernels.program.compiling import compiled_for, njit_no_refcount, types
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.program import ROLES
 
 __all__ = ["march"]
 
 
-@uncounted
+@njit_no_refcount
 def _noted(
     w: Array,
     lane: int,
@@ -54,7 +54,7 @@ def _noted(
         found.radius[row, place] = w[topology.noted[RADIUS], lane]
 
 
-@uncounted
+@njit_no_refcount
 def _stopped(
     w: Array, lane: int, topology: Topology, turn: int, way: int, member: int, found: Found
 ) -> None:

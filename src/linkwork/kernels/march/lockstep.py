@@ -26,10 +26,10 @@ from linkwork.kernels.march.work_arrays import FOUND, TABLE, TASKS, Found, Table
 from linkwork.kernels.program.compiling import (
     compiled,
     compiled_for,
-    copied_to,
-    soon_written,
+    memcpy,
+    njit_no_refcount,
+    prefetch,
     types,
-    uncounted,
 )
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.program import ROLES
@@ -41,7 +41,7 @@ _LARGEST = 0.5  # of the largest step: further apart, rows have nodes between th
 _WORTH = LANES // 2  # with fewer lanes left each goes on by itself
 
 
-@uncounted
+@njit_no_refcount
 def _left(
     lane: int,
     member: int,
@@ -60,7 +60,7 @@ def _left(
     return count + 1
 
 
-@uncounted
+@njit_no_refcount
 def _weighted(
     w: Array,
     topology: Topology,
@@ -90,23 +90,23 @@ def _weighted(
                 w[weights[j], 1:] = w[weights[j], 0]
 
 
-@uncounted
+@njit_no_refcount
 def _address(array: Array, j: int, row: int, first: int) -> int:
     strides = array.strides
     return array.ctypes.data + j * strides[0] + row * strides[1] + first * strides[2]
 
 
-@uncounted
+@njit_no_refcount
 def _fetched(first: int, width: int, row: int, table: Table, found: Found) -> None:
     """The places of a row are brought near while the row is computed."""
     target = found.unknowns
     for j in range(table.unknowns):
         place = _address(target, j, row, first)
         for line in range(0, width * target.strides[2], _LINE):
-            soon_written(place + line)
+            prefetch(place + line)
 
 
-@uncounted
+@njit_no_refcount
 def _kept(
     first: int,
     width: int,
@@ -127,7 +127,7 @@ def _kept(
         for j in range(table.unknowns):
             source = place[-turn % ROLES, j]
             if target.strides[2] == w.itemsize:
-                copied_to(_address(target, j, row, first), w[source].ctypes.data, width)
+                memcpy(_address(target, j, row, first), w[source].ctypes.data, width)
                 continue
             for i in range(width):
                 target[j, row, first + i] = w[source, i]
@@ -146,7 +146,7 @@ def _kept(
             reached[row, first + i] = True
 
 
-@uncounted
+@njit_no_refcount
 def _set_out(
     base: int,
     way: int,
@@ -190,7 +190,7 @@ def _set_out(
     return ahead, together, count
 
 
-@uncounted
+@njit_no_refcount
 def _aimed(
     base: int,
     width: int,

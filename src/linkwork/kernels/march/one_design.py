@@ -36,7 +36,7 @@ class Ready:
 
 
 class Scout(Protocol):
-    """What finds starts from guesses that are not near; see :class:`LaneKernel`."""
+    """What finds starts from guesses that are not near; see :class:`SweepKernel`."""
 
     def given(self, guess: Array, start: Array) -> Array:
         """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""
@@ -95,7 +95,7 @@ class Loaded:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RowsOfOne:
-    """The rows of one design, computed as often as wanted; see :meth:`LaneKernel.alone`."""
+    """The rows of one design, computed as often as wanted; see :meth:`SweepKernel.alone`."""
 
     loaded: Loaded
     guess: Array

@@ -27,7 +27,7 @@ from linkwork.kernels.march.step_trial import (
     settled,
 )
 from linkwork.kernels.march.work_arrays import FOUND, TABLE, Found, Table
-from linkwork.kernels.program.compiling import compiled, compiled_for, types, uncounted
+from linkwork.kernels.program.compiling import compiled, compiled_for, njit_no_refcount, types
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.program import ROLES
 
@@ -48,7 +48,7 @@ _BEND = 0.1  # without proofs, from row to row: a change of rates times the dist
 _ROUGH = 0.03  # and what rates do not explain, of the way and of as much for a largest step
 
 
-@uncounted
+@njit_no_refcount
 def _gap(rows: Array) -> float:
     """From row to row; 0 where it is not the same everywhere."""
     gap: float = (rows[-1] - rows[0]) / (len(rows) - 1)
@@ -58,7 +58,7 @@ def _gap(rows: Array) -> float:
     return gap
 
 
-@uncounted
+@njit_no_refcount
 def _set_out(topology: Topology, w: Array, node: Array) -> None:
     """A node (S,) into the first lane, as the only one."""
     for role in range(1, ROLES):
@@ -66,7 +66,7 @@ def _set_out(topology: Topology, w: Array, node: Array) -> None:
             w[topology.nodes[role, j], 0] = node[j]
 
 
-@uncounted
+@njit_no_refcount
 def _noted(topology: Topology, turn: int, w: Array, lane: int, node: Array) -> None:
     """The trial of a lane as a node (S,)."""
     for j in range(len(node)):
@@ -130,7 +130,7 @@ def _ready(topology: Topology, w: Array, node: Array, row: int, table: Table) ->
     return turn, known
 
 
-@uncounted
+@njit_no_refcount
 def _all_good(topology: Topology, w: Array, lanes: int) -> bool:
     good, bad = topology.noted[GOOD], 0
     for i in range(lanes):
@@ -138,7 +138,7 @@ def _all_good(topology: Topology, w: Array, lanes: int) -> bool:
     return bad == 0
 
 
-@uncounted
+@njit_no_refcount
 def _weighed(times: AnyArray, count: int, t: AnyArray, lanes: int, cells: Array) -> None:
     """Weights at t (lanes,) of values and derivatives at ``count`` times, (2 count, lanes), in
     Hermite's polynomial.
@@ -201,7 +201,7 @@ def _knots(width: int) -> CountArray:
     return knots
 
 
-@uncounted
+@njit_no_refcount
 def _predicted(
     topology: Topology,
     turn: int,
@@ -224,7 +224,7 @@ def _predicted(
                 w[guess, i] += cells[2 * j, i] * value + cells[2 * j + 1, i] * rate
 
 
-@uncounted
+@njit_no_refcount
 def _smooth(
     topology: Topology,
     turn: int,
@@ -258,7 +258,7 @@ def _smooth(
     return rough == 0
 
 
-@uncounted
+@njit_no_refcount
 def _kept(
     topology: Topology, turn: int, w: Array, lanes: int, row: int, unknowns: int, found: Found
 ) -> None:
@@ -331,7 +331,7 @@ def _stretch(
     return first
 
 
-@uncounted
+@njit_no_refcount
 def _linked(
     topology: Topology,
     w: Array,
@@ -375,7 +375,7 @@ def _linked(
     return outside == 0
 
 
-@uncounted
+@njit_no_refcount
 def _joined(
     topology: Topology,
     w: Array,

@@ -13,7 +13,13 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.kernels.march.step_control import SAME, START_STEPS, STEPS, hermite, trusted
-from linkwork.kernels.program.compiling import call_at, compiled, named_tuple, types, uncounted
+from linkwork.kernels.program.compiling import (
+    call_at,
+    compiled,
+    named_tuple,
+    njit_no_refcount,
+    types,
+)
 from linkwork.kernels.program.interpreter import LANES, run_part
 from linkwork.kernels.program.program import ROLES, Code
 
@@ -89,24 +95,24 @@ TOPOLOGY = named_tuple(
 )
 
 
-@uncounted
+@njit_no_refcount
 def _one(topology: Topology, turn: int, w: Array, number: int, lanes: int) -> None:
     first, spans = turn * topology.length, topology.spans
     run_part(topology.code, first + spans[number, 0], first + spans[number, 1], w, lanes)
 
 
-@uncounted
+@njit_no_refcount
 def _blocks(topology: Topology) -> int:
     return len(topology.noted) - LIVE
 
 
-@uncounted
+@njit_no_refcount
 def proved(topology: Topology) -> bool:
     """Whether its trials are proved."""
     return len(topology.spans) > BLOCKS + 3 * _blocks(topology)
 
 
-@uncounted
+@njit_no_refcount
 def _any(w: Array, row: int, standing: Array, lanes: int) -> bool:
     """Whether a mask holds in a lane that counts."""
     found = 0
@@ -115,7 +121,7 @@ def _any(w: Array, row: int, standing: Array, lanes: int) -> bool:
     return found > 0
 
 
-@uncounted
+@njit_no_refcount
 def _any_live(topology: Topology, w: Array, standing: Array, lanes: int) -> bool:
     """Whether a lane that counts has not converged."""
     found = False
@@ -124,7 +130,7 @@ def _any_live(topology: Topology, w: Array, standing: Array, lanes: int) -> bool
     return found
 
 
-@uncounted
+@njit_no_refcount
 def _iterate(
     topology: Topology,
     turn: int,
@@ -143,7 +149,7 @@ def _iterate(
     return most
 
 
-@uncounted
+@njit_no_refcount
 def judged(topology: Topology, turn: int, w: Array, lanes: int) -> None:
     """Proofs, if there are any, and the judgement."""
     for program in range(BLOCKS + 3 * _blocks(topology), len(topology.spans)):
@@ -151,7 +157,7 @@ def judged(topology: Topology, turn: int, w: Array, lanes: int) -> None:
     _one(topology, turn, w, JUDGE, lanes)
 
 
-@uncounted
+@njit_no_refcount
 def _by_written(topology: Topology, turn: int, w: Array, lanes: int) -> None:
     place, first = 8 * LANES * topology.nodes.shape[1], w.ctypes.data
     call_at(
@@ -166,7 +172,7 @@ def _by_written(topology: Topology, turn: int, w: Array, lanes: int) -> None:
     )
 
 
-@uncounted
+@njit_no_refcount
 def _given(topology: Topology, turn: int, w: Array, together: bool, lanes: int) -> None:
     """What is given at the trial."""
     shared = topology.shared
@@ -178,7 +184,7 @@ def _given(topology: Topology, turn: int, w: Array, together: bool, lanes: int) 
         _one(topology, turn, w, GIVEN, lanes)
 
 
-@uncounted
+@njit_no_refcount
 def settled(
     topology: Topology, turn: int, w: Array, standing: Array, together: bool, lanes: int
 ) -> int:
@@ -216,7 +222,7 @@ def settled(
     return 1 + most
 
 
-@uncounted
+@njit_no_refcount
 def met(topology: Topology, turn: int, w: Array, standing: Array, lanes: int, unknowns: int) -> int:
     """From a guess in the place of the oldest node, the only one that has weight, to a position:
     how many corrections that took, 0 if not all lanes have converged. The judgement is made, but
@@ -259,7 +265,7 @@ def solved_slowly(topology: Topology, w: Array, lanes: int) -> None:
             judged(topology, 0, w, lanes)
 
 
-@uncounted
+@njit_no_refcount
 def all_loaded(w: Array, registers: IndexArray, data: Array, base: int, count: int) -> None:
     """Columns of data from ``base`` on into the lanes; behind the last one it stands again."""
     for j in range(len(registers)):
@@ -269,21 +275,21 @@ def all_loaded(w: Array, registers: IndexArray, data: Array, base: int, count: i
         w[register, count:] = data[j, base + count - 1]
 
 
-@uncounted
+@njit_no_refcount
 def loaded(w: Array, lane: int, registers: IndexArray, data: Array, member: int) -> None:
     """One column of data into a lane."""
     for j in range(len(registers)):
         w[registers[j], lane] = data[j, member]
 
 
-@uncounted
+@njit_no_refcount
 def copied(w: Array, lane: int, to: IndexArray, source: IndexArray) -> None:
     """Registers of one lane into others."""
     for j in range(len(to)):
         w[to[j], lane] = w[source[j], lane]
 
 
-@uncounted
+@njit_no_refcount
 def tangent(w: Array, lane: int, weights: IndexArray, h: float) -> None:
     """Predict from the last node alone."""
     for j in range(len(weights)):
@@ -292,7 +298,7 @@ def tangent(w: Array, lane: int, weights: IndexArray, h: float) -> None:
     w[weights[1], lane] = h
 
 
-@uncounted
+@njit_no_refcount
 def extrapolated(
     w: Array, lane: int, weights: IndexArray, t: float, times: Array, known: int
 ) -> None:
@@ -311,7 +317,7 @@ def extrapolated(
         w[weights[2 * i], lane], w[weights[2 * i + 1], lane] = a, b
 
 
-@uncounted
+@njit_no_refcount
 def chosen(
     w: Array, lane: int, weights: IndexArray, times: Array, step: float, known: int, spacing: Array
 ) -> bool:

@@ -24,12 +24,12 @@ from linkwork.kernels.march.start_positions import begin
 from linkwork.kernels.march.step_trial import Topology
 from linkwork.kernels.march.work_arrays import Found, Table, Tasks
 from linkwork.kernels.program.code_cache import is_written, written
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.program.execution import Execution
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.printing import trial_source
 from linkwork.kernels.program.program import ROLES, SOURCES, Op, Program
 
-__all__ = ["LaneKernel", "LaneRows", "RowsOfOne", "Steps"]
+__all__ = ["LaneRows", "RowsOfOne", "Steps", "SweepKernel"]
 
 _FEW = 16  # designs in a part of which each goes with its rows side by side
 _PART = 4096  # designs that one thread works on at a time, at most
@@ -71,7 +71,7 @@ class LaneRows:
     ``v`` (n, R, D): unknowns, untouched where not reached. ``radius`` (R, D): of the proof,
     weighted ((0, D) without). ``reached`` (R, D). ``found`` (D,): the start. ``stopped`` (2, D):
     the last value of t downwards and upwards where a design could go no further, NaN where it went
-    through; ``last`` (2, S, D): the node there, see :meth:`LaneKernel.last_nodes`.
+    through; ``last`` (2, S, D): the node there, see :meth:`SweepKernel.last_nodes`.
     """
 
     v: Array
@@ -82,7 +82,7 @@ class LaneRows:
     last: Array
 
     @classmethod
-    def over(cls, v: Array, radius: Array, kernel: LaneKernel) -> LaneRows:
+    def over(cls, v: Array, radius: Array, kernel: SweepKernel) -> LaneRows:
         """Nothing found yet; ``v`` and ``radius`` are written to."""
         _, rows, count = v.shape
         return cls(
@@ -110,7 +110,7 @@ class LaneRows:
         )
 
 
-class LaneKernel:
+class SweepKernel:
     """Programs and registers for one loop table.
 
     Parameters
@@ -144,7 +144,7 @@ class LaneKernel:
         self.height = max(programs.height, reg.count)
         self._sections = programs
         #: The same without proofs, which goes ahead where rows are side by side.
-        self.scout = LaneKernel(table, parts, zeros, certified=False) if certified else None
+        self.scout = SweepKernel(table, parts, zeros, certified=False) if certified else None
         #: The workspace of the steps asked for last; replaced whole, for threads share a kernel.
         self._blank: tuple[Steps, Array] | None = None
         self._trial: Any = None  # written out; kept, for its address is used
@@ -155,7 +155,7 @@ class LaneKernel:
         written_out = self._trial  # read once: another thread may shift
         return 0 if written_out is None else int(written_out.address)
 
-    def shift(self, gear: Gear) -> None:
+    def shift(self, execution: Execution) -> None:
         """Write the trial out, if that is asked for or saves time.
 
         Raises
@@ -163,13 +163,13 @@ class LaneKernel:
         InputError
             If it is asked for, and the folder for compiled code cannot be written to.
         """
-        if gear.specialised is False:
+        if execution.specialised is False:
             self._trial = None
-        elif gear.specialised:
+        elif execution.specialised:
             self._trial = self._trial or written(self.source(), "trial")
-        elif self._trial is None and gear.pays_compiled(len(self.code)):
+        elif self._trial is None and execution.pays_compiled(len(self.code)):
             source = self.source()
-            if gear.pays(len(self.code)) or is_written(source):
+            if execution.pays(len(self.code)) or is_written(source):
                 with suppress(InputError):  # nobody asked: the machine serves
                     self._trial = written(source, "trial")
 
@@ -346,7 +346,7 @@ class LaneKernel:
         ahead, scout = ready, self.scout or self
         if self.scout is not None:
             if self.trial:
-                self.scout.shift(Gear(specialised=True))
+                self.scout.shift(Execution(specialised=True))
             ahead = self.scout._ready(coefficients, count)
         space = self._space(steps)
         ones = np.ones(count)

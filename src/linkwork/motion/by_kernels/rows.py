@@ -16,7 +16,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.kernels.march.position_programs import along_rows
 from linkwork.kernels.march.sweep_kernel import Steps
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.program.execution import Execution
 from linkwork.motion.by_kernels.equations import own_coefficients, zero_names
 from linkwork.motion.by_kernels.kernels import kernel_of, row_program_of
 from linkwork.motion.drive import Drive
@@ -107,7 +107,7 @@ def kernel_rows(
         own = {"origin": origin, "rate": rate, "spread": spread[j]}
         coefficients |= {f"u{j}.{name}": np.array([value]) for name, value in own.items()}
     kernel = kernel_of(model, zeros, certify)
-    kernel.shift(Gear(positions=len(rows)))
+    kernel.shift(Execution(positions=len(rows)))
     nearest, begin = _nearest(track, rows)
     steps = Steps().times(path.size)
     march = kernel.alone(coefficients, begin.v[:n], begin.t, rows, steps)

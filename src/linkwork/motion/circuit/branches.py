@@ -13,7 +13,7 @@ from linkwork.foundation.status import Status
 from linkwork.numerics.continuation.branch_tracking import Track, TrackOptions, rows_on_track
 from linkwork.numerics.continuation.curve_proof import ProvenCurve, prove_curve, same_solution
 from linkwork.numerics.continuation.curve_tracing import Curve, CurveOptions, Leg, trace
-from linkwork.numerics.continuation.local_parametrization import Leads, Led
+from linkwork.numerics.continuation.local_parametrization import Parametrization, Parametrizations
 from linkwork.numerics.continuation.turning_point import TurningPoint, turning_points
 from linkwork.results.motion import LimitKind
 
@@ -36,7 +36,7 @@ class Traced:
         return self.proof.whole and (self.proof.closed or not self.curve.end.closed)
 
 
-def traced(leads: Leads, start: Array, heading: float | Array, certify: bool) -> Traced:
+def traced(leads: Parametrizations, start: Array, heading: float | Array, certify: bool) -> Traced:
     """Trace a curve boldly; with care where the bold one cannot be proved, or is not to be."""
     best: Traced | None = None
     own = leads.by(leads.parameter)
@@ -72,7 +72,7 @@ class CurveBranch:
     v: Array
     limits: tuple[str, ...]
     anchor: Array
-    leader: Led
+    leader: Parametrization
     ratio: float
     begin: TurningPoint | None
     end: TurningPoint | None
@@ -83,7 +83,7 @@ class CurveBranch:
         values = self.v[:, parameter]
         return float(values.min()), float(values.max())
 
-    def is_joined(self, leads: Leads) -> bool:
+    def is_joined(self, leads: Parametrizations) -> bool:
         """Whether the anchor is proved to be the same position when the parameter leads."""
         own = leads.by(leads.parameter)
         return self.proved and own is not None and same_solution(self.leader, own, self.anchor)
@@ -93,11 +93,11 @@ class CurveBranch:
 class _Sample:
     v: Array
     ratio: float  # of the parameter's speed to the fastest
-    leader: Led
+    leader: Parametrization
     limit: str = ""
 
 
-def branches_of(leads: Leads, found: Traced, fine: int = 1) -> list[CurveBranch]:
+def branches_of(leads: Parametrizations, found: Traced, fine: int = 1) -> list[CurveBranch]:
     """The branches in the order of travel; of a closed curve the first one is whole.
 
     Parameters
@@ -146,7 +146,7 @@ def branches_of(leads: Leads, found: Traced, fine: int = 1) -> list[CurveBranch]
     return branches
 
 
-def _samples(leads: Leads, leg: Leg, fine: int) -> tuple[Array, Array, Array]:
+def _samples(leads: Parametrizations, leg: Leg, fine: int) -> tuple[Array, Array, Array]:
     """Positions along a leg: the leader's values, (K, N), the parameter's speed to the fastest."""
     nodes = leg.nodes
     t = np.array([node.t for node in nodes])

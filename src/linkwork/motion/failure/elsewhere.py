@@ -137,7 +137,7 @@ def _starts(block: Block, guess: Array) -> Array:
 
 
 def _is_plain(block: Block) -> bool:
-    return not block.system.bends_boundedly
+    return not block.system.has_curvature_bound
 
 
 def _recurrence_root(n: int) -> float:

@@ -214,7 +214,7 @@ def _loops_in(model: Model, block: Block) -> int:
 
 
 def _named(model: Model, block: Block, x: Array) -> dict[str, float]:
-    """The unknowns (n,) of a block by name, everyday units, angles within half a turn."""
+    """The unknowns (n,) of a block by name, in file units, angles within half a turn."""
     unknowns = [model.equations.unknowns[int(k)] for k in block.unknowns]
     turned = within_half_a_turn(x, block.system.turns[: len(x)])
     return {
@@ -283,7 +283,7 @@ def _inputs_text(model: Model, inputs: Array) -> str:
     )
 
 
-def _everyday_inputs(model: Model, inputs: Array) -> Array:
+def _inputs_in_file_units(model: Model, inputs: Array) -> Array:
     units = model.units
     values = [
         units.angle.from_radians(float(value)) if variable.kind == "angle" else float(value)
@@ -319,7 +319,7 @@ def _failure(model: Model, inputs: Array, reach: Reach | None = None, **parts: o
         if not reach.kind and reach.first_dead_point is not None:
             towards["through"] = by_name(reach.first_dead_point)
     return Failure(
-        asked=by_name(_everyday_inputs(model, inputs)),
+        asked=by_name(_inputs_in_file_units(model, inputs)),
         configurations=tuple(dict(zip(names, map(float, row), strict=True)) for row in x),
         configuration_names=() if found is None else found.names,
         complete=None if found is None else found.complete,

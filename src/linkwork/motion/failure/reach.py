@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.equations.leading import LeadTable
+from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.motion.circuit.branches import Traced
@@ -45,7 +45,7 @@ class _Edge:
 class Reach:
     """The nearest input values that a circuit reaches.
 
-    ``inputs`` (p,): everyday units. ``kind``: what ends the circuit there; empty if the circuit
+    ``inputs`` (p,): file units. ``kind``: what ends the circuit there; empty if the circuit
     reaches what was asked. ``proved``: whether it was followed with proof. ``first_dead_point``
     (p,): the first one met on the way from the start.
     """
@@ -58,7 +58,7 @@ class Reach:
 
 def assembled_near(model: Model, path: InputPath, lead: int, v: Array) -> Array | None:
     """An assembled position (N,) near v, the input moved as little as need be; ``None`` if none."""
-    locked = LeadTable(model.compiled.table, path, lead).table
+    locked = ParametrizedTable(model.compiled.table, path, lead).table
     n = model.compiled.solver.unknowns
     scale = locked.variable_scale.copy()
     scale[n:] *= _HELD
@@ -87,7 +87,7 @@ def reach_towards(model: Model, path: InputPath, lead: int, v: Array, asked: flo
     """
     if model.compiled.solver.unknowns > MOST_UNKNOWNS:
         return None
-    leads = LeadTable(model.compiled.table, path, lead)
+    leads = ParametrizedTable(model.compiled.table, path, lead)
     period = _TURN if turns_freely(model) else None
     away = asked - float(v[leads.parameter])
     if period is not None:
@@ -101,14 +101,14 @@ def reach_towards(model: Model, path: InputPath, lead: int, v: Array, asked: flo
     first = None
     if turns:
         edge = _Edge(turns[0].t, "dead point", turns[0].bracket)
-        first = _everyday(model, path, lead, edge, 0)
+        first = _in_file_units(model, path, lead, edge, 0)
     nearest = _nearest(low.t, high.t, asked, period)
     if nearest is None:
         inputs, kind = path.at(asked) / model.input_scale, ""
     else:
         end, whole = nearest
         edge = low if end == "low" else high
-        inputs, kind = _everyday(model, path, lead, edge, whole), edge.kind
+        inputs, kind = _in_file_units(model, path, lead, edge, whole), edge.kind
     proved = all(walk.certified for walk in walks)
     return Reach(inputs=inputs, kind=kind, proved=proved, first_dead_point=first)
 
@@ -134,7 +134,7 @@ def _nearest(low: float, high: float, asked: float, period: float | None) -> tup
     return end, k
 
 
-def _everyday(model: Model, path: InputPath, lead: int, edge: _Edge, turns: int) -> Array:
+def _in_file_units(model: Model, path: InputPath, lead: int, edge: _Edge, turns: int) -> Array:
     """All inputs at a value of the path, the leading one as the short number in its bracket."""
     scale = float(model.input_scale[lead])
     inputs: Array = path.at(edge.t) / model.input_scale
@@ -146,7 +146,7 @@ def _everyday(model: Model, path: InputPath, lead: int, edge: _Edge, turns: int)
     return inputs
 
 
-def _circuit(leads: LeadTable, v: Array, side: float) -> list[Traced]:
+def _circuit(leads: ParametrizedTable, v: Array, side: float) -> list[Traced]:
     """The whole circuit through a position (N,): one curve if it closes, else one each way."""
     walks: list[Traced] = []
     for care in _CARES:
@@ -165,7 +165,7 @@ def _circuit(leads: LeadTable, v: Array, side: float) -> list[Traced]:
     return walks
 
 
-def _walk(leads: LeadTable, v: Array, side: float, care: TrackOptions) -> Traced:
+def _walk(leads: ParametrizedTable, v: Array, side: float, care: TrackOptions) -> Traced:
     """A curve with its proof and dead points, given up sooner than when it is asked for."""
     curve = trace(leads, v, side, CurveOptions(most_legs=_MOST_LEGS, track=care))
     if not curve.legs:
@@ -174,7 +174,7 @@ def _walk(leads: LeadTable, v: Array, side: float, care: TrackOptions) -> Traced
     return Traced(curve=curve, proof=prove_curve(leads, curve), turns=turns)
 
 
-def _off_dead_point(leads: LeadTable, v: Array, care: TrackOptions) -> Traced | None:
+def _off_dead_point(leads: ParametrizedTable, v: Array, care: TrackOptions) -> Traced | None:
     """A way from a position (N,) at which the parameter is slow to one where it can lead."""
     table = leads.table
     slope = table.jacobian(v[None, :])[0] * table.variable_scale / table.equation_scale[:, None]
@@ -196,7 +196,7 @@ def _off_dead_point(leads: LeadTable, v: Array, care: TrackOptions) -> Traced | 
     return None
 
 
-def _edges(leads: LeadTable, walk: Traced) -> list[_Edge]:
+def _edges(leads: ParametrizedTable, walk: Traced) -> list[_Edge]:
     """The values of the parameter on a curve, with what is at those where it may turn or end."""
     p = leads.parameter
     found = [_Edge(float(t)) for leg in walk.curve.legs for t in leg.v[:, p]]

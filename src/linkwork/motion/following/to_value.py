@@ -43,7 +43,7 @@ class OutOfReach:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Place:
-    """Where on a track the position lies; ``asked`` (p,): the input values meant there, everyday
+    """Where on a track the position lies; ``asked`` (p,): the input values meant there, file
     units, whole turns aside.
     """
 
@@ -60,7 +60,7 @@ def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | Ou
     v : (N,)
         The position at the guess's own input value.
     target : (p,)
-        The value asked, everyday units.
+        The value asked, in file units.
     """
     solver = model.compiled.solver
     origin = model.start_inputs

@@ -20,8 +20,8 @@ from linkwork.foundation.status import Status
 from linkwork.numerics.continuation.branch_tracking import BOLD, Node, TrackOptions, follow
 from linkwork.numerics.continuation.change_point import ChangePoint, locate_change_point
 from linkwork.numerics.continuation.local_parametrization import (
-    Leads,
-    Led,
+    Parametrization,
+    Parametrizations,
     fastest_leader,
     same_position,
 )
@@ -58,7 +58,7 @@ class CurveOptions:
 class Leg:
     """A piece of a curve with one leader; nodes in the order traced, in the solver's order."""
 
-    led: Led
+    led: Parametrization
     nodes: tuple[Node, ...]
 
     @property
@@ -92,14 +92,17 @@ class Curve:
     crossing: ChangePoint | None = None
 
     @property
-    def last(self) -> tuple[Led, Node]:
+    def last(self) -> tuple[Parametrization, Node]:
         """Where it ends."""
         leg = self.legs[-1]
         return leg.led, leg.nodes[-1]
 
 
 def trace(
-    leads: Leads, start: Array, heading: float | Array, options: CurveOptions | None = None
+    leads: Parametrizations,
+    start: Array,
+    heading: float | Array,
+    options: CurveOptions | None = None,
 ) -> Curve:
     """Follow the curve through a position until it closes or ends.
 
@@ -129,7 +132,9 @@ class _Pass:
 class _Tracer:
     """The state of one trace: the position reached and the direction of travel."""
 
-    def __init__(self, leads: Leads, start: Array, heading: Array, options: CurveOptions) -> None:
+    def __init__(
+        self, leads: Parametrizations, start: Array, heading: Array, options: CurveOptions
+    ) -> None:
         self.leads, self.start, self.options = leads, start, options
         self.here, self.heading = start, heading
         self.crossing: ChangePoint | None = None
@@ -146,7 +151,7 @@ class _Tracer:
             if np.isfinite(rates).all():
                 self.heading = heading[leads.parameter] * rates
 
-    def _own(self) -> Led | None:
+    def _own(self) -> Parametrization | None:
         return self.leads.by(self.leads.parameter)
 
     def run(self) -> Curve:
@@ -189,14 +194,14 @@ class _Tracer:
         sign = math.copysign(1.0, last.t - leg.nodes[0].t)
         self.heading = sign * leg.led.whole(last.first)
 
-    def _leader(self, avoid: int | None) -> tuple[Led, Node] | None:
+    def _leader(self, avoid: int | None) -> tuple[Parametrization, Node] | None:
         """The parameter where it is fast enough, else the fastest variable that determines all."""
         scale, parameter = self.leads.scale, self.leads.parameter
         speed = np.abs(self.heading) / scale
         first = parameter if speed[parameter] * self.options.slow >= speed.max() else None
         return fastest_leader(self.leads, self.here, speed, avoid, first)
 
-    def _leg(self, led: Led, node: Node) -> tuple[Leg, object]:
+    def _leg(self, led: Parametrization, node: Node) -> tuple[Leg, object]:
         """One leg: up to a change of leader, a pass of the starting value, or an end."""
         opt = self.options
         parameter, scale = self.leads.parameter, self.leads.scale
@@ -258,7 +263,9 @@ class _Tracer:
             number += int(sign)
         return home + number * period
 
-    def _passes(self, led: Led, before: Node, after: Node, leaving: float | None) -> list[_Pass]:
+    def _passes(
+        self, led: Parametrization, before: Node, after: Node, leaving: float | None
+    ) -> list[_Pass]:
         """The first pass of the starting value (whole turns aside) between two nodes, if any."""
         place = led.place(self.leads.parameter)
         for low, high in itertools.pairwise(one_way(led, place, before, after)):
@@ -270,7 +277,7 @@ class _Tracer:
             leaving = None
         return []
 
-    def _crossing(self, led: Led, passed: _Pass) -> Node | None:
+    def _crossing(self, led: Parametrization, passed: _Pass) -> Node | None:
         """The position in a piece of a step at which the parameter has the value, to rounding.
 
         The piece is narrowed down at true positions: over a long step interpolation is not good
@@ -297,7 +304,7 @@ class _Tracer:
             best = high
         return None if best is None else self._polished(led, best, value)
 
-    def _polished(self, led: Led, here: Node, value: float) -> Node:
+    def _polished(self, led: Parametrization, here: Node, value: float) -> Node:
         """The position with exactly the value, if the parameter determines it well enough."""
         own = self.own
         near = led.whole(here.v)

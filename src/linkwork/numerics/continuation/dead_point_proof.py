@@ -20,7 +20,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.numerics.block_solver import Block, BlockSolver, Linearised
-from linkwork.numerics.continuation.local_parametrization import Led
+from linkwork.numerics.continuation.local_parametrization import Parametrization
 from linkwork.numerics.proof.kantorovich import Expansion
 from linkwork.numerics.proof.position_proof import expansions, prove, reach
 
@@ -47,7 +47,7 @@ class FoldProof:
     unique: float
 
 
-def prove_dead_point(led: Led, v: Array, place: int) -> FoldProof | None:
+def prove_dead_point(led: Parametrization, v: Array, place: int) -> FoldProof | None:
     """Prove that the parameter turns back next to a position.
 
     Parameters
@@ -81,7 +81,7 @@ def prove_dead_point(led: Led, v: Array, place: int) -> FoldProof | None:
     return None
 
 
-def _turns_within(led: Led, v: Array, place: int, width: float) -> FoldProof | None:
+def _turns_within(led: Parametrization, v: Array, place: int, width: float) -> FoldProof | None:
     """The proof with an interval of the leader of that half width, or ``None``."""
     solver = led.solver
     whole = width + 2.0 * _UNIT * (abs(float(v[-1])) + width)  # the ends are rounded themselves

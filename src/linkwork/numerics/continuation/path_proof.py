@@ -15,13 +15,13 @@ from linkwork.numerics.proof.kantorovich import Expansion
 from linkwork.numerics.proof.position_proof import (
     Proof,
     expansions,
-    links_hold,
     prove,
     reach,
     rounding_of_inputs,
+    steps_connected,
 )
 
-__all__ = ["Beads", "ProvenPath", "follow_with_proof", "prove_path"]
+__all__ = ["PathPoints", "ProvenPath", "follow_with_proof", "prove_path"]
 
 _CONVERGED = Status.CONVERGED.code
 _ROUNDS = 45  # halvings of one step before it counts as not proved
@@ -33,7 +33,7 @@ _LANES = 1024  # steps halved together
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Beads:
+class PathPoints:
     """Positions along a path with their derivatives by t: t (K,), the others (K, N).
 
     ``spread`` (K, p): how far the inputs may be from those in v, in their own units.
@@ -45,9 +45,9 @@ class Beads:
     second: Array
     spread: Array
 
-    def take(self, index: IndexArray | slice) -> Beads:
+    def take(self, index: IndexArray | slice) -> PathPoints:
         """Some of them, in the order of ``index``."""
-        return Beads(
+        return PathPoints(
             t=self.t[index],
             v=self.v[index],
             first=self.first[index],
@@ -58,24 +58,24 @@ class Beads:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProvenPath:
-    """``position``: the proofs of K positions. ``linked`` (K-1,): which steps are proved.
+    """``position``: the proofs of K positions. ``connected`` (K-1,): which steps are proved.
     ``pieces`` (K-1,): into how many steps each was divided for that. ``given_up`` (K-1,): which
     are not proved because that would have taken too many.
     """
 
     position: Proof
-    linked: BoolArray
+    connected: BoolArray
     pieces: CountArray
     given_up: BoolArray
 
     def connected_to(self, anchor: int) -> BoolArray:
         """The positions joined to one of them by proved steps and proved themselves, (K,)."""
-        return _outwards(self.linked, anchor) & self.position.holds
+        return _outwards(self.connected, anchor) & self.position.holds
 
     def given_up_before(self, anchor: int) -> BoolArray:
         """The positions whose first step without a proof, on the way from one, was given up."""
-        joined = _outwards(self.linked, anchor)
-        as_if = _outwards(self.linked | self.given_up, anchor)
+        joined = _outwards(self.connected, anchor)
+        as_if = _outwards(self.connected | self.given_up, anchor)
         first_broken = as_if & ~joined
         # beyond a step that was given up others may be broken for other reasons
         right = np.logical_or.accumulate(first_broken[anchor:])
@@ -83,17 +83,17 @@ class ProvenPath:
         return np.concatenate([left[:-1], right])
 
 
-def _outwards(linked: BoolArray, anchor: int) -> BoolArray:
+def _outwards(connected: BoolArray, anchor: int) -> BoolArray:
     """Which of K positions are joined to one of them, (K,)."""
-    right = np.logical_and.accumulate(linked[anchor:])
-    left = np.logical_and.accumulate(linked[:anchor][::-1])[::-1]
+    right = np.logical_and.accumulate(connected[anchor:])
+    left = np.logical_and.accumulate(connected[:anchor][::-1])[::-1]
     return np.concatenate([left, [True], right])
 
 
 def prove_path(
     solver: BlockSolver,
     path: InputPath,
-    beads: Beads,
+    points: PathPoints,
     *,
     anchor: int | None = None,
     most: int | None = None,
@@ -103,10 +103,10 @@ def prove_path(
 
     Parameters
     ----------
-    beads : Beads
+    points : PathPoints
         In the order of t.
     anchor : int, optional
-        The bead that the others have to be joined to: steps near it are proved first, and those
+        The point that the others have to be joined to: steps near it are proved first, and those
         beyond one that cannot be proved are left alone. Without it all steps count alike.
     most : int, optional
         How many positions in between may be solved for the proof of the whole path; by default a
@@ -119,14 +119,14 @@ def prove_path(
     A step that is not proved from its left end is tried from its right end, then halved at a
     position solved in between. Many open steps are worked on together.
     """
-    count = len(beads.t)
+    count = len(points.t)
     allowance = _Allowance(_MOST + _MOST_EACH * count if most is None else most)
     begins = list(range(0, max(count - 1, 1), _PIECE))
     if anchor is not None:
         begins.sort(key=lambda begin: abs(begin + _PIECE // 2 - anchor))
     found: dict[int, ProvenPath] = {}
     for k, begin in enumerate(begins, start=1):
-        part = beads.take(slice(begin, begin + _PIECE + 1))
+        part = points.take(slice(begin, begin + _PIECE + 1))
         inside = None if anchor is None else min(max(anchor - begin, 0), len(part.t) - 1)
         found[begin] = _piece(solver, path, part, inside, allowance)
         if progress is not None:
@@ -143,7 +143,7 @@ def prove_path(
             unique=np.concatenate([p.unique for p in proofs]),
             each=np.concatenate([p.each for p in proofs]),
         ),
-        linked=np.concatenate([piece.linked for piece in pieces]),
+        connected=np.concatenate([piece.connected for piece in pieces]),
         pieces=np.concatenate([piece.pieces for piece in pieces]),
         given_up=np.concatenate([piece.given_up for piece in pieces]),
     )
@@ -167,34 +167,38 @@ def _behind_first(p: Proof) -> Proof:
 
 
 def _piece(
-    solver: BlockSolver, path: InputPath, beads: Beads, anchor: int | None, allowance: _Allowance
+    solver: BlockSolver,
+    path: InputPath,
+    points: PathPoints,
+    anchor: int | None,
+    allowance: _Allowance,
 ) -> ProvenPath:
-    places = expansions(solver, beads.v)
-    position = prove(solver, beads.v, beads.spread, places)
-    steps = len(beads.t) - 1
+    places = expansions(solver, points.v)
+    position = prove(solver, points.v, points.spread, places)
+    steps = len(points.t) - 1
     nothing = np.zeros(steps, dtype=bool)
     pieces = np.ones(steps, dtype=np.int64)
     if not steps:
-        return ProvenPath(position=position, linked=nothing, pieces=pieces, given_up=nothing)
-    left, right = beads.take(slice(None, -1)), beads.take(slice(1, None))
+        return ProvenPath(position=position, connected=nothing, pieces=pieces, given_up=nothing)
+    left, right = points.take(slice(None, -1)), points.take(slice(1, None))
     near = np.maximum(position.each[1:], position.each[:-1])
-    linked = _steps(solver, left, right, near, _cut(places, slice(None, -1)))
-    linked &= position.holds[1:] & position.holds[:-1]
-    open_ = np.flatnonzero(~linked & position.holds[1:] & position.holds[:-1])
+    connected = _steps(solver, left, right, near, _cut(places, slice(None, -1)))
+    connected &= position.holds[1:] & position.holds[:-1]
+    open_ = np.flatnonzero(~connected & position.holds[1:] & position.holds[:-1])
     if len(open_):
         back = _cut(places, open_ + 1)
-        linked[open_] = _steps(solver, right.take(open_), left.take(open_), near[open_], back)
-        open_ = open_[~linked[open_]]
+        connected[open_] = _steps(solver, right.take(open_), left.take(open_), near[open_], back)
+        open_ = open_[~connected[open_]]
     if not len(open_):
-        return ProvenPath(position=position, linked=linked, pieces=pieces, given_up=nothing)
+        return ProvenPath(position=position, connected=connected, pieces=pieces, given_up=nothing)
     work = _Halving(solver, path, steps, anchor, position.holds)
     work.run(
         _Open(left=left.take(open_), right=right.take(open_), near=near[open_], owner=open_),
         allowance,
     )
-    linked[open_] = work.proved[open_]
+    connected[open_] = work.proved[open_]
     return ProvenPath(
-        position=position, linked=linked, pieces=pieces + work.pieces, given_up=work.given_up
+        position=position, connected=connected, pieces=pieces + work.pieces, given_up=work.given_up
     )
 
 
@@ -204,8 +208,8 @@ def _cut(places: Sequence[Expansion | None], index: IndexArray | slice) -> list[
 
 def _steps(
     solver: BlockSolver,
-    start: Beads,
-    goal: Beads,
+    start: PathPoints,
+    goal: PathPoints,
     near: Array,
     places: Sequence[Expansion | None] | None = None,
 ) -> BoolArray:
@@ -215,7 +219,7 @@ def _steps(
     """
     spread = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
     spread += start.spread + goal.spread
-    return links_hold(start.v, goal.v, reach(solver, start.v, spread, places), near)
+    return steps_connected(start.v, goal.v, reach(solver, start.v, spread, places), near)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -224,8 +228,8 @@ class _Open:
     and the number of the step of the path that they are a part of.
     """
 
-    left: Beads
-    right: Beads
+    left: PathPoints
+    right: PathPoints
     near: Array
     owner: IndexArray
 
@@ -321,8 +325,8 @@ class _Halving:
         return halves[0].with_(halves[1])
 
 
-def _joined(a: Beads, b: Beads) -> Beads:
-    return Beads(
+def _joined(a: PathPoints, b: PathPoints) -> PathPoints:
+    return PathPoints(
         t=np.concatenate([a.t, b.t]),
         v=np.concatenate([a.v, b.v]),
         first=np.concatenate([a.first, b.first]),
@@ -332,8 +336,8 @@ def _joined(a: Beads, b: Beads) -> Beads:
 
 
 def _between(
-    solver: BlockSolver, path: InputPath, left: Beads, right: Beads
-) -> tuple[Beads, BoolArray, list[Expansion | None]]:
+    solver: BlockSolver, path: InputPath, left: PathPoints, right: PathPoints
+) -> tuple[PathPoints, BoolArray, list[Expansion | None]]:
     """Positions halfway in t, started from the quintic through both ends; which were found; what
     proofs take from them.
     """
@@ -346,8 +350,8 @@ def _between(
     linear = solver.linearise(done.v)
     rates: Rates = solver.rates(done.v, path.rate, linear)
     spread = rounding_of_inputs(done.v, solver.unknowns)
-    beads = Beads(t=t, v=done.v, first=rates.first, second=rates.second, spread=spread)
-    return beads, done.status == _CONVERGED, expansions(solver, done.v, linear)
+    points = PathPoints(t=t, v=done.v, first=rates.first, second=rates.second, spread=spread)
+    return points, done.status == _CONVERGED, expansions(solver, done.v, linear)
 
 
 _FIRST_STEP = 0.01  # of the path's natural size
@@ -379,7 +383,7 @@ def follow_with_proof(
             spread = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
             reached = reach(solver, here.v[None, :], spread + 2.0 * known)
             both = np.maximum(proof.each, near.each)
-            if proof.holds[0] and links_hold(here.v[None, :], found.v, reached, both)[0]:
+            if proof.holds[0] and steps_connected(here.v[None, :], found.v, reached, both)[0]:
                 before, here, near = here, node_at(solver, path, t, found.v[0]), proof
                 nodes.append(here)
                 h *= 1.5

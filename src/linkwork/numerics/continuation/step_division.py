@@ -11,7 +11,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
 from linkwork.numerics.continuation.branch_tracking import Node, node_at
-from linkwork.numerics.continuation.local_parametrization import Led
+from linkwork.numerics.continuation.local_parametrization import Parametrization
 
 __all__ = ["divided", "node_between", "one_way", "share_at", "sign_change"]
 
@@ -25,7 +25,9 @@ _EDGE = 1e-3  # of a bracket: nearer to its ends nothing is tried
 _SHARES = np.linspace(0.0, 1.0, 65)
 
 
-def node_between(led: Led, low: Node, high: Node, s: float, sharp: bool = False) -> Node | None:
+def node_between(
+    led: Parametrization, low: Node, high: Node, s: float, sharp: bool = False
+) -> Node | None:
     """The node at the fraction s of a step; ``None`` if Newton-Raphson does not find it.
 
     ``sharp``: iterate down to rounding.
@@ -55,7 +57,7 @@ def share_at(place: int, low: Node, high: Node, value: float) -> float:
     return 0.5 * (s0 + s1)
 
 
-def one_way(led: Led, place: int, before: Node, after: Node) -> list[Node]:
+def one_way(led: Parametrization, place: int, before: Node, after: Node) -> list[Node]:
     """A step, divided where a variable turns back within it."""
     chain = [before]
     for low, high in itertools.pairwise(divided(led, place, before, after)):
@@ -66,7 +68,7 @@ def one_way(led: Led, place: int, before: Node, after: Node) -> list[Node]:
 
 
 def sign_change(
-    led: Led, low: Node, high: Node, rate: Callable[[Node], float], sharp: bool = False
+    led: Parametrization, low: Node, high: Node, rate: Callable[[Node], float], sharp: bool = False
 ) -> Node:
     """The node between two at which a rate changes sign, to rounding.
 
@@ -102,7 +104,9 @@ def sign_change(
     return best
 
 
-def divided(led: Led, place: int, a: Node, b: Node, depth: int = _DIVISIONS) -> list[Node]:
+def divided(
+    led: Parametrization, place: int, a: Node, b: Node, depth: int = _DIVISIONS
+) -> list[Node]:
     """A step, divided so finely that a variable turns back at most once in each piece.
 
     The cubic through the variable's rates and their derivatives at both ends is compared with the

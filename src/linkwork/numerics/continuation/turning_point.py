@@ -28,7 +28,11 @@ from linkwork.numerics.continuation.branch_tracking import (
 from linkwork.numerics.continuation.curve_proof import leg_is_proved
 from linkwork.numerics.continuation.curve_tracing import Curve, Leg
 from linkwork.numerics.continuation.dead_point_proof import FoldProof, prove_dead_point
-from linkwork.numerics.continuation.local_parametrization import Leads, Led, fastest_leader
+from linkwork.numerics.continuation.local_parametrization import (
+    Parametrization,
+    Parametrizations,
+    fastest_leader,
+)
 from linkwork.numerics.continuation.path_proof import follow_with_proof
 from linkwork.numerics.continuation.step_division import divided
 
@@ -66,7 +70,7 @@ class TurningPoint:
         return self.proof is not None
 
 
-def turning_points(leads: Leads, curve: Curve) -> Iterator[TurningPoint]:
+def turning_points(leads: Parametrizations, curve: Curve) -> Iterator[TurningPoint]:
     """The dead points on a curve, in its order.
 
     Where the parameter's rate by the leader changes sign, Newton-Raphson on that rate, kept inside
@@ -90,7 +94,9 @@ def turning_points(leads: Leads, curve: Curve) -> Iterator[TurningPoint]:
                     yield _within(leads, leg.led, low, high, (number, k))
 
 
-def _within(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, int]) -> TurningPoint:
+def _within(
+    leads: Parametrizations, led: Parametrization, low: Node, high: Node, where: tuple[int, int]
+) -> TurningPoint:
     """The dead point between two nodes; where it is not proved at once, by proved steps to it."""
     turn = _refined(leads, led, low, high, where)
     if turn.located or not led.provable:
@@ -122,7 +128,7 @@ class TurnAhead:
         return self.proved and self.turn.located
 
 
-def turn_beyond(leads: Leads, v: Array, rates: Array, side: float) -> TurnAhead | None:
+def turn_beyond(leads: Parametrizations, v: Array, rates: Array, side: float) -> TurnAhead | None:
     """The dead point ahead of a position at which a branch could not be followed further.
 
     Parameters
@@ -174,7 +180,7 @@ def _followed(options: TrackOptions) -> _Following:
 
 
 def _first_turn(
-    leads: Leads, led: Led, node: Node, sign: float, follow_leg: _Following
+    leads: Parametrizations, led: Parametrization, node: Node, sign: float, follow_leg: _Following
 ) -> TurnAhead | None:
     """The first dead point on the way that the leader goes in a direction."""
     place = led.place(leads.parameter)
@@ -196,7 +202,9 @@ def _first_turn(
     return TurnAhead(leg=leg, turn=turn, proved=led.provable and leg_is_proved(leg))
 
 
-def _refined(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, int]) -> TurningPoint:
+def _refined(
+    leads: Parametrizations, led: Parametrization, low: Node, high: Node, where: tuple[int, int]
+) -> TurningPoint:
     """The place between two nodes at which the parameter's rate is zero, with its proof."""
     place, p = led.place(leads.parameter), leads.parameter
     edges = sorted((float(low.v[place]), float(high.v[place])))
@@ -221,7 +229,7 @@ def _refined(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, in
     )
 
 
-def _level(led: Led, place: int, low: Node, high: Node) -> Node:
+def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
     """The node between two at which a variable's rate is nearest to zero.
 
     Newton-Raphson on the rate, kept inside the sign change.
@@ -254,7 +262,7 @@ def _level(led: Led, place: int, low: Node, high: Node) -> Node:
     return _polished(led, best)
 
 
-def _polished(led: Led, here: Node) -> Node:
+def _polished(led: Parametrization, here: Node) -> Node:
     """The same node after one step of Newton-Raphson with residuals that are rounded once.
 
     Where branches nearly cross, a residual that counts as none still moves the dead point. What a

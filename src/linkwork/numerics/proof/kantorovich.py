@@ -103,7 +103,7 @@ def expansion(
     Parameters
     ----------
     system : System
-        With n unknowns and p known variables behind; ``bends_boundedly`` must hold.
+        With n unknowns and p known variables behind; ``has_curvature_bound`` must hold.
     v : (B, N)
     jacobian : (B, n, N)
         dF/dv at v.

@@ -20,11 +20,11 @@ __all__ = [
     "Proof",
     "Reach",
     "expansions",
-    "links_hold",
     "prove",
     "prove_block",
     "reach",
     "rounding_of_inputs",
+    "steps_connected",
 ]
 
 _UNIT = np.finfo(float).eps / 2
@@ -80,7 +80,7 @@ def expansions(
     with np.errstate(all="ignore"):
         for block, part in zip(solver.blocks, parts, strict=True):
             here = v[:, block.variables]
-            bounded = block.system.bends_boundedly
+            bounded = block.system.has_curvature_bound
             found.append(
                 expansion(block.system, here, part.jacobian, part.inverse, exact=exact)
                 if bounded
@@ -202,7 +202,7 @@ def reach(
     return Reach(holds=holds, each=each[:, : solver.unknowns], alone=alone)
 
 
-def links_hold(v: Array, following: Array, reached: Reach, near: Array) -> BoolArray:
+def steps_connected(v: Array, following: Array, reached: Reach, near: Array) -> BoolArray:
     """Whether each step from v to ``following`` is proved to stay on its branch, (B,).
 
     Parameters

@@ -211,7 +211,7 @@ class SetText:
 
 @dataclass(frozen=True, kw_only=True)
 class SolveAt:
-    """One position at input values in everyday units; none: where the guess stands."""
+    """One position at input values in file units; none: where the guess stands."""
 
     at: dict[str, float]
     configuration: str | None = None
@@ -226,7 +226,7 @@ class ListConfigurations:
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonSteps:
-    """Newton-Raphson from a guess of some or all unknowns, everyday units, step by step.
+    """Newton-Raphson from a guess of some or all unknowns, in file units, step by step.
 
     ``full_steps``: the textbook's bare method, whose steps may turn a link as far as they like.
     ``pull``: a point by which the guess is dragged before: one unknown changes so that it comes as

@@ -15,13 +15,13 @@ from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.kernels.loop_table import LinearRows, LoopTable, TableSplitter
 from linkwork.numerics.block_solver import Block, BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath
-from linkwork.numerics.continuation.local_parametrization import Led
+from linkwork.numerics.continuation.local_parametrization import Parametrization
 from linkwork.numerics.decomposition import block_form
 
-__all__ = ["LeadTable"]
+__all__ = ["ParametrizedTable"]
 
 
-class LeadTable:
+class ParametrizedTable:
     """A table along a path of inputs, solvable with any variable in the lead.
 
     Parameters
@@ -42,15 +42,15 @@ class LeadTable:
         self.repeats_after = self.table.repeats_after
         self._splitter = TableSplitter(self.table)
         self._pattern = self.table.pattern()
-        self._leads: dict[int, Led | None] = {}
+        self._leads: dict[int, Parametrization | None] = {}
 
-    def by(self, lead: int) -> Led | None:
+    def by(self, lead: int) -> Parametrization | None:
         """The equations with one variable known; ``None`` if it does not determine the others."""
         if lead not in self._leads:
             self._leads[lead] = self._led_by(lead)
         return self._leads[lead]
 
-    def _led_by(self, lead: int) -> Led | None:
+    def _led_by(self, lead: int) -> Parametrization | None:
         table = self.table
         others = [k for k in range(table.variables) if k != lead]
         place = {old: new for new, old in enumerate([*others, lead])}
@@ -75,7 +75,7 @@ class LeadTable:
             )
         order: IndexArray = np.array([*others, lead], dtype=np.intp)
         solver = BlockSolver(blocks, len(others), table.variables, table.variable_scale[order])
-        return Led(lead=lead, solver=solver, order=order)
+        return Parametrization(lead=lead, solver=solver, order=order)
 
     def jacobian(self, v: Array) -> Array:
         """The scaled Jacobian by all variables but the path's parameter, (B, m, m)."""
