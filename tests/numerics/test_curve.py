@@ -102,7 +102,7 @@ def test_curves_of_random_four_bars_close_with_proof_and_turn_where_the_closed_f
         assert found.curve.end is CircuitEnd.CLOSED, bar
         assert found.proof is not None
         assert found.proof.legs.all(), bar
-        assert found.proof.joints.all(), bar
+        assert found.proof.junctions.all(), bar
         assert found.proof.closed, bar
         assert step_count(found.curve) < 80
         assert residual(leads, found.curve) < 1e-12
