@@ -86,7 +86,7 @@ def compared(ours: FamilyMotion, reference: FamilyMotion) -> Compared:
     differing = (ours.status != reference.status) | (ours.certification != reference.certification)
     both = ours.found & reference.found
     table = ours.designs.base.compiled.table
-    turns = table.turns[: table.unknowns]
+    turns = table.is_angle[: table.unknowns]
     weights = np.where(turns[:, None], 1.0, ours.designs.length_scale)
     gaps = np.abs(ours.rows.v - reference.rows.v) / weights[:, None, :]
     gap = gaps.max(axis=0).T[both]

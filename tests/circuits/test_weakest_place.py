@@ -124,7 +124,7 @@ def test_the_rate_of_the_smallest_value_is_its_slope() -> None:
     model = mechanism.model
     lead, rate = lock_step(model.rows)
     leads = ParametrizedTable(model.compiled.table, InputPath(origin=np.zeros(1), rate=rate), lead)
-    led = leads.by(leads.parameter)
+    led = leads.with_parameter(leads.parameter)
     assert led is not None
     step = 1e-5
     for at in (20.0, 110.0, 250.0):

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.aligned import aligned
+from linkwork.foundation.aligned import allocate_aligned
 from linkwork.foundation.arrays import Array
 from linkwork.kernels.march import sweep_kernel
 from linkwork.kernels.march.sweep_kernel import Steps, SweepKernel
 from linkwork.kernels.program import execution
-from linkwork.kernels.program.code_cache import is_written, written
+from linkwork.kernels.program.code_cache import is_cached, load_compiled
 from linkwork.kernels.program.execution import Execution
 from linkwork.kernels.program.interpreter import LANES, run
 from linkwork.kernels.program.printing import trial_source
@@ -65,7 +65,7 @@ def test_every_instruction_written_out_is_that_of_the_machine() -> None:
         source = trial_source([code[:20], code[20:]], height, set(range(height)), constants)
         number = ctypes.POINTER(ctypes.c_double)
         places = [other[k * height :].ctypes.data_as(number) for k in range(PLACES + 1)]
-        written(source, "trial").ctypes(*places, LANES)
+        load_compiled(source, "trial").ctypes(*places, LANES)
         np.testing.assert_allclose(other, space, rtol=1e-12, atol=1e-13)
 
 
@@ -118,14 +118,14 @@ def test_many_positions_are_worth_a_compilation(monkeypatch: pytest.MonkeyPatch)
 
 def test_a_changed_file_is_written_anew(tmp_path: Path) -> None:
     source = trial_source([np.array([[Op.NEG, 0, 1, 0, 0]], np.uint32)], 2, {0}, {})
-    assert not is_written(source)
-    written(source, "trial")
+    assert not is_cached(source)
+    load_compiled(source, "trial")
     (file,) = (tmp_path / "kernels").glob("*.py")
     assert file.read_text() == source
-    assert is_written(source)
+    assert is_cached(source)
     del sys.modules[file.stem]
     file.write_text("raise SystemExit('somebody else')")
-    written(source, "trial")
+    load_compiled(source, "trial")
     assert file.read_text() == source
     assert not list((tmp_path / "kernels").glob("*.part"))
 
@@ -133,7 +133,7 @@ def test_a_changed_file_is_written_anew(tmp_path: Path) -> None:
 def test_threads_that_want_the_same_module_wait_until_it_is_whole() -> None:
     source = "import time\n\ntime.sleep(0.2)\n\n\ndef trial():\n    return 7\n"
     with ThreadPoolExecutor(4) as pool:
-        functions = list(pool.map(lambda _: written(source, "trial"), range(4)))
+        functions = list(pool.map(lambda _: load_compiled(source, "trial"), range(4)))
     assert [function() for function in functions] == [7] * 4
     assert len(set(functions)) == 1
 
@@ -145,11 +145,11 @@ def test_threads_share_a_kernel_and_its_workspaces(monkeypatch: pytest.MonkeyPat
     others = []
 
     def meanwhile(*size: int) -> Array:
-        monkeypatch.setattr(sweep_kernel, "aligned", aligned)
+        monkeypatch.setattr(sweep_kernel, "allocate_aligned", allocate_aligned)
         others.append(shared._space(other))
-        return aligned(*size)
+        return allocate_aligned(*size)
 
-    monkeypatch.setattr(sweep_kernel, "aligned", meanwhile)
+    monkeypatch.setattr(sweep_kernel, "allocate_aligned", meanwhile)
     assert shared._space(mine)[tolerance, 0] == 1e-3
     assert others[0][tolerance, 0] == 1e-4
 

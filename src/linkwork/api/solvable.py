@@ -186,7 +186,7 @@ class SolvableMechanism:
             asked = motion.model_of(self.description.with_range(start, stop, step))
             asked = asked.from_start_of(self.model)
         if configuration is not None:
-            asked = motion.started_in(asked, configuration)
+            asked = motion.start_in_configuration(asked, configuration)
         return motion.sweep(
             asked,
             through=through,

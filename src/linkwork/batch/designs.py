@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from linkwork.batch.building import Builder, built, family_base
+from linkwork.batch.building import Builder, build_design, family_base
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.foundation.frozen import FrozenDict
@@ -120,7 +120,7 @@ class Designs:
         MechanismError
             If it has a problem.
         """
-        return built(self.description(k))
+        return build_design(self.description(k))
 
     def message(self, k: int) -> str:
         """What is wrong with the k-th design, with its own numbers; empty for nothing."""

@@ -90,7 +90,7 @@ class Family:
             If ``gpu`` is not installed.
         """
         execution = self._execution(specialised, device)
-        return self._swept(certify, _workers(threads), execution)
+        return self._sweep(certify, _workers(threads), execution)
 
     def _execution(self, specialised: bool | None, device: str) -> Execution:
         positions = len(self) * len(self.designs.base.rows)
@@ -99,7 +99,7 @@ class Family:
             graphics_card()  # or the reason why there is none, before anything is computed
         return execution
 
-    def _swept(self, certify: bool, threads: int, execution: Execution) -> FamilyMotion:
+    def _sweep(self, certify: bool, threads: int, execution: Execution) -> FamilyMotion:
         model = self.designs.base
         count = len(self) * len(model.rows) * (len(model.equations.unknowns) + 1)
         if 8 * count > _MOST_BYTES:
@@ -125,7 +125,7 @@ class Family:
         designs, workers = whole_number("designs", designs, least=1), _workers(threads)
         parts = (self.take(slice(k, k + designs)) for k in range(0, len(self), designs))
         execution = self._execution(specialised, device)
-        return (part._swept(certify, workers, execution) for part in parts)
+        return (part._sweep(certify, workers, execution) for part in parts)
 
     def _part(self) -> int:
         """How many designs are reduced at a time, rates included."""

@@ -18,7 +18,7 @@ from linkwork.motion import sweep
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.model import Model
 from linkwork.motion.rows import SolvedRows
-from linkwork.motion.sweeping import swept_rows
+from linkwork.motion.sweeping import sweep_rows
 
 __all__ = ["message_single", "sweep_single"]
 
@@ -45,7 +45,7 @@ def sweep_single(designs: Designs, k: int, found: DesignRows, certify: bool) -> 
     """One design by the ordinary sweep."""
     found.alone[k] = True
     try:
-        rows, ends = swept_rows(_at_shared_inputs(designs, k), certify=certify)
+        rows, ends = sweep_rows(_at_shared_inputs(designs, k), certify=certify)
     except LinkworkError:  # told by ``message_single``
         found.v[:, :, k] = found.radius[:, k] = np.nan
         found.status[:, k] = Status.NO_START.code

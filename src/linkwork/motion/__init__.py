@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from linkwork.motion.assembly.configurations import (
         configurations,
         solve_configuration,
-        started_in,
+        start_in_configuration,
     )
     from linkwork.motion.checking import check
     from linkwork.motion.circuit.circuits import branch_start, circuits
@@ -28,7 +28,11 @@ else:
     __getattr__ = loader(
         __name__,
         {
-            "assembly.configurations": ("configurations", "solve_configuration", "started_in"),
+            "assembly.configurations": (
+                "configurations",
+                "solve_configuration",
+                "start_in_configuration",
+            ),
             "described": ("as_described",),
             "checking": ("check",),
             "circuit.circuits": ("branch_start", "circuits"),
@@ -63,7 +67,7 @@ __all__ = [
     "pulled_guess",
     "solve",
     "solve_configuration",
-    "started_in",
+    "start_in_configuration",
     "sweep",
     "vector_loops",
     "warm_started",

@@ -53,7 +53,7 @@ class BranchEnd:
     ``nodes``, the track that led there in the order of travel, and the ``passage`` straight on.
     ``led``, ``node``: a dead point as another leader sees it; ``ahead``: the way to it from the
     last position that the input leads to well.
-    ``radius``, ``unique``: of its proof.
+    ``radius``, ``uniqueness_radius``: of its proof.
     """
 
     side: float
@@ -70,9 +70,9 @@ class BranchEnd:
     ahead: TurnAhead | None = None
     certification: Certification = Certification.NOT_ASKED
     radius: float = np.nan
-    unique: float = np.nan
+    uniqueness_radius: float = np.nan
 
-    def named(self, value: float) -> BranchEnd:
+    def with_input_named(self, value: float) -> BranchEnd:
         """The end with its limit at the input value of its row in a table, whole turns away."""
         low, high = self.limit.bracket
         shift = value - self.limit.input
@@ -85,7 +85,7 @@ class BranchEnd:
         """Whether a value of the path that was asked for is this end's, and a position is there."""
         return self.v is not None and abs(t - self.t) <= self.slack + rounding
 
-    def demoted(self, standing: Certification) -> BranchEnd:
+    def demote(self, standing: Certification) -> BranchEnd:
         """The end with what the way to its branch is worth, if it is proved on it."""
         if self.certification is not Certification.CERTIFIED:
             return self
@@ -141,7 +141,7 @@ def _turn_ahead(drive: Drive, nodes: Sequence[Node], side: float) -> TurnAhead |
 
 
 def _dead_end(drive: Drive, last: Node, ahead: TurnAhead, side: float, certify: bool) -> BranchEnd:
-    leg, own = ahead.leg, drive.leads.by(drive.leads.parameter)
+    leg, own = ahead.leg, drive.leads.with_parameter(drive.leads.parameter)
     begin = leg.led.whole(leg.nodes[0].v)
     joined = ahead.located and own is not None and same_solution(own, leg.led, begin)
     turn = ahead.turn
@@ -180,13 +180,13 @@ def end_at_dead_point(
         found,
         certification=Certification.CERTIFIED if joined else Certification.MOTION_NOT_PROVED,
         radius=turn.proof.radius,
-        unique=turn.proof.unique,
+        uniqueness_radius=turn.proof.uniqueness_radius,
     )
 
 
 def dead_point_limit(drive: Drive, turn: TurningPoint) -> Limit:
     """What is told of a dead point, in file units."""
-    return _located(drive, turn, LimitKind.DEAD_POINT, _locking(drive, turn.v))
+    return _locate_limit(drive, turn, LimitKind.DEAD_POINT, _locking(drive, turn.v))
 
 
 def _locking(drive: Drive, v: Array) -> tuple[int, ...]:
@@ -206,7 +206,7 @@ def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
     taking_part = np.any(crossing.directions != 0.0, axis=0)
     onward, other = (_rates(drive.model, np.where(taking_part, rate, np.nan)) for rate in rates)
     blocks = _locking(drive, crossing.v)
-    limit = _located(drive, crossing, LimitKind.CHANGE_POINT, blocks)
+    limit = _locate_limit(drive, crossing, LimitKind.CHANGE_POINT, blocks)
     return replace(limit, onward=onward, other=other)
 
 
@@ -259,7 +259,7 @@ def end_at_change_point(
     return BranchEnd(
         side=side,
         limit=replace(
-            _located(drive, place, LimitKind.CHANGE_POINT, blocks), onward=onward, other=other
+            _locate_limit(drive, place, LimitKind.CHANGE_POINT, blocks), onward=onward, other=other
         ),
         t=t,
         slack=max(high - t, t - low),
@@ -270,7 +270,7 @@ def end_at_change_point(
     )
 
 
-class _Place(Protocol):
+class _EndPlace(Protocol):
     """A singular position (N,) at a value of the path's parameter, with a bracket around it."""
 
     @property
@@ -283,7 +283,7 @@ class _Place(Protocol):
     def located(self) -> bool: ...
 
 
-def _located(drive: Drive, place: _Place, kind: LimitKind, blocks: Sequence[int]) -> Limit:
+def _locate_limit(drive: Drive, place: _EndPlace, kind: LimitKind, blocks: Sequence[int]) -> Limit:
     """What is told of it: ``blocks`` are the numbers of those that lock."""
     model = drive.model
     low, high = (edge / drive.unit for edge in place.bracket)

@@ -55,7 +55,7 @@ class Model:
         equations = replace(self.equations, start=start)
         return replace(self, equations=equations, branch=position.configuration or self.branch)
 
-    def guessed(self, values: Mapping[str, float]) -> Model:
+    def with_guess(self, values: Mapping[str, float]) -> Model:
         """The model with another guess for some unknowns, in file units.
 
         Raises

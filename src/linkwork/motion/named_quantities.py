@@ -15,7 +15,7 @@ from linkwork.motion.model import Model
 from linkwork.results.motion import Series
 from linkwork.results.quantity import Kind, Quantity
 
-__all__ = ["Named", "named_series"]
+__all__ = ["Named", "name_series"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,7 +30,7 @@ class Named:
     outputs: dict[str, Series]
 
 
-def named_series(
+def name_series(
     model: Model,
     v: Array,
     first: Array,

@@ -17,7 +17,14 @@ from linkwork.results.failure import Failure
 from linkwork.results.motion import Series
 from linkwork.results.position import Certificate, NewtonTrail, Position
 
-__all__ = ["Evidence", "Found", "found_message", "input_rate", "position_of", "target_values"]
+__all__ = [
+    "Evidence",
+    "SolvedPosition",
+    "found_message",
+    "input_rate",
+    "position_of",
+    "target_values",
+]
 
 _HOPELESS = 1e12  # condition beyond which derivatives mean nothing
 _SINGULAR = (
@@ -42,7 +49,7 @@ class Evidence:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Found:
+class SolvedPosition:
     """A position that was found (or not, as ``status`` tells): variables v (N,) and evidence.
 
     ``first`` (N,): derivatives at a dead point or change point, NaN where there are none.

@@ -142,7 +142,7 @@ class SweepTable:
     def _named(self, end: BranchEnd, here: float) -> BranchEnd:
         """The end named at a place; as a row that was asked for there is, if it may be that."""
         lead = self.drive.lead
-        named = end.named(float(self._inputs(end, here)[0, lead]))
+        named = end.with_input_named(float(self._inputs(end, here)[0, lead]))
         low, high = named.limit.bracket
         if not named.limit.located:
             return named
@@ -186,7 +186,7 @@ class SweepTable:
         row.residual[0] = float(solver.residual(v[None, :])[0])
         row.condition[0] = np.inf
         row.certification[0] = end.certification.code
-        row.radius[0], row.unique[0] = end.radius, end.unique
+        row.radius[0], row.uniqueness_radius[0] = end.radius, end.uniqueness_radius
         row.branch[0], row.limit[0] = branch, end.limit.kind.word
         return row
 
@@ -220,7 +220,7 @@ class SweepTable:
         t = np.concatenate([self.asked.t, self._extra_t])
         backwards = len(self.asked.t) > 1 and self.asked.t[-1] < self.asked.t[0]
         order = np.argsort(-t if backwards else t, kind="stable")
-        return SolvedRows.joined([self.rows, *self._extra]).take(order), added[order]
+        return SolvedRows.concatenate([self.rows, *self._extra]).take(order), added[order]
 
     def is_among(self, here: float, own: BoolArray) -> bool:
         """Whether one of the rows beside a value of t is among some rows (B,)."""

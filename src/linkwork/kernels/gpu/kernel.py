@@ -13,7 +13,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.kernels.gpu.compiling import graphics_card
 from linkwork.kernels.gpu.printing import ThreadState, device_source
 from linkwork.kernels.march.sweep_kernel import LaneRows, Steps, SweepKernel
-from linkwork.kernels.program.code_cache import written
+from linkwork.kernels.program.code_cache import load_compiled
 from linkwork.kernels.program.execution import Execution
 
 __all__ = ["Chunk", "DeviceKernel"]
@@ -48,7 +48,7 @@ class DeviceKernel(SweepKernel):
         self._card = graphics_card()
         self._state = ThreadState.of(self._sections, _OPTIONS)
         source = device_source(self._sections, self._state, self.certified)
-        self._kernels = written(source, "begin"), written(source, "march")
+        self._kernels = load_compiled(source, "begin"), load_compiled(source, "march")
 
     def run(
         self,
@@ -65,7 +65,7 @@ class DeviceKernel(SweepKernel):
         The march of one chunk runs while results of the one before are brought back. What is not
         reached is left in ``found`` as it comes.
         """
-        count, given = len(start), self.given(guess, start)
+        count, given = len(start), self.guess_nodes(guess, start)
         if not count:
             return
         chunks = self._room(len(rows), count)
@@ -94,7 +94,7 @@ class DeviceKernel(SweepKernel):
         """Fill a chunk with the first designs; see :meth:`run`."""
         part = slice(0, chunk.designs)
         own = {name: coefficients[name][part] for name in chunk.coefficients}
-        given = self.given(guess[:, part], start[part])
+        given = self.guess_nodes(guess[:, part], start[part])
         chunk.load(rows, self._options(steps), own, given)
 
     def chunk(self, rows: int, designs: int) -> Chunk:

@@ -20,7 +20,7 @@ _LONGEST = 4_000  # instructions: the compiler's time grows faster than they do
 
 @dataclass(frozen=True, kw_only=True)
 class Execution:
-    """Whether the trial of a topology is written out and compiled, or done by the machine.
+    """Whether the trial of a topology is written out and compiled, or done by the interpreter.
 
     Parameters
     ----------

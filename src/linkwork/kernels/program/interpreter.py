@@ -1,4 +1,4 @@
-"""The machine that runs programs over lanes: one instruction at a time, all lanes at once.
+"""The interpreter, which runs programs over lanes: one instruction at a time, all lanes at once.
 
 Registers are rows of a workspace (R, LANES). A pass over one row is a loop of known length over
 contiguous numbers, which the compiler turns into vector instructions; choosing the operation costs

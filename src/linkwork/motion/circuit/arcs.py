@@ -14,7 +14,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
-from linkwork.motion.circuit.branches import CurveBranch, Traced, branches_of, traced
+from linkwork.motion.circuit.branches import CurveBranch, TracedCurve, branches_of, trace_with_proof
 from linkwork.numerics.continuation.change_point import ChangePoint, Crossing
 from linkwork.numerics.continuation.local_parametrization import (
     Parametrization,
@@ -43,14 +43,14 @@ class Arc:
     onwards, backwards.
     """
 
-    up: Traced
-    down: Traced | None
+    up: TracedCurve
+    down: TracedCurve | None
     end: CircuitEnd
     crossings: tuple[int, ...]
     branches: tuple[CurveBranch, ...]
 
     @property
-    def walks(self) -> tuple[Traced, ...]:
+    def walks(self) -> tuple[TracedCurve, ...]:
         """All pieces."""
         return (self.up,) if self.down is None else (self.up, self.down)
 
@@ -117,7 +117,7 @@ class Explorer:
         ends = [c for c in (above, below) if c is not None]
         return self._keep(up, down, seed, ends)
 
-    def _keep(self, up: Traced, down: Traced | None, seed: Array, ends: list[int]) -> int:
+    def _keep(self, up: TracedCurve, down: TracedCurve | None, seed: Array, ends: list[int]) -> int:
         number = len(self.arcs)
         reasons = [walk.curve.end for walk in (up, down) if walk is not None]
         # the reason that leaves most open
@@ -137,9 +137,9 @@ class Explorer:
             self._passed += [(v, number) for _, v in walk.curve.passes]
         return number
 
-    def _walk(self, start: Array, heading: float | Array) -> tuple[Traced, int | None]:
+    def _walk(self, start: Array, heading: float | Array) -> tuple[TracedCurve, int | None]:
         """A walk and the number of the crossing it ends at, if it does."""
-        walk = traced(self.leads, start, heading, self.certify)
+        walk = trace_with_proof(self.leads, start, heading, self.certify)
         found = walk.curve.crossing
         if found is None or not walk.curve.legs:
             return walk, None
@@ -193,7 +193,7 @@ def _beyond(leads: Parametrizations, v: Array, direction: Array, other: Array) -
     gap = min(float(np.abs((direction - sign * other) / leads.scale).max()) for sign in (1.0, -1.0))
     leader = fastest_leader(leads, v, speed)
     lead = int(np.argmax(speed)) if leader is None else leader[0].lead
-    led = leads.by(lead)
+    led = leads.with_parameter(lead)
     if led is None:
         return None
     for stride in _STRIDES:
@@ -210,7 +210,7 @@ def _beyond(leads: Parametrizations, v: Array, direction: Array, other: Array) -
 
 
 def _branches(
-    leads: Parametrizations, up: Traced, down: Traced | None, fine: int
+    leads: Parametrizations, up: TracedCurve, down: TracedCurve | None, fine: int
 ) -> list[CurveBranch]:
     """The branches of an arc; the first one is joined from both walks."""
     onward = branches_of(leads, up, fine) if up.curve.legs else []
@@ -237,7 +237,7 @@ def _lies_on(leads: Parametrizations, branch: CurveBranch, seed: Array) -> bool:
 
     The branch's samples are so dense that Newton's method from between two of them stays there.
     """
-    own = leads.by(leads.parameter)
+    own = leads.with_parameter(leads.parameter)
     if own is None:
         return False
     for guess in positions_near(leads, branch, float(seed[leads.parameter])):
@@ -256,7 +256,7 @@ def positions_near(leads: Parametrizations, branch: CurveBranch, value: float) -
     p = leads.parameter
     low, high = branch.range(p)
     shifts = [0.0]
-    if leads.turns[p]:
+    if leads.is_angle[p]:
         turn = 2.0 * math.pi
         first, last = math.ceil((low - value) / turn), math.floor((high - value) / turn)
         shifts = [k * turn for k in range(first, last + 1)]

@@ -141,14 +141,14 @@ class _Search:
             except NoDirectionForm as reason:
                 self.grade = self.grade.and_then(Completeness.NOT_LISTED)
                 self.reasons.append(f"the equations of {', '.join(names)} {reason}")
-        values, multiple = self._sorted()
+        values, multiple = self._sort_values()
         message = "; ".join(self.reasons) if self.reasons else _GRADES[self.grade]
         return DeadPointInputs(
             values=values,
             multiple=multiple,
             completeness=self.grade,
             message=message,
-            poles=np.sort(np.array(self._wrapped(self.poles), dtype=float)),
+            poles=np.sort(np.array(self._wrap_angle(self.poles), dtype=float)),
             poles_known=self.poles_known,
             counts=tuple(self.counts),
         )
@@ -172,10 +172,10 @@ class _Search:
         if roots.continuum:
             self._tell_of_curves(form, roots.curves)
         real = _real(form, roots.x, _ALMOST_REAL)
-        double = _real(form, _sharpened(form, roots.multiple), _ALMOST_DOUBLE)
+        double = _real(form, _sharpen_roots(form, roots.multiple), _ALMOST_DOUBLE)
         start = self.model.equations.start
-        self.values += self._wrapped(form.positions(real, start)[:, -1].tolist())
-        self.doubles += self._wrapped(
+        self.values += self._wrap_angle(form.positions(real, start)[:, -1].tolist())
+        self.doubles += self._wrap_angle(
             [self._crossing(form, number, x) for x in form.positions(double, start)]
         )
         self.counts.append(_count(names, form, roots, len(real) + len(double)))
@@ -200,7 +200,7 @@ class _Search:
         gap = np.abs(there - here) / self.leads.scale[form.variables]
         moving = form.variables[:-1][gap[:-1] > _MOVES * gap[:-1].max()]
         scale, lead = self.model.input_scale, self.model.equations.inputs[self.number]
-        value = self._wrapped([float(here[-1])])[0] / scale[self.number]
+        value = self._wrap_angle([float(here[-1])])[0] / scale[self.number]
         at = f"{lead.name} = {round(value, 6) + 0.0:.6g} {self.model.input_units[lead.name]}"
         names = ", ".join(variables[int(k)].name for k in np.sort(moving))
         return f"{names} can move while the input stands still, as at {at}"
@@ -214,16 +214,16 @@ class _Search:
         found = crossing_near(solver, self.path, number, v)
         return float(x[-1]) if found is None else found
 
-    def _wrapped(self, values: list[float]) -> list[float]:
+    def _wrap_angle(self, values: list[float]) -> list[float]:
         """An angle's values from -π to π."""
-        if not self.leads.turns[self.leads.parameter]:
+        if not self.leads.is_angle[self.leads.parameter]:
             return values
         return [math.remainder(value, 2.0 * math.pi) for value in values]
 
-    def _sorted(self) -> tuple[Array, BoolArray]:
+    def _sort_values(self) -> tuple[Array, BoolArray]:
         """Values without repetitions; those of simple dead points come first."""
         scale = float(self.leads.scale[self.leads.parameter])
-        turns = bool(self.leads.turns[self.leads.parameter])
+        turns = bool(self.leads.is_angle[self.leads.parameter])
         kept: list[tuple[float, bool]] = []
         for values, multiple, same in (
             (self.doubles, True, _SAME_MULTIPLE),
@@ -250,7 +250,7 @@ def _real(form: DeadPointForm, x: ComplexArray, within: float) -> ComplexArray:
     return real
 
 
-def _sharpened(form: DeadPointForm, x: ComplexArray) -> ComplexArray:
+def _sharpen_roots(form: DeadPointForm, x: ComplexArray) -> ComplexArray:
     """Multiple solutions (R, n), as well as rounding lets them be found."""
     return np.array([nearest_solution(form.system, each, _STEPS) for each in x]).reshape(x.shape)
 

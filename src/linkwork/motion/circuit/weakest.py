@@ -31,7 +31,7 @@ def weakest_place(leads: ParametrizedTable, branches: Sequence[CurveBranch]) -> 
     found: list[tuple[float, Array]] = []
     valleys: list[tuple[float, float, Array]] = []
     for branch in branches:
-        v = _closed_up(leads, branch.v)
+        v = _close_curve(leads, branch.v)
         values = smallest_singular_values(leads, v)
         k = int(np.argmin(values))
         found.append((float(values[k]), v[k]))
@@ -54,7 +54,7 @@ def smallest_singular_values(leads: ParametrizedTable, v: Array) -> Array:
     return np.asarray(np.linalg.svd(leads.jacobian(v), compute_uv=False)[:, -1], dtype=float)
 
 
-def _closed_up(leads: ParametrizedTable, v: Array) -> Array:
+def _close_curve(leads: ParametrizedTable, v: Array) -> Array:
     """Positions (K, N) along a curve; of a closed one with the second position again at the end."""
     if len(v) > 2 and coincide(leads, v[0], v[-1]):
         return np.concatenate([v, v[1:2] + (v[-1] - v[0])])

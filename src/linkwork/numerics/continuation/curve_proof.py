@@ -56,7 +56,7 @@ def prove_curve(leads: Parametrizations, curve: Curve) -> ProvenCurve:
             last = leg.v[-1]
             junctions[k] = same_solution(leg.led, following.led, last)
             junctions[k] &= np.array_equal(last, following.v[0]) and _goes_on(leads, leg, following)
-    own = leads.by(leads.parameter)
+    own = leads.with_parameter(leads.parameter)
     closed = False
     if curve.end.closed and own is not None and own.provable:
         last = curve.legs[-1]
@@ -89,7 +89,7 @@ def _proof_of(leg: Leg, most: int) -> ProvenPath:
         v=np.stack([node.v for node in nodes]),
         first=sign * np.stack([node.first for node in nodes]),
         second=np.stack([node.second for node in nodes]),
-        spread=np.zeros((len(nodes), 1)),
+        input_radius=np.zeros((len(nodes), 1)),
     )
     path = leg.led.path
     backwards = type(path)(origin=path.origin, rate=sign * path.rate)
@@ -107,9 +107,9 @@ def same_solution(one: Parametrization, other: Parametrization, v: Array) -> boo
     first = prove(one.solver, v[one.order][None, :], np.zeros((1, 1)))
     if not first.holds[0]:
         return False
-    off = one.whole(first.each[0])[other.order]
+    off = one.whole(first.error_bound[0])[other.order]
     second = reach(other.solver, v[other.order][None, :], off[None, -1:])
-    return bool(second.holds[0] and (off[:-1] < second.alone[0]).all())
+    return bool(second.holds[0] and (off[:-1] < second.isolation_radius[0]).all())
 
 
 def _meets(leads: Parametrizations, own: Parametrization, start: Array, end: Array) -> bool:
@@ -124,4 +124,4 @@ def _meets(leads: Parametrizations, own: Parametrization, start: Array, end: Arr
     last = prove(own.solver, end[own.order][None, :], left[None, -1:])
     if not (first.holds[0] and last.holds[0]):
         return False
-    return bool((left[:-1] + last.each[0, :-1] < first.alone[0]).all())
+    return bool((left[:-1] + last.error_bound[0, :-1] < first.isolation_radius[0]).all())

@@ -152,7 +152,7 @@ class _Tracer:
                 self.heading = heading[leads.parameter] * rates
 
     def _own(self) -> Parametrization | None:
-        return self.leads.by(self.leads.parameter)
+        return self.leads.with_parameter(self.leads.parameter)
 
     def run(self) -> Curve:
         """Leg after leg."""
@@ -161,7 +161,7 @@ class _Tracer:
         for _ in range(opt.most_legs):
             leader = self._leader(avoid)
             if leader is None:
-                return self._ended(CircuitEnd.SINGULAR)
+                return self._end_trace(CircuitEnd.SINGULAR)
             led, node = leader
             leg, end = self._leg(led, node)
             moved = len(leg.nodes) > 1
@@ -171,19 +171,19 @@ class _Tracer:
             if end is not None:
                 self.crossing = _crossing_ahead(leg)
                 if self.crossing is not None:
-                    return self._ended(CircuitEnd.CHANGE_POINT)
+                    return self._end_trace(CircuitEnd.CHANGE_POINT)
                 stuck = 0 if moved else stuck + 1
                 avoid = led.lead
                 if stuck > 1:
-                    return self._ended(CircuitEnd.SINGULAR)
+                    return self._end_trace(CircuitEnd.SINGULAR)
                 continue
             stuck, avoid = 0, None
             ending = self._ending()
             if ending is not None:
-                return self._ended(ending)
-        return self._ended(CircuitEnd.NEVER_CLOSES)
+                return self._end_trace(ending)
+        return self._end_trace(CircuitEnd.NEVER_CLOSES)
 
-    def _ended(self, end: CircuitEnd) -> Curve:
+    def _end_trace(self, end: CircuitEnd) -> Curve:
         return Curve(
             legs=tuple(self.legs), end=end, passes=tuple(self.passes), crossing=self.crossing
         )
@@ -218,12 +218,12 @@ class _Tracer:
                 passed.extend(self._passes(led, before, after, leaving))
                 if passed or speed[place] * opt.slow >= speed.max():
                     return True
-            if bool((np.abs(after.v / weights)[~self.leads.turns[led.order]] > opt.far).any()):
+            if bool((np.abs(after.v / weights)[~self.leads.is_angle[led.order]] > opt.far).any()):
                 return True
             return bool(speed.max() > opt.fast * speed[-1])
 
         size = float(weights[-1])
-        if not self.leads.turns[led.lead]:  # a length on its way to infinity doubles in one leg
+        if not self.leads.is_angle[led.lead]:  # a length on its way to infinity doubles in one leg
             size = max(size, abs(node.t) / _LEG)
         goal = node.t + sign * _LEG * size
         if own:
@@ -245,7 +245,7 @@ class _Tracer:
 
     @property
     def _period(self) -> float:
-        return 2.0 * np.pi if self.leads.turns[self.leads.parameter] else np.inf
+        return 2.0 * np.pi if self.leads.is_angle[self.leads.parameter] else np.inf
 
     def _next_plane(self, t: float, sign: float, leaving: float | None) -> float:
         """The next value of the parameter that equals the starting one, whole turns aside.
@@ -302,9 +302,9 @@ class _Tracer:
                 high = here
         if best is None and abs(float(high.v[place]) - value) <= off:
             best = high
-        return None if best is None else self._polished(led, best, value)
+        return None if best is None else self._polish(led, best, value)
 
-    def _polished(self, led: Parametrization, here: Node, value: float) -> Node:
+    def _polish(self, led: Parametrization, here: Node, value: float) -> Node:
         """The position with exactly the value, if the parameter determines it well enough."""
         own = self.own
         near = led.whole(here.v)
@@ -318,7 +318,7 @@ class _Tracer:
 
     def _ending(self) -> CircuitEnd | None:
         v, scale = self.here, self.leads.scale
-        lengths = ~self.leads.turns
+        lengths = ~self.leads.is_angle
         if np.abs(v / scale)[lengths].max(initial=0.0) > self.options.far:
             return CircuitEnd.RUNS_TO_INFINITY
         passed = bool(self.passes) and self.passes[-1][0] == len(self.legs) - 1

@@ -72,9 +72,9 @@ class Parametrizations(Protocol):
 
     parameter: int
     scale: Array
-    turns: BoolArray
+    is_angle: BoolArray
 
-    def by(self, lead: int) -> Parametrization | None:
+    def with_parameter(self, lead: int) -> Parametrization | None:
         """The equations led by one variable; ``None`` if it does not determine the others."""
 
     def repeats_after(self, turns: Array) -> bool:
@@ -91,7 +91,7 @@ def fastest_leader(
     """The fastest variable that determines all others at a position, and the node it gives."""
     by_speed = [int(k) for k in np.argsort(-speed, kind="stable")]
     for lead in by_speed if first is None else [first, *by_speed]:
-        led = leads.by(lead) if lead != avoid and speed[lead] > 0.0 else None
+        led = leads.with_parameter(lead) if lead != avoid and speed[lead] > 0.0 else None
         if led is not None:
             node = led.node(v)
             if np.isfinite(node.second).all():
@@ -101,12 +101,12 @@ def fastest_leader(
 
 def apart(leads: Parametrizations, a: Array, b: Array) -> Array:
     """b - a with angles reduced to half a turn, (..., N)."""
-    return within_half_a_turn(b - a, leads.turns)
+    return within_half_a_turn(b - a, leads.is_angle)
 
 
 def whole_turns(leads: Parametrizations, a: Array, b: Array) -> Array:
     """How many whole turns (N,) angles have made on the way from a position to another."""
-    return np.where(leads.turns, np.round((b - a) / FULL_TURN), 0.0)
+    return np.where(leads.is_angle, np.round((b - a) / FULL_TURN), 0.0)
 
 
 def coincide(leads: Parametrizations, a: Array, b: Array) -> bool:
@@ -124,7 +124,7 @@ def same_position(leads: Parametrizations, a: Array, b: Array) -> bool:
     near = np.stack([a, b - FULL_TURN * turns])
     gap = np.abs(near[1] - near[0]) / leads.scale
     rounding = 8.0 * _UNIT * max(1.0, abs(float(a[p])), abs(float(b[p])))
-    own = leads.by(p)
+    own = leads.with_parameter(p)
     if own is None or gap.max() > _NEAR or gap[p] > _ON_VALUE or not leads.repeats_after(turns):
         return False
     size = 1.0 + np.abs(near / leads.scale).max()
@@ -135,10 +135,13 @@ def same_position(leads: Parametrizations, a: Array, b: Array) -> bool:
     found = own.solver.solve(near[:, own.order], sharp).v
     off = np.abs(found[1] - found[0])
     if own.provable:
-        spread = np.full((1, 1), rounding)
-        first, second = reach(own.solver, found[:1], spread), prove(own.solver, found[1:], spread)
+        input_radius = np.full((1, 1), rounding)
+        first, second = (
+            reach(own.solver, found[:1], input_radius),
+            prove(own.solver, found[1:], input_radius),
+        )
         if first.holds[0] and second.holds[0]:
-            return bool((off[:-1] + second.each[0, :-1] < first.alone[0]).all())
+            return bool((off[:-1] + second.error_bound[0, :-1] < first.isolation_radius[0]).all())
     rates = own.solver.rates(found, own.path.rate)
     allowed = min(_COINCIDE, _ROUNDINGS * _UNIT * float(rates.condition.max()) * size)
     close = (off / own.solver.variable_scale).max() <= allowed

@@ -36,14 +36,14 @@ _LANES = 1024  # steps halved together
 class PathPoints:
     """Positions along a path with their derivatives by t: t (K,), the others (K, N).
 
-    ``spread`` (K, p): how far the inputs may be from those in v, in their own units.
+    ``input_radius`` (K, p): how far the inputs may be from those in v, in their own units.
     """
 
     t: Array
     v: Array
     first: Array
     second: Array
-    spread: Array
+    input_radius: Array
 
     def take(self, index: IndexArray | slice) -> PathPoints:
         """Some of them, in the order of ``index``."""
@@ -52,7 +52,7 @@ class PathPoints:
             v=self.v[index],
             first=self.first[index],
             second=self.second[index],
-            spread=self.spread[index],
+            input_radius=self.input_radius[index],
         )
 
 
@@ -70,12 +70,12 @@ class ProvenPath:
 
     def connected_to(self, anchor: int) -> BoolArray:
         """The positions joined to one of them by proved steps and proved themselves, (K,)."""
-        return _outwards(self.connected, anchor) & self.position.holds
+        return _connected_outwards(self.connected, anchor) & self.position.holds
 
     def given_up_before(self, anchor: int) -> BoolArray:
         """The positions whose first step without a proof, on the way from one, was given up."""
-        joined = _outwards(self.connected, anchor)
-        as_if = _outwards(self.connected | self.given_up, anchor)
+        joined = _connected_outwards(self.connected, anchor)
+        as_if = _connected_outwards(self.connected | self.given_up, anchor)
         first_broken = as_if & ~joined
         # beyond a step that was given up others may be broken for other reasons
         right = np.logical_or.accumulate(first_broken[anchor:])
@@ -83,7 +83,7 @@ class ProvenPath:
         return np.concatenate([left[:-1], right])
 
 
-def _outwards(connected: BoolArray, anchor: int) -> BoolArray:
+def _connected_outwards(connected: BoolArray, anchor: int) -> BoolArray:
     """Which of K positions are joined to one of them, (K,)."""
     right = np.logical_and.accumulate(connected[anchor:])
     left = np.logical_and.accumulate(connected[:anchor][::-1])[::-1]
@@ -139,9 +139,9 @@ def prove_path(
     return ProvenPath(
         position=Proof(
             holds=np.concatenate([p.holds for p in proofs]),
-            exists=np.concatenate([p.exists for p in proofs]),
-            unique=np.concatenate([p.unique for p in proofs]),
-            each=np.concatenate([p.each for p in proofs]),
+            existence_radius=np.concatenate([p.existence_radius for p in proofs]),
+            uniqueness_radius=np.concatenate([p.uniqueness_radius for p in proofs]),
+            error_bound=np.concatenate([p.error_bound for p in proofs]),
         ),
         connected=np.concatenate([piece.connected for piece in pieces]),
         pieces=np.concatenate([piece.pieces for piece in pieces]),
@@ -163,7 +163,12 @@ class _Allowance:
 
 
 def _behind_first(p: Proof) -> Proof:
-    return Proof(holds=p.holds[1:], exists=p.exists[1:], unique=p.unique[1:], each=p.each[1:])
+    return Proof(
+        holds=p.holds[1:],
+        existence_radius=p.existence_radius[1:],
+        uniqueness_radius=p.uniqueness_radius[1:],
+        error_bound=p.error_bound[1:],
+    )
 
 
 def _piece(
@@ -174,19 +179,19 @@ def _piece(
     allowance: _Allowance,
 ) -> ProvenPath:
     places = expansions(solver, points.v)
-    position = prove(solver, points.v, points.spread, places)
+    position = prove(solver, points.v, points.input_radius, places)
     steps = len(points.t) - 1
     nothing = np.zeros(steps, dtype=bool)
     pieces = np.ones(steps, dtype=np.int64)
     if not steps:
         return ProvenPath(position=position, connected=nothing, pieces=pieces, given_up=nothing)
     left, right = points.take(slice(None, -1)), points.take(slice(1, None))
-    near = np.maximum(position.each[1:], position.each[:-1])
-    connected = _steps(solver, left, right, near, _cut(places, slice(None, -1)))
+    near = np.maximum(position.error_bound[1:], position.error_bound[:-1])
+    connected = _steps(solver, left, right, near, _take_expansions(places, slice(None, -1)))
     connected &= position.holds[1:] & position.holds[:-1]
     open_ = np.flatnonzero(~connected & position.holds[1:] & position.holds[:-1])
     if len(open_):
-        back = _cut(places, open_ + 1)
+        back = _take_expansions(places, open_ + 1)
         connected[open_] = _steps(solver, right.take(open_), left.take(open_), near[open_], back)
         open_ = open_[~connected[open_]]
     if not len(open_):
@@ -202,7 +207,9 @@ def _piece(
     )
 
 
-def _cut(places: Sequence[Expansion | None], index: IndexArray | slice) -> list[Expansion | None]:
+def _take_expansions(
+    places: Sequence[Expansion | None], index: IndexArray | slice
+) -> list[Expansion | None]:
     return [None if place is None else place.take(index) for place in places]
 
 
@@ -217,9 +224,9 @@ def _steps(
 
     The inputs are taken from the positions: those of a row may differ from the path's by rounding.
     """
-    spread = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
-    spread += start.spread + goal.spread
-    return steps_connected(start.v, goal.v, reach(solver, start.v, spread, places), near)
+    input_radius = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
+    input_radius += start.input_radius + goal.input_radius
+    return steps_connected(start.v, goal.v, reach(solver, start.v, input_radius, places), near)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -243,8 +250,8 @@ class _Open:
 
     def with_(self, other: _Open) -> _Open:
         return _Open(
-            left=_joined(self.left, other.left),
-            right=_joined(self.right, other.right),
+            left=_concatenate_points(self.left, other.left),
+            right=_concatenate_points(self.right, other.right),
             near=np.concatenate([self.near, other.near]),
             owner=np.concatenate([self.owner, other.owner]),
         )
@@ -280,7 +287,7 @@ class _Halving:
                 self.proved[queue.owner] = False
                 self.given_up[queue.owner] = True
                 return
-            queue = self._halved(queue.take(slice(None, now))).with_(queue.take(slice(now, None)))
+            queue = self._halve(queue.take(slice(None, now))).with_(queue.take(slice(now, None)))
 
     def _of_use(self, queue: _Open) -> _Open:
         """What may still be proved, nearest to the anchor first."""
@@ -296,12 +303,12 @@ class _Halving:
         away = np.abs(queue.owner[keep] + 0.5 - self.anchor)
         return queue.take(keep[np.argsort(away, kind="stable")])
 
-    def _halved(self, lanes: _Open) -> _Open:
+    def _halve(self, lanes: _Open) -> _Open:
         """What is left to be proved of some steps after one more halving."""
         solver = self.solver
         np.add.at(self.pieces, lanes.owner, 1)
         middle, found, places = _between(solver, self.path, lanes.left, lanes.right)
-        proof = prove(solver, middle.v, middle.spread, places)
+        proof = prove(solver, middle.v, middle.input_radius, places)
         good = found & proof.holds
         good &= (lanes.left.t < middle.t) & (middle.t < lanes.right.t)
         good &= (lanes.right.t - lanes.left.t) > self.width[lanes.owner] * 2.0**-_ROUNDS
@@ -312,8 +319,8 @@ class _Halving:
         keep = np.flatnonzero(self.proved[lanes.owner])
         if not len(keep):
             return lanes.take(keep)
-        lanes, middle, places = lanes.take(keep), middle.take(keep), _cut(places, keep)
-        near = np.maximum(lanes.near, proof.each[keep])
+        lanes, middle, places = lanes.take(keep), middle.take(keep), _take_expansions(places, keep)
+        near = np.maximum(lanes.near, proof.error_bound[keep])
         halves = [
             _Open(left=lanes.left, right=middle, near=near, owner=lanes.owner),
             _Open(left=middle, right=lanes.right, near=near, owner=lanes.owner),
@@ -325,13 +332,13 @@ class _Halving:
         return halves[0].with_(halves[1])
 
 
-def _joined(a: PathPoints, b: PathPoints) -> PathPoints:
+def _concatenate_points(a: PathPoints, b: PathPoints) -> PathPoints:
     return PathPoints(
         t=np.concatenate([a.t, b.t]),
         v=np.concatenate([a.v, b.v]),
         first=np.concatenate([a.first, b.first]),
         second=np.concatenate([a.second, b.second]),
-        spread=np.concatenate([a.spread, b.spread]),
+        input_radius=np.concatenate([a.input_radius, b.input_radius]),
     )
 
 
@@ -349,8 +356,10 @@ def _between(
     done = solver.solve(guess)
     linear = solver.linearise(done.v)
     rates: Rates = solver.rates(done.v, path.rate, linear)
-    spread = rounding_of_inputs(done.v, solver.unknowns)
-    points = PathPoints(t=t, v=done.v, first=rates.first, second=rates.second, spread=spread)
+    input_radius = rounding_of_inputs(done.v, solver.unknowns)
+    points = PathPoints(
+        t=t, v=done.v, first=rates.first, second=rates.second, input_radius=input_radius
+    )
     return points, done.status == _CONVERGED, expansions(solver, done.v, linear)
 
 
@@ -380,9 +389,9 @@ def follow_with_proof(
         if found.status[0] == _CONVERGED:
             known = rounding_of_inputs(found.v, solver.unknowns)
             proof = prove(solver, found.v, known)
-            spread = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
-            reached = reach(solver, here.v[None, :], spread + 2.0 * known)
-            both = np.maximum(proof.each, near.each)
+            input_radius = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
+            reached = reach(solver, here.v[None, :], input_radius + 2.0 * known)
+            both = np.maximum(proof.error_bound, near.error_bound)
             if proof.holds[0] and steps_connected(here.v[None, :], found.v, reached, both)[0]:
                 before, here, near = here, node_at(solver, path, t, found.v[0]), proof
                 nodes.append(here)

@@ -13,7 +13,7 @@ from linkwork.foundation.status import Status
 from linkwork.numerics.continuation.branch_tracking import Node, node_at
 from linkwork.numerics.continuation.local_parametrization import Parametrization
 
-__all__ = ["divided", "node_between", "one_way", "share_at", "sign_change"]
+__all__ = ["divide_step", "node_between", "one_way", "share_at", "sign_change"]
 
 _CONVERGED = Status.CONVERGED.code
 _UNIT = np.finfo(float).eps
@@ -60,7 +60,7 @@ def share_at(place: int, low: Node, high: Node, value: float) -> float:
 def one_way(led: Parametrization, place: int, before: Node, after: Node) -> list[Node]:
     """A step, divided where a variable turns back within it."""
     chain = [before]
-    for low, high in itertools.pairwise(divided(led, place, before, after)):
+    for low, high in itertools.pairwise(divide_step(led, place, before, after)):
         if low.first[place] * high.first[place] < 0.0:
             chain.append(sign_change(led, low, high, lambda node: float(node.first[place])))
         chain.append(high)
@@ -104,7 +104,7 @@ def sign_change(
     return best
 
 
-def divided(
+def divide_step(
     led: Parametrization, place: int, a: Node, b: Node, depth: int = _DIVISIONS
 ) -> list[Node]:
     """A step, divided so finely that a variable turns back at most once in each piece.
@@ -124,8 +124,8 @@ def divided(
     off = abs(float(middle.first[place]) - float(_hermite(0.5, h, *ends)))
     if _zero_once(_SAFE * off + 8.0 * _UNIT * size, h, *ends):
         return [a, b]
-    left = divided(led, place, a, middle, depth - 1)
-    return [*left, *divided(led, place, middle, b, depth - 1)[1:]]
+    left = divide_step(led, place, a, middle, depth - 1)
+    return [*left, *divide_step(led, place, middle, b, depth - 1)[1:]]
 
 
 def _zero_once(error: float, h: float, v0: float, d0: float, v1: float, d1: float) -> bool:

@@ -63,16 +63,16 @@ def real_motion(
     """
     real = RealPoints(system, lead)
     with np.errstate(all="ignore"):
-        here = real.corrected(real.near(x), None)
+        here = real.correct(real.near(x), None)
         if here is None:
             return None
         held = real.value(here)
         _, jacobian = real.equations(here, held)
         size = 1.0 + float(np.abs(here).max())
         for way in _kernel(jacobian).T.real:
-            there = real.corrected(here + _STRIDE * size * way, held)
+            there = real.correct(here + _STRIDE * size * way, held)
             if there is not None and np.abs(there - here).max() > _MOVED * _STRIDE * size:
-                return real.placed(here), real.placed(there)
+                return real.place(here), real.place(there)
     return None
 
 
@@ -113,18 +113,18 @@ class RealPoints:
         self.norm[2 * m :] = y[2 * m :] = rows[-1]
         return y
 
-    def placed(self, y: Array) -> ComplexArray:
+    def place(self, y: Array) -> ComplexArray:
         """x (n,) of a real point."""
         x: ComplexArray = self.basis @ y.astype(complex)
         return x
 
     def value(self, y: Array) -> ComplexArray:
         """The input as U and as V have it, (2,)."""
-        return self.lead(self.placed(y))[0]
+        return self.lead(self.place(y))[0]
 
     def equations(self, y: Array, held: ComplexArray | None) -> tuple[Array, Array]:
         """Real residuals and their derivative; with the input ``held`` at a value (2,)."""
-        x = self.placed(y)
+        x = self.place(y)
         f, jacobian = self.system.residual_and_jacobian(x[None])
         value, slope = f[0, :-1], jacobian[0, :-1] @ self.basis  # rates have a norm of their own
         if held is not None:
@@ -134,7 +134,7 @@ class RealPoints:
         residual = np.concatenate([value.real, value.imag, [self.norm @ y - 1.0]])
         return residual, np.concatenate([slope.real, slope.imag, self.norm[None]])
 
-    def corrected(self, y: Array, held: ComplexArray | None) -> Array | None:
+    def correct(self, y: Array, held: ComplexArray | None) -> Array | None:
         """The solution that Gauss-Newton steps of least length lead to; ``None`` if to none."""
         for _ in range(_STEPS):
             f, jacobian = self.equations(y, held)

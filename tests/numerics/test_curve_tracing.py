@@ -13,7 +13,7 @@ from flint import arb, ctx
 import linkwork as lw
 from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.circuit_end import CircuitEnd
-from linkwork.motion.circuit.branches import Traced, branches_of, traced
+from linkwork.motion.circuit.branches import TracedCurve, branches_of, trace_with_proof
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.start import first_position
 from linkwork.numerics.continuation.branch_tracking import InputPath
@@ -33,15 +33,15 @@ FOLDING = FourBar(4.0, 2.0, 5.0, 2.0)
 
 def around(
     bar: FourBar, theta: float, side: int, way: float = 1.0
-) -> tuple[ParametrizedTable, Traced]:
+) -> tuple[ParametrizedTable, TracedCurve]:
     """The curve of a four-bar through a crank angle on one of its assemblies."""
     leads = ParametrizedTable(four_bar_table(bar), PATH, 0)
     e3, e4 = bar.phasors(np.array(theta), side)
     start = np.array([np.angle(e3), np.angle(e4), theta])
-    return leads, traced(leads, start, way, certify=True)
+    return leads, trace_with_proof(leads, start, way, certify=True)
 
 
-def circuit_of(mechanism: lw.Mechanism, way: float = 1.0) -> tuple[ParametrizedTable, Traced]:
+def circuit_of(mechanism: lw.Mechanism, way: float = 1.0) -> tuple[ParametrizedTable, TracedCurve]:
     """The curve of a mechanism through its start, which lies on its table."""
     model = mechanism.model
     lead, rate = lock_step(model.rows)
@@ -49,7 +49,7 @@ def circuit_of(mechanism: lw.Mechanism, way: float = 1.0) -> tuple[ParametrizedT
     start = first_position(model, model.start_inputs, NewtonOptions())
     assert start.status.ok
     leads = ParametrizedTable(model.compiled.table, path, lead)
-    return leads, traced(leads, start.v, way, certify=True)
+    return leads, trace_with_proof(leads, start.v, way, certify=True)
 
 
 def exact_turns(bar: FourBar) -> list[arb]:
@@ -290,7 +290,7 @@ def test_a_curve_that_passes_itself_closely_is_followed_on(
     leads = ParametrizedTable(four_bar_table(FOLDING), PATH, 0)
     start = np.array([*angle, dead + away])
     for way in (1.0, -1.0):
-        found = traced(leads, start, way, certify)
+        found = trace_with_proof(leads, start, way, certify)
         assert found.curve.end is CircuitEnd.CLOSED
         assert len(found.turns) == 2
         first, last = found.curve.legs[0].v[0], found.curve.legs[-1].v[-1]

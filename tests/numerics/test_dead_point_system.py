@@ -8,7 +8,7 @@ import pytest
 from linkwork.numerics.homotopy import isolated_roots as roots_module
 from linkwork.numerics.homotopy.dead_point_family import DeadPointFamily, dead_point_roots
 from linkwork.numerics.homotopy.dead_point_system import DeadPointSystem
-from linkwork.numerics.homotopy.polynomial_system import polished
+from linkwork.numerics.homotopy.polynomial_system import polish_roots
 
 #: Own rates of a dyad: of two links; of a link and a length on a fixed line (third column: one).
 LINKS = ((0, 0, 0, 1.0, 1.0), (1, 1, 1, 1.0, 1.0))
@@ -156,6 +156,6 @@ def test_every_run_gives_the_same_numbers(monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_a_dead_point_is_reached_from_nearby() -> None:
     roots = dead_point_roots(six_bar(4))
-    back, steps = polished(six_bar(4), roots.x * (1 + 1e-6))
+    back, steps = polish_roots(six_bar(4), roots.x * (1 + 1e-6))
     assert (steps > 0).all()
     np.testing.assert_allclose(back, roots.x, rtol=0, atol=1e-8 * np.abs(roots.x).max())

@@ -98,9 +98,9 @@ def test_a_dead_point_with_a_slide_is_a_real_position_but_no_motion() -> None:
     form = _form(_driven("2*e^(i*t) + e^(i*p) = s", "t", t=30, p=-80, s=2.0), 0)
     x = next(x for x in dead_point_roots(form.system).x if abs(abs(x[1]) - 1.0) < 1e-6)
     real = RealPoints(form.system, form.lead)
-    y = real.corrected(real.near(x), None)
+    y = real.correct(real.near(x), None)
     assert y is not None
     m = 2 * form.system.size
-    np.testing.assert_allclose(real.placed(y)[:m], x[:m], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(real.place(y)[:m], x[:m], rtol=0, atol=1e-9)
     assert np.abs(y[m:]).min() > 0.1
     assert real_motion(form.system, x, form.lead) is None
