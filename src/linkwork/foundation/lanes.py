@@ -432,7 +432,7 @@ def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
         if lanes is None:
             picked: _Number = truths.consensus.pick(np.where(truths.values, yes, no))
             return picked
-        return cast(_Number, lanes.applied(np.where, truths, yes, no))
+        return cast(_Number, lanes.apply(np.where, truths, yes, no))
     return yes if condition else no
 
 
