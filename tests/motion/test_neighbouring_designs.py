@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import linkwork as lw
 from linkwork.foundation.certification import Certification
@@ -106,7 +105,7 @@ def test_nothing_is_renewed_where_a_dead_point_has_come_between() -> None:
     locked = four_bar(a=70.0)
     cycle = four_bar().sweep()
     assert warm_started(locked.model, cycle) is None
-    beside = locked.sweep_beside(cycle)
+    beside = locked.approximate_sweep(cycle)
     followed = locked.sweep()
     assert [limit.input for limit in beside.limits] == pytest.approx(
         [limit.input for limit in followed.limits], abs=1e-6
@@ -118,7 +117,7 @@ def test_nothing_is_renewed_from_a_cycle_of_another_table() -> None:
     design = four_bar()
     assert warm_started(design.model, lw.example("slider-crank").sweep()) is None
     assert warm_started(design.model, design.sweep(step=2)) is None
-    assert design.sweep_beside().found.all()
+    assert design.approximate_sweep().found.all()
 
 
 def test_a_row_that_would_jump_to_the_other_branch_is_not_renewed() -> None:

@@ -192,7 +192,7 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
 
 def _check_different(named: Mapping[str, Quantity]) -> None:
     if not named:
-        raise InputError("a family needs something that varies: name a dimension and its values")
+        raise InputError("nothing varies in this family: give a dimension and its values")
     first: dict[Quantity, str] = {}
     for name, quantity in named.items():
         if first.setdefault(quantity, name) != name:

@@ -105,7 +105,7 @@ class Family:
         if 8 * count > _MOST_BYTES:
             raise InputError(
                 f"{len(self)} designs × {len(model.rows)} rows take {8 * count / 2**30:.0f} GiB: "
-                "go through family.parts(), or ask for family.reduced({...})"
+                "use family.parts() or family.reduced({...})"
             )
         rows = design_rows(self.designs, certify=certify, threads=threads, execution=execution)
         return FamilyMotion(

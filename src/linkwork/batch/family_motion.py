@@ -286,7 +286,7 @@ class FamilyMotion:
         if needed > _MOST_BYTES:
             raise InputError(
                 f"{len(names)} quantities and rates of {len(self)} designs take "
-                f"{needed / 2**30:.0f} GiB: name those that are wanted"
+                f"{needed / 2**30:.0f} GiB: name the ones that you need"
             )
         return names
 

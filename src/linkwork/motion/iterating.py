@@ -95,7 +95,7 @@ def pulled_guess(
     if point not in names:
         raise UnknownNameError(f'there is no point "{point}" {choices("points", names, point)}')
     if not np.isfinite(place).all():
-        raise InputError(f"the place of {point} must be two finite numbers, got {place}")
+        raise InputError(f"the coordinates of {point} must be two finite numbers, got {place}")
     v = model.equations.start.copy()
     v[len(unknowns) :] = target_values(model, at) * model.input_scale
     wanted = complex(*place)

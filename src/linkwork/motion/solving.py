@@ -11,8 +11,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
-from linkwork.motion import failure as why
-from linkwork.motion import following
+from linkwork.motion import failure as why, following
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import name_series
 from linkwork.motion.positions import (

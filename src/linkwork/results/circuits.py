@@ -13,7 +13,7 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
-from linkwork.foundation.showing import shower
+from linkwork.foundation.presenting import presenter
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit, Motion
 from linkwork.results.summary import circuits_summary
@@ -197,15 +197,14 @@ class Circuits:
         UnknownNameError
             For a name that does not exist.
         """
-        return shower("Circuits.plot")(self, *names, kind=kind, ax=ax, theme=theme, title=title)
+        return presenter(Circuits.plot)(self, *names, kind=kind, ax=ax, theme=theme, title=title)
 
     def __repr__(self) -> str:
         return str(circuits_summary(self))
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        shown: str = shower("Circuits.html")(self)
-        return shown
+        return presenter(Circuits._repr_html_)(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as in the command line's JSON."""

@@ -13,7 +13,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.names import find_spelling
-from linkwork.foundation.showing import shower
+from linkwork.foundation.presenting import presenter
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
@@ -163,8 +163,7 @@ class Position:
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        shown: str = shower("Position.html")(self)
-        return shown
+        return presenter(Position._repr_html_)(self)
 
     def to_dict(self) -> dict[str, Any]:
         """The position as JSON-ready data: NaN becomes null, the status its member name."""

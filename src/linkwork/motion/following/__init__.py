@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
-    from linkwork.motion.following.to_value import OutOfReach, follow_to_value
+    from linkwork.motion.following.to_value import (
+        OutOfReach as OutOfReach,
+        follow_to_value as follow_to_value,
+    )
 else:
-    __getattr__ = loader(__name__, {"to_value": ("OutOfReach", "follow_to_value")})
-
-__all__ = ["OutOfReach", "follow_to_value"]
+    __getattr__ = loader(__name__)
