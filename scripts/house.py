@@ -63,13 +63,13 @@ def measure(package: Path, known: Mapping[str, Any]) -> dict[str, Count]:
     }
 
 
-def missed(count: Count, goal: Mapping[str, Any]) -> bool:
-    return count.value > goal.get("most", count.value) or count.value < goal.get("least", 0)
+def missed(count: Count, goal: Mapping[str, float]) -> bool:
+    return not goal.get("least", count.value) <= count.value <= goal.get("most", count.value)
 
 
 def report(
     counts: Mapping[str, Count],
-    goals: Mapping[str, Mapping[str, Any]],
+    goals: Mapping[str, Mapping[str, float]],
     verbose: bool,
     say: Callable[[str], object],
 ) -> int:

@@ -52,21 +52,22 @@ def files_of_a_quantity(sources: list[Source], quantities: Iterable[str]) -> Cou
 
 def lists_of_parts(sources: list[Source], parts: Mapping[str, str]) -> Count:
     """Tuples, lists, sets and tables that have three kinds of parts or more side by side."""
-    words, found = {*parts, *parts.values()}, []
+    found = []
+    words: set[object] = {*parts, *parts.values()}
     for source in sources:
         public = {id(n.value) for n in source.nodes if isinstance(n, ast.Assign) and _is_all(n)}
         for node in source.nodes:
             if source.path.name == "__init__.py" or id(node) in public:
                 continue
             entries = node.keys if isinstance(node, ast.Dict) else getattr(node, "elts", [])
-            named = {
+            named = words & {
                 entry.value if isinstance(entry, ast.Constant) else entry.id
                 for entry in entries
                 if isinstance(entry, ast.Constant | ast.Name)
             }
-            if len(named & words) >= 3:
+            if len(named) >= 3:
                 assert isinstance(node, ast.expr)
-                found.append(f"{source.at(node)}: {', '.join(sorted(named & words))}")
+                found.append(f"{source.at(node)}: {', '.join(sorted(map(str, named)))}")
     return Count(len(found), tuple(found))
 
 

@@ -49,9 +49,13 @@ def pytest_configure(config: pytest.Config) -> None:
     os.close(handle)
     os.environ[_COMPILING] = mark
     compiling = subprocess.Popen([sys.executable, "-m", "tests.compile_kernels", mark], cwd=_TREE)
-    config.add_cleanup(lambda: Path(mark).unlink(missing_ok=True))
-    config.add_cleanup(compiling.wait)
-    config.add_cleanup(compiling.terminate)  # cleanups run from the last to the first
+
+    def end() -> None:
+        compiling.terminate()
+        compiling.wait()
+        Path(mark).unlink(missing_ok=True)
+
+    config.add_cleanup(end)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

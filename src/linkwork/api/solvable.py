@@ -248,7 +248,7 @@ class SolvableMechanism:
         Parameters
         ----------
         start, stop, step : number, optional
-            Replace the range of the only input, file units.
+            Replace the range of the only input, in file units.
         configuration : str, optional
             Start from the configuration of this name at the input value of the guess, or on this
             branch of ``circuits()``.
@@ -287,7 +287,7 @@ class SolvableMechanism:
             asked = motion.model_of(self.description.with_range(start, stop, step))
             asked = asked.from_start_of(self.model)
         if configuration is not None:
-            asked = motion.started_in(asked, configuration)
+            asked = motion.start_in_configuration(asked, configuration)
         return motion.sweep(
             asked,
             through=through,
@@ -345,7 +345,8 @@ class SolvableMechanism:
         Parameters
         ----------
         guess : Mapping[str, number], optional
-            Values of some or all unknowns, file units; the others keep the guess of the mechanism.
+            Values of some or all unknowns, in file units; the others keep the guess of the
+            mechanism.
         at : number or Mapping[str, number], optional
             Input value(s) in file units; by default those of the guess.
         options : NewtonOptions, optional

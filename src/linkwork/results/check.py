@@ -63,7 +63,7 @@ class CheckReport:
     start_message : str
         The same as a sentence.
     start_input : dict[str, float]
-        The input values of the guess, file units.
+        The input values of the guess, in file units.
     residual : float
         Largest closure error at the start, relative to the longest link.
     failure : Failure, optional

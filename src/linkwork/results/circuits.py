@@ -30,7 +30,7 @@ class Branch:
     name : str
         ``circuit 1 branch 2``.
     input_range : (float, float)
-        Smallest and largest value of the leading input, file units, unwrapped.
+        Smallest and largest value of the leading input, in file units, unwrapped.
     configuration : str
         The name of its configuration at the input value of the guess; "" if the branch does not
         contain that value.
@@ -75,7 +75,7 @@ class Circuit:
         Whether the curve is proved to be one curve, and to close; at change points to a millionth
         of a radian.
     input_range : (float, float)
-        Smallest and largest value of the leading input, file units, unwrapped.
+        Smallest and largest value of the leading input, in file units, unwrapped.
     turns : int, optional
         Turns of the input until the circuit closes; 0 if the input reverses; ``None`` if the
         circuit does not close or the input is a length.

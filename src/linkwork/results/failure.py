@@ -62,7 +62,7 @@ class Failure:
     what : str
         What happened, as a sentence.
     asked : Mapping[str, float]
-        The requested input values, file units.
+        The requested input values, in file units.
     loops : tuple of str
         The loops that do not close or that lock.
     gap : float, optional
@@ -71,8 +71,9 @@ class Failure:
     remedies : tuple of Remedy
         Lengths whose change alone closes the loops.
     nearest_input : Mapping[str, float]
-        The reachable input values nearest to the requested ones, file units, on the circuit through
-        the start, or, without a start, on the circuit found nearest to the guess; empty if unknown.
+        The reachable input values nearest to the requested ones, in file units, on the circuit
+        through the start, or, without a start, on the circuit found nearest to the guess; empty if
+        unknown.
     nearest_kind : str
         What limits the circuit there: ``dead point``, ``end of what was followed``; "" if the
         circuit reaches the requested values.

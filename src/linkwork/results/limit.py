@@ -43,10 +43,10 @@ class Limit:
     kind : LimitKind
         Dead point, change point or unknown.
     input : float
-        Value of the leading input, file units.
+        Value of the leading input, in file units.
     bracket : (float, float)
         Contains the dead point if it is located; otherwise the last value reached and the first
-        value that failed, file units.
+        value that failed, in file units.
     located : bool
         For a dead point, whether it is proved that the input reverses within the bracket and that
         the branch leads there; for a change point, whether it was found to rounding.
@@ -131,11 +131,11 @@ class OutputLimit:
     kind : str
         ``maximum`` or ``minimum``.
     input : float
-        Value of the leading input, file units.
+        Value of the leading input, in file units.
     value : float
-        Value of the quantity, file units.
+        Value of the quantity, in file units.
     bracket : (float, float)
-        Interval around ``input``, file units.
+        Interval around ``input``, in file units.
     located : bool
         Whether the extreme was found to rounding.
 
