@@ -1,4 +1,4 @@
-"""Mechanisms from files, texts, the library, and from Python."""
+"""Make mechanisms from files, texts, the library and Python objects."""
 
 from __future__ import annotations
 

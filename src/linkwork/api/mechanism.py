@@ -1,4 +1,4 @@
-"""The friendly face: a mechanism that can be solved, swept, checked, shown and drawn."""
+"""The main class: a mechanism that can be solved, swept, checked, drawn and exported."""
 
 from __future__ import annotations
 

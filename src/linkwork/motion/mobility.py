@@ -1,4 +1,4 @@
-"""Degrees of freedom: counted by Grübler's formula, and by rank at a position; why they differ."""
+"""Mobility by Grübler's count and by rank, and why the two differ."""
 
 from __future__ import annotations
 

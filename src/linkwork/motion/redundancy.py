@@ -1,4 +1,4 @@
-"""Redundant conditions: do they hold, at the start and at every position?
+"""Check redundant conditions at the start and at every position.
 
 The length of a redundant link is an unknown of the equations. Positions at which it does not come
 out as given are no positions of the mechanism.

@@ -1,4 +1,4 @@
-"""Reading the speed of an input: ``"300 rpm"``, ``"25 rad/s"``, ``"50 mm/s"``."""
+"""Read the speed of an input: ``"300 rpm"``, ``"25 rad/s"``, ``"50 mm/s"``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the program understood of a mechanism, before a cycle is solved."""
+"""The report of a check: how a mechanism was read, before a cycle is solved."""
 
 from __future__ import annotations
 

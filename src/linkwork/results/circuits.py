@@ -1,4 +1,4 @@
-"""All circuits of a mechanism: what can be reached without taking it apart, and its branches."""
+"""Circuits of a mechanism, each reachable without disassembly, and their branches."""
 
 from __future__ import annotations
 

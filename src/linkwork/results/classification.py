@@ -1,4 +1,4 @@
-"""What kind of mechanism it is: chain, inversion, type by lengths, Assur groups."""
+"""The classification of a mechanism: chain, inversion, type by lengths, Assur groups."""
 
 from __future__ import annotations
 

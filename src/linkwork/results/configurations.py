@@ -1,4 +1,4 @@
-"""Every way a mechanism can be put together at one input, with what is known of completeness."""
+"""All assembly configurations at one input, and whether the list is complete."""
 
 from __future__ import annotations
 

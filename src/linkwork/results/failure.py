@@ -1,4 +1,4 @@
-"""Why there is no position, or another one than was meant: numbers, and sentences from them."""
+"""Why a position does not exist or differs from the intended one, as numbers and sentences."""
 
 from __future__ import annotations
 

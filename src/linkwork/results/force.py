@@ -1,4 +1,4 @@
-"""Forces on points, to be shown."""
+"""Forces at points, for drawings."""
 
 from __future__ import annotations
 

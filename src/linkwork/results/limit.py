@@ -1,4 +1,4 @@
-"""Where a branch ends, and where a quantity is largest or smallest."""
+"""Limits of a branch, and extremes of a quantity."""
 
 from __future__ import annotations
 

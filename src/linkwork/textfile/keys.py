@@ -1,4 +1,4 @@
-"""Every table and key of a mechanism file, said once.
+"""All tables and keys of a mechanism file, defined in one place.
 
 The reader's checks (:mod:`~linkwork.textfile.structure`) and the published JSON Schema
 (:mod:`~linkwork.textfile.schema`) are both generated from :data:`FORMS`.
@@ -83,24 +83,7 @@ class ListOf:
 
 @dataclass(frozen=True)
 class Table:
-    """Named columns of equal length, with the unit of each column.
-
-    Parameters
-    ----------
-    columns : Mapping[str, array (N,)]
-        Numbers as float arrays; ``status``, ``branch``, ``limit`` as text; ``certified`` as bool.
-    units : Mapping[str, str]
-        The unit of every column; "" for none.
-    index : str
-        The column of the leading input.
-
-    Examples
-    --------
-    >>> import linkwork as lw
-    >>> table = lw.example("four-bar").sweep(start=0, stop=90, step=30).table()
-    >>> len(table), table.units["rocker"], table["rocker"][2].round(3)
-    (4, 'deg', 64.943)
-    """
+    """A table whose keys are known."""
 
     keys: tuple[Key, ...]
 

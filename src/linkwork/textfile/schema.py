@@ -1,4 +1,4 @@
-"""The JSON Schema of mechanism files, for editors that complete and check while one types."""
+"""The JSON Schema of mechanism files, with which editors complete and check."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether TOML data has the tables, keys and types of :mod:`~linkwork.textfile.keys`."""
+"""Check that TOML data has the tables, keys and types of :mod:`~linkwork.textfile.keys`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From the bytes of a file to TOML data: hostile or broken ones are refused with a reason."""
+"""Parse the bytes of a TOML file; reject broken or hostile files with a reason."""
 
 from __future__ import annotations
 

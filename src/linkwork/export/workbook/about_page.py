@@ -1,4 +1,4 @@
-"""The first sheet: what the workbook is, what it can follow, and what Linkwork says."""
+"""The first sheet of a workbook: instructions, units, evidence, equations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sheet with what can be changed: dimensions, the input's table, the first estimates."""
+"""The sheet of the editable cells: dimensions, the input's table, the first estimates."""
 
 from __future__ import annotations
 

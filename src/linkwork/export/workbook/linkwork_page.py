@@ -1,4 +1,4 @@
-"""The sheet with Linkwork's own table: values to compare with."""
+"""The sheet of Linkwork's own results, for comparison."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All ways to put a mechanism together at given inputs, block by block, as arrays.
+"""All configurations at given inputs, block by block, as arrays.
 
 Every block is solved once for each configuration of the blocks before it, so the configurations of
 the whole are counted like a product.

@@ -1,4 +1,4 @@
-"""The input values of all dead points at once, from polynomials instead of from circuits."""
+"""The input values of all dead points, from polynomials."""
 
 from __future__ import annotations
 

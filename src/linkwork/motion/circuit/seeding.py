@@ -1,4 +1,4 @@
-"""Where circuits begin: configurations at inputs that no circuit can avoid."""
+"""Seeds of circuits: configurations at inputs that every circuit must pass."""
 
 from __future__ import annotations
 

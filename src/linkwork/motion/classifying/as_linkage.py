@@ -1,4 +1,4 @@
-"""A mechanism as points and links, whichever way it is given, so that it can be classified."""
+"""Every mechanism as points and links, for its classification."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Assur groups: which links are determined together, and what such a group is called.
+"""Assur groups: links that are determined together, and the names of such groups.
 
 Every driven joint is held. What is left has no freedom, and falls apart in one way only into parts
 of no freedom that have no such part themselves: the Assur groups, in the order in which they are

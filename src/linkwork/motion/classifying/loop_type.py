@@ -1,4 +1,4 @@
-"""Grashof's and the slider-crank's condition: which links of a four-link loop turn fully."""
+"""The type of a four-link loop by Grashof's condition or that of the slider-crank."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why there is no position: what does not close, what would help, what is within reach."""
+"""Explain a failed position: open loops, remedies, nearest reachable input."""
 
 from __future__ import annotations
 
