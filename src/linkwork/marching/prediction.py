@@ -36,9 +36,9 @@ def hermite_weights(t: float, times: Array, i: int, count: int) -> tuple[float, 
 def is_same_spacing(step: float, times: Array, spacing: Array) -> bool:
     """Whether nodes at ``times`` (K,) and the step from the last one have the ``spacing`` (K,)."""
     near = SAME * abs(step)
-    other = int(abs(step - spacing[0]) > near)
+    other = int(not abs(step - spacing[0]) <= near)
     for k in range(1, len(times)):
-        other += abs(times[k - 1] - times[k] - spacing[k]) > near
+        other += not abs(times[k - 1] - times[k] - spacing[k]) <= near
     return other == 0
 
 
