@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwork.kernels.program.compiling import uncounted
+from linkwork.kernels.program.compiling import njit_no_refcount
 from linkwork.marching import prediction, step_size
 
 __all__ = [
@@ -21,11 +21,11 @@ __all__ = [
 STEPS = 6  # of Newton-Raphson for one block of a trial
 START_STEPS = 50  # likewise, from a guess
 
-aim = uncounted(step_size.aim)
-stride = uncounted(step_size.stride)
-is_lost = uncounted(step_size.is_lost)
-grow = uncounted(step_size.grow)
-trusted_nodes = uncounted(prediction.trusted_nodes)
-hermite_weights = uncounted(prediction.hermite_weights)
-is_same_spacing = uncounted(prediction.is_same_spacing)
-keep_spacing = uncounted(prediction.keep_spacing)
+aim = njit_no_refcount(step_size.aim)
+stride = njit_no_refcount(step_size.stride)
+is_lost = njit_no_refcount(step_size.is_lost)
+grow = njit_no_refcount(step_size.grow)
+trusted_nodes = njit_no_refcount(prediction.trusted_nodes)
+hermite_weights = njit_no_refcount(prediction.hermite_weights)
+is_same_spacing = njit_no_refcount(prediction.is_same_spacing)
+keep_spacing = njit_no_refcount(prediction.keep_spacing)

@@ -253,7 +253,7 @@ def _kind_of_end(solver: BlockSolver, start: Node, here: Node, scale: float) -> 
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rows:
+class TrackRows:
     """Positions at many values t (B,): as a block solution with rates, rows not found marked."""
 
     t: Array
@@ -264,13 +264,13 @@ class Rows:
     rates: Rates
 
 
-def joined_rows(pieces: Sequence[Rows]) -> Rows:
+def concatenate_rows(pieces: Sequence[TrackRows]) -> TrackRows:
     """Batches of rows as one."""
 
-    def stacked(of: Callable[[Rows], Array]) -> Array:
+    def stacked(of: Callable[[TrackRows], Array]) -> Array:
         return np.concatenate([of(piece) for piece in pieces])
 
-    return Rows(
+    return TrackRows(
         t=stacked(lambda p: p.t),
         v=stacked(lambda p: p.v),
         status=np.concatenate([p.status for p in pieces]),
@@ -286,13 +286,13 @@ def joined_rows(pieces: Sequence[Rows]) -> Rows:
     )
 
 
-def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) -> Rows:
+def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) -> TrackRows:
     """Positions at the values ``t`` (B,), all inside the track, as many lanes at once.
 
     Starts from quintic interpolation between the track's nodes. A row that ends elsewhere than
     predicted, or with another sign of det J, is followed again from its node step by step.
     """
-    guess, left = _interpolated(track, t)
+    guess, left = _interpolate(track, t)
     guess[:, solver.unknowns :] = path.at(t)
     found = solver.solve(guess, replace(solver.options, max_steps=12, largest_turn=math.inf))
     v, status = found.v, found.status.copy()
@@ -316,7 +316,7 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
         residual[row] = solver.residual(arrived.v[None, :])[0]
     if doubtful.any():
         rates = solver.rates(v, path.rate)
-    return Rows(t=t, v=v, status=status, iterations=iterations, residual=residual, rates=rates)
+    return TrackRows(t=t, v=v, status=status, iterations=iterations, residual=residual, rates=rates)
 
 
 def _nearest(track: Track, left: int, t: float) -> Node:
@@ -324,7 +324,7 @@ def _nearest(track: Track, left: int, t: float) -> Node:
     return min(track.nodes[left], track.nodes[right], key=lambda node: abs(node.t - t))
 
 
-def _interpolated(track: Track, t: Array) -> tuple[Array, IndexArray]:
+def _interpolate(track: Track, t: Array) -> tuple[Array, IndexArray]:
     """Quintic Hermite values at t (B, N) and the index of the node at the left of each."""
     nodes = track.nodes
     times = np.array([node.t for node in nodes])
