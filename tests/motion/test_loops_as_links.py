@@ -256,7 +256,7 @@ def test_textbook_equations_are_called_by_their_names(
         ),
         (
             _loops("a*e^(i*θ2) + b*e^(i*θ3) = c*e^(i*θ4)", unknowns="θ3 θ4", driven="θ2"),
-            "no vector keeps its direction, so that no link stands still",
+            "no vector keeps its direction, so that no link is fixed",
         ),
     ],
 )
@@ -276,7 +276,9 @@ def test_loops_without_a_common_link_are_not_counted_as_one_mechanism() -> None:
         guess={"θ2": 60, "θ3": 20, "θ4": 80, "θ5": 0, "θ6": 100, "θ7": 75},
         inputs=[lw.Input(variable="θ2"), lw.Input(variable="θ5")],
     ).check()
-    assert report.unclassified == "the equations do not tell which pins of its loops are the same"
+    assert (
+        report.unclassified == "the equations do not determine which pins of its loops are the same"
+    )
 
 
 def test_an_input_is_counted_from_the_links_own_direction() -> None:

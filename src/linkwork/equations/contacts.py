@@ -112,15 +112,15 @@ class Contacts:
             roller = " or a smaller roller" if cam.contact == "roller" else ""
             self.problems.add(
                 (*key, "segments"),
-                f"undercut the cam {where:.4g} {frames.linkage.angle.value} after they begin: "
-                f"its outline would cut into itself; take a larger base circle{roller}",
+                f"undercut the cam {where:.4g} {frames.linkage.angle.value} after their start: "
+                f"its outline would intersect itself; use a larger base circle{roller}",
             )
             return
         self.outlines[cam.name] = (cam.cam, cam.center, outline)
 
     def _held(self, link: str, frame: str, key: Key) -> None:
         self.problems.add(
-            key, f'"{link}" cannot turn against "{frame}": a slider or a weld holds its angle'
+            key, f'"{link}" cannot turn relative to "{frame}": a slider or a weld holds its angle'
         )
 
     # Curves
@@ -163,19 +163,20 @@ class Contacts:
         where = f"({place.real:.4g}, {place.imag:.4g})"
         if cam.contact == "flat" and bend <= 0.0:
             self.problems.add(
-                key, f"is hollow at {where}: a flat face bridges it; round the outline there"
+                key,
+                f"is concave at {where}, where a flat face cannot follow: make it convex",
             )
         size = self.frames.linkage.numbers(cam.radius)
         if 1.0 + size * bend <= 0.0:
             self.problems.add(
                 key,
-                f"is too hollow at {where}: its radius there is {-1.0 / bend:.4g}, smaller than "
-                "that of the roller",
+                f"is too concave at {where}: its radius of curvature is {-1.0 / bend:.4g}, "
+                "smaller than that of the roller",
             )
 
     def _put(self, body: str, point: str, place: Place, key: Key) -> None:
         if point in self.frames.places[body]:
-            self.problems.add(key, f'point "{point}" is led by "{body}" already')
+            self.problems.add(key, f'point "{point}" is already guided by "{body}"')
             return
         self.frames.places[body][point] = place
 

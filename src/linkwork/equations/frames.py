@@ -186,7 +186,7 @@ class _Orientation:
             if gap:
                 problems.add(
                     ("sliders", k),
-                    f'"{slider.link}" cannot keep its angle against "{slider.on}": '
+                    f'"{slider.link}" cannot keep its angle relative to "{slider.on}": '
                     f"other sliders turn it by {degrees(gap):.6g}° from there",
                 )
         for k, weld in enumerate(linkage.welds):
@@ -195,7 +195,7 @@ class _Orientation:
             if gap:
                 problems.add(
                     ("welds", k),
-                    f'"{second}" cannot keep its angle against "{first}": '
+                    f'"{second}" cannot keep its angle relative to "{first}": '
                     f"other joints turn it by {degrees(gap):.6g}° from there",
                 )
         driven = {w.link for w in linkage.inputs if w.link}

@@ -51,7 +51,7 @@ def solve(
     Parameters
     ----------
     at : number or Mapping[str, number], optional
-        Input value(s) in everyday units; the guess's own if left out.
+        Input value(s) in file units; the guess's own if left out.
     from_guess : bool
         Start Newton-Raphson at the asked value directly, as the textbook's example does.
     certify : bool
@@ -139,7 +139,7 @@ def _other_root(model: Model, found: Array) -> Failure | None:
 def failed_position(
     model: Model, target: Array, status: Status, failure: Failure | None, start: Start
 ) -> Position:
-    """No position at the values (p,), everyday units, with the reason and what was tried."""
+    """No position at the values (p,), file units, with the reason and what was tried."""
     nothing = np.full((1, model.compiled.solver.variables), np.nan)
     named = named_series(model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool))
     evidence = Evidence(

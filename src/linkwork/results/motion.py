@@ -31,7 +31,7 @@ __all__ = ["Limit", "LimitKind", "Motion", "OutputLimit", "Series"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Series:
-    """One quantity over all rows: values in everyday units, derivatives in radians and lengths."""
+    """One quantity over all rows: values in file units, derivatives in radians and lengths."""
 
     quantity: Quantity
     value: Array
@@ -50,7 +50,7 @@ class Motion:
     Parameters
     ----------
     inputs : Mapping[str, array (N,)]
-        Input values in everyday units.
+        Input values in file units.
     input_units : Mapping[str, str]
         Their units.
     derivative_unit : str

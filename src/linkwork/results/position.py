@@ -51,7 +51,7 @@ class NewtonStep:
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonTrail:
-    """The iterates of one block of equations, in everyday units.
+    """The iterates of one block of equations, in file units.
 
     ``residual`` in the steps is the 2-norm of the block's real equations in their own unit,
     ``step`` the largest weighted change of an unknown.
