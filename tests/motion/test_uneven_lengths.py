@@ -10,6 +10,7 @@ import pytest
 from flint import arb, ctx
 
 import linkwork as lw
+from linkwork.numerics.continuation import path_proof
 from tests.oracles.four_bar import FourBar
 from tests.thinned import thinned
 
@@ -83,8 +84,9 @@ def test_dead_points_between_long_links_are_located_and_proved(ratio: float, sha
     )
 
 
-def test_a_proof_that_would_take_too_long_says_so() -> None:
+def test_a_proof_that_would_take_too_long_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     # the long links turn together: each step of the proof is as short as their ratio
+    monkeypatch.setattr(path_proof, "_MOST", 3000)  # a tenth of what proofs are allowed
     motion = four_bar(FourBar(1.5, 1e8, 1.2, 1e8), 90).sweep()
     reasons = {c.name for c, found in zip(motion.certification, motion.found, strict=True) if found}
     assert reasons == {"CERTIFIED", "PROOF_TOO_LONG"}

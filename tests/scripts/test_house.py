@@ -59,6 +59,7 @@ def test_docstrings_comments_and_blank_lines_are_no_code() -> None:
     )
     assert source(text).code == 6
     assert source('x = 1\n"""no docstring, for it comes second"""\n').code == 2
+    assert source("1\nx = 1\n").code == 2
 
 
 def test_comments_are_counted_against_lines_of_code() -> None:
@@ -81,7 +82,10 @@ def test_a_long_function_needs_a_reason_beside_it() -> None:
     assert long_functions([source("@d\ndef f():\n" + body)], 5).value == 1
     assert long_functions([source("# long: one formula\n@d\ndef f():\n" + body)], 5).value == 0
     assert long_functions([source("def f():  # long: one formula\n" + body)], 5).value == 0
-    assert long_functions([source("def f():\n" + body + "    # long: too late\n")], 5).value == 1
+    assert (
+        long_functions([source("def f():\n" + body + "    # long: too late\n    y = 1\n")], 5).value
+        == 1
+    )
     nested = "class C:\n  async def f(self):\n" + body
     assert long_functions([source(nested)], 5).where == ("a.py:2 f: 6",)
 
@@ -112,8 +116,8 @@ def test_imports_downwards_make_no_circle(tmp_path: Path) -> None:
     root = package(
         tmp_path,
         {
-            "a.py": "import made.b\nfrom made.c import d\n",
-            "b.py": "from made.c.d import x\n",
+            "a.py": "import made.b\nimport other.a\nfrom made.c import d\n",
+            "b.py": "from made.c.d import x\nfrom other.a import y\n",
             "c/d.py": "",
         },
     )
@@ -216,11 +220,12 @@ def test_loops_are_declared_by_their_function() -> None:
     text = (
         "class Walk:\n    def run(self):\n        while True: ...\n"
         "def follow():\n    for _ in range(9): ...\n    for x in range(9): ...\n"
-        "def other():\n    for _ in rows: ...\n"
+        "def other():\n    for _ in rows: ...\n    for _ in zip(rows): ...\n"
+        "def entries():\n    for x in range(9): ...\n"
     )
     declared = {
         "walk.Walk.run": "steps: a branch",
-        "walk.gone": "nothing",
+        "walk.gone": "steps: nothing",
         "walk.follow": "bisection",
     }
     sources = [source(text, "numerics/walk.py"), source("while x: ...\n", "cli/main.py")]
