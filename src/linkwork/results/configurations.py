@@ -11,9 +11,9 @@ from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.presenting import presenter
 from linkwork.results.position import Position
-from linkwork.results.summary import configurations_summary
+from linkwork.results.summary import Summary, driven_text
 
-__all__ = ["Configurations", "PathCount"]
+__all__ = ["Configurations", "PathCount", "configurations_summary"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,3 +139,20 @@ class Configurations:
             "paths": [{**asdict(count), "unknowns": list(count.unknowns)} for count in self.paths],
             "seed": self.seed,
         }
+
+
+def configurations_summary(found: Configurations) -> Summary:
+    """One row per configuration, then completeness and what became of the paths."""
+    at = driven_text(found.input, found.input_units)
+    head = f"Configurations of {found.mechanism}" + (f" at {at}" if at else "")
+    rows = []
+    for position in found:
+        values = ", ".join(f"{name} = {value:.8g}" for name, value in position.unknowns.items())
+        certified = "certified" if position.certificate.certified else "not certified"
+        rows.append((position.configuration, f"{values}  {certified}"))
+    rows.append(("completeness", found.message))
+    paths = [
+        f"{count.real} real of {count.finite + count.multiple} solutions" for count in found.paths
+    ]
+    rows.append(("paths", "; ".join(paths)))
+    return Summary(head, tuple(rows))
