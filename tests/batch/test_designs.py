@@ -15,7 +15,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, MechanismError, UnknownNameError
 from linkwork.mechanism import link_shape
 from linkwork.mechanism.quantities import Quantity, quantities
-from tests.batch.alone import agree
+from tests.batch.single_design import agree
 
 FOUR_BAR = {
     "points": {"O2": (0, 0), "A": (20, 35), "B": (120, 70), "O4": ("d", 0), "P": (60, 90)},
@@ -283,7 +283,7 @@ def test_scalars_hold_for_all_designs_and_no_designs_are_fine() -> None:
 
 def test_names_that_mean_nothing_are_refused_with_what_exists() -> None:
     with pytest.raises(
-        UnknownNameError, match=r'"O2 B" is no number of .* \(numbers: O4 B, O2 A, '
+        UnknownNameError, match=r'"O2 B" is not a number of .* \(numbers: O4 B, O2 A, '
     ):
         designs_of(_four_bar(), {"O2 B": [1.0]})
     for name in ("zz", "O4.z", "s16.offset", "", "A B P"):

@@ -186,9 +186,7 @@ def test_a_drawing_in_the_colours_of_a_chart_is_refused(tmp_path: Path) -> None:
     scene = scene_of(lw.example("four-bar").solve())
     with pytest.raises(InputError) as raised:
         write(scene, tmp_path / "x.png", theme=DARK_CHART)
-    assert str(raised.value) == (
-        "a drawing needs the theme of a drawing: that of a chart has no links"
-    )
+    assert str(raised.value) == ("a drawing needs a theme for drawings, not one for charts")
 
 
 # ------------------------------------------------------------------ plot

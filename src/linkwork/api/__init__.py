@@ -1,4 +1,4 @@
-"""The objects that people use: mechanisms, made and used."""
+"""Mechanisms as Python objects: make, read, solve and show them."""
 
 from __future__ import annotations
 

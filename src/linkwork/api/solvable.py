@@ -137,7 +137,7 @@ class SolvableMechanism:
         """
         if configuration is not None:
             if from_guess or with_steps:
-                raise InputError("a configuration has no steps from the guess: ask for one of both")
+                raise InputError("configuration= has no steps from a guess: leave one out")
             return motion.solve_configuration(self.model, at, configuration, throw=throw)
         return motion.solve(
             self.model,
@@ -168,7 +168,7 @@ class SolvableMechanism:
         Parameters
         ----------
         start, stop, step : number, optional
-            Replace the range of the (only) input, in everyday units.
+            Replace the range of the (only) input, in file units.
         configuration : str, optional
             Start from the configuration of this name at the guess's own input value, or on this
             branch of ``circuits()``.
@@ -186,7 +186,7 @@ class SolvableMechanism:
             asked = motion.model_of(self.description.with_range(start, stop, step))
             asked = asked.from_start_of(self.model)
         if configuration is not None:
-            asked = motion.started_in(asked, configuration)
+            asked = motion.start_in_configuration(asked, configuration)
         return motion.sweep(
             asked,
             through=through,
@@ -259,7 +259,7 @@ class SolvableMechanism:
         Parameters
         ----------
         dimensions : Mapping[str, number or (D,)]
-            What varies, everyday units: dimensions, lengths (``"O2 A"``), angles, coordinates
+            What varies, in file units: dimensions, lengths (``"O2 A"``), angles, coordinates
             (``"O4.x"``); a plan of :mod:`linkwork.batch`.
         """
         return batch.family_of(self.model, dimensions)

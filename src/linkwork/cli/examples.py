@@ -24,7 +24,7 @@ _NO_FAMILY = "other"
 @click.option("--force", is_flag=True, help="Overwrite the file if it exists.")
 @debug_option
 def examples(name: str | None, output: str | None, force: bool) -> None:
-    """List the mechanisms of the library, or get one.
+    """List the mechanisms of the library, or copy one to a file.
 
     \b
       linkwork examples
@@ -57,4 +57,4 @@ def _listing() -> list[str]:
     lines: list[str] = []
     for family in sorted(titles, key=lambda family: (family == _NO_FAMILY, family.casefold())):
         lines += [*title_lines(family), *fields(titles[family].items()), ""]
-    return [*lines, "To start from one: linkwork examples NAME -o FILE.toml"]
+    return [*lines, "To copy an example: linkwork examples NAME -o FILE.toml"]

@@ -22,7 +22,7 @@ from linkwork.equations.outline import Outline
 from linkwork.equations.wheels import wheels_in_mesh
 from linkwork.expression.tree import Name
 from linkwork.foundation.arrays import ComplexArray
-from linkwork.foundation.lanes import settled
+from linkwork.foundation.lanes import uniform_value
 from linkwork.foundation.names import canonical
 from linkwork.kernels.piecewise import Piecewise
 from linkwork.mechanism.contacts import Cam, Curve
@@ -96,12 +96,12 @@ class Contacts:
             LawEquation(
                 label=cam.name,
                 terms=tuple((canonical(name), weight) for name, weight in weights.items()),
-                constant=settled(constant),
+                constant=uniform_value(constant),
                 law=motion.times(found.sign),
                 shown=cam.name,
                 meaning=_motion_text(cam, found.sign),
                 inner=tuple((canonical(name), weight) for name, weight in turned.items()),
-                offset=settled(at - start),
+                offset=uniform_value(at - start),
                 kind="length" if found.length else "angle",
             )
         )
@@ -112,15 +112,15 @@ class Contacts:
             roller = " or a smaller roller" if cam.contact == "roller" else ""
             self.problems.add(
                 (*key, "segments"),
-                f"undercut the cam {where:.4g} {frames.linkage.angle.value} after they begin: "
-                f"its outline would cut into itself; take a larger base circle{roller}",
+                f"undercut the cam {where:.4g} {frames.linkage.angle.value} after their start: "
+                f"its outline would intersect itself; use a larger base circle{roller}",
             )
             return
         self.outlines[cam.name] = (cam.cam, cam.center, outline)
 
     def _held(self, link: str, frame: str, key: Key) -> None:
         self.problems.add(
-            key, f'"{link}" cannot turn against "{frame}": a slider or a weld holds its angle'
+            key, f'"{link}" cannot turn relative to "{frame}": a slider or a weld holds its angle'
         )
 
     # Curves
@@ -163,19 +163,20 @@ class Contacts:
         where = f"({place.real:.4g}, {place.imag:.4g})"
         if cam.contact == "flat" and bend <= 0.0:
             self.problems.add(
-                key, f"is hollow at {where}: a flat face bridges it; round the outline there"
+                key,
+                f"is concave at {where}, where a flat face cannot follow: make it convex",
             )
         size = self.frames.linkage.numbers(cam.radius)
         if 1.0 + size * bend <= 0.0:
             self.problems.add(
                 key,
-                f"is too hollow at {where}: its radius there is {-1.0 / bend:.4g}, smaller than "
-                "that of the roller",
+                f"is too concave at {where}: its radius of curvature is {-1.0 / bend:.4g}, "
+                "smaller than that of the roller",
             )
 
     def _put(self, body: str, point: str, place: Place, key: Key) -> None:
         if point in self.frames.places[body]:
-            self.problems.add(key, f'point "{point}" is led by "{body}" already')
+            self.problems.add(key, f'point "{point}" is already guided by "{body}"')
             return
         self.frames.places[body][point] = place
 
@@ -230,7 +231,7 @@ class Contacts:
         ):
             coordinate = f"{name}_{axis}"
             self._unknown(coordinate, "length", start)
-            terms.append(frames.turned(unit, None, body, coordinate))
+            terms.append(frames.vector_term(unit, None, body, coordinate))
             self._law(f"{name} {axis}", coordinate, law, (name, axis, 0))
         self.outlines[name] = (body, origin, outline.at(outline.samples()))
         return Place(frames.places[body][origin].fixed, tuple(terms), base=origin)
@@ -269,7 +270,7 @@ class Contacts:
         self._direction(cam.name, outline, tangent)
         size = canonical(f"{cam.name}_roller")
         frames.symbols[size] = radius
-        arm = frames.turned(radius + 0j, Name(size, size), at[0])
+        arm = frames.vector_term(radius + 0j, Name(size, size), at[0])
         arm = Term(
             value=arm.value,
             magnitude=arm.magnitude,
@@ -299,7 +300,7 @@ class Contacts:
             own = linkage.shapes.local[body]
             direction = (own[point] - own[base]) / abs(own[point] - own[base])
         way = f"{cam.name}_way"
-        term = frames.turned(direction, None, frame, way)
+        term = frames.vector_term(direction, None, frame, way)
         angle, other = frames.angle[frame], frames.angle[cam.cam]
         facing = direction * cmath.exp(1j * (angle.constant - other.constant))
         facing *= cmath.exp(1j * (frames.now(angle) - frames.now(other)))

@@ -22,7 +22,7 @@ from linkwork.equations.redundancy import Bar, released_links
 from linkwork.equations.structure import Node, Structure, StructureBlock
 from linkwork.expression.tree import Name
 from linkwork.foundation.errors import MechanismError, Problem
-from linkwork.foundation.lanes import hypot, largest, phase, row_of, smallest, turn
+from linkwork.foundation.lanes import cis, hypot, largest, phase, row_of, smallest
 from linkwork.foundation.names import canonical, pretty
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.linkage import GROUND, Linkage
@@ -40,12 +40,12 @@ def write_loops(linkage: Linkage) -> LoopEquations:
         If inputs contradict each other, or do not determine the motion: with the links that
         stay free or the parts that conflict.
     """
-    writer = _Writer(linkage)
-    return writer.written()
+    writer = _LoopWriter(linkage)
+    return writer.write()
 
 
 @dataclass
-class _Writer:
+class _LoopWriter:
     linkage: Linkage
     released: tuple[Bar, ...] = ()
     surplus: Problem | None = None
@@ -56,7 +56,7 @@ class _Writer:
     points: dict[str, PointPath] = field(default_factory=dict)
     base: dict[str, str | None] = field(default_factory=dict)
 
-    def written(self) -> LoopEquations:
+    def write(self) -> LoopEquations:
         """Everything, in order."""
         linkage = self.linkage
         where = f'mechanism "{linkage.name}"'
@@ -138,7 +138,8 @@ class _Writer:
         angle, base = self.frames.angle[link], self.frames.angle[against]
         if angle.variable == base.variable:
             self.problems.add(
-                key, f'"{link}" cannot turn against "{against}": a slider or a weld holds its angle'
+                key,
+                f'"{link}" cannot turn relative to "{against}": a slider or a weld holds its angle',
             )
         elif (
             kind == "link"
@@ -161,7 +162,7 @@ class _Writer:
             if part.variable is not None:
                 terms.append((canonical(part.variable), sign))
                 value += sign * self.frames.start[part.variable]
-        wrapped = phase(turn(value))
+        wrapped = phase(cis(value))
         constant = angle.constant - base.constant + wrapped - value  # off by whole turns
         self.linear.append(
             LinearEquation(label=f"{link} against {against}", terms=tuple(terms), constant=constant)
@@ -215,14 +216,14 @@ class _Writer:
             return
         if form.missing:
             free = _subjects(names[k] for k in form.underdetermined)
-            wanted = f"{form.missing} more input{'s' if form.missing > 1 else ''}"
-            driven = len(self.linkage.inputs)
-            self.problems.add(
-                ("input",),
-                f"{driven} input{'s' if driven != 1 else ''} leave{'s' if driven == 1 else ''} "
-                f"{form.missing} degree{'s' if form.missing > 1 else ''} of freedom: "
-                f"add {wanted} or a link (free to move: {', '.join(free)})",
-            )
+            freedoms = f"{form.missing} degrees of freedom have no input: add {form.missing} inputs"
+            if form.missing == 1:
+                freedoms = "one degree of freedom has no input: add an input"
+            example = next((link for link in free if link in self.linkage.links), None)
+            text = f"{freedoms} or a link"
+            if example is not None and not self.linkage.inputs:
+                text = f'{freedoms}, for example link = "{example}"'
+            self.problems.add(("input",), f"{text} (free to move: {', '.join(free)})")
         if form.surplus:
             tied = _subjects(names[k] for k in form.conflict_unknowns)
             self.problems.add(
@@ -241,7 +242,7 @@ class _Writer:
         if len(bars) < form.surplus:
             return None
         try:
-            return _Writer(self.linkage, released=bars, surplus=self.problems[0]).written()
+            return _LoopWriter(self.linkage, released=bars, surplus=self.problems[0]).write()
         except MechanismError:
             return None
 

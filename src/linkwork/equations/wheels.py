@@ -11,7 +11,14 @@ from fractions import Fraction
 
 from linkwork.equations.frames import Frames
 from linkwork.equations.model import LinearEquation
-from linkwork.foundation.lanes import choose, copysign, largest, led, many, settled
+from linkwork.foundation.lanes import (
+    choose,
+    copysign,
+    is_batched,
+    largest,
+    leader_value,
+    uniform_value,
+)
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.contacts import Belt, Gear, Rack, Rolling
 from linkwork.mechanism.description import Problems
@@ -71,7 +78,9 @@ class _Wheels:
     ) -> None:
         """Σ weight · angle of body (+ weight · length) = total, as it is in the sketch if open."""
         frames = self.frames
-        weights, constant = frames.angles_of((body, settled(weight)) for body, weight in turns)
+        weights, constant = frames.angles_of(
+            (body, uniform_value(weight)) for body, weight in turns
+        )
         now = sum(weight * frames.start[name] for name, weight in weights.items())
         if length is not None:
             weights[length[0]] = length[1]
@@ -141,12 +150,12 @@ def _ratio(first: float, second: float, *, whole: bool = False) -> tuple[float, 
 
     With whole numbers a whole number of turns of one wheel is exactly one of the other.
     """
-    if many(first) or many(second):
-        p, q = _ratio(led(first), led(second), whole=whole)
+    if is_batched(first) or is_batched(second):
+        p, q = _ratio(leader_value(first), leader_value(second), whole=whole)
         if q == 1.0 and not whole:
-            return settled(first / second), q
+            return uniform_value(first / second), q
         same = abs(q * first - p * second) <= _RATIO * abs(q * first)
-        return settled(choose(same, p, math.nan)), q
+        return uniform_value(choose(same, p, math.nan)), q
     if whole:
         fraction = Fraction(int(first), int(second))
     else:

@@ -9,7 +9,7 @@ from functools import lru_cache
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import as_told
 
-__all__ = ["GREEK", "as_name", "canonical", "is_name", "latex_name", "pretty", "spelled"]
+__all__ = ["GREEK", "as_name", "canonical", "find_spelling", "is_name", "latex_name", "pretty"]
 
 GREEK = {
     "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta",
@@ -52,7 +52,7 @@ def _canonical(name: str) -> str:
     return "".join(GREEK.get(letter, letter) for letter in folded)
 
 
-def spelled(name: str, known: Iterable[str]) -> str:
+def find_spelling(name: str, known: Iterable[str]) -> str:
     """The spelling among ``known`` of a name that may be written otherwise, else the name."""
     folded = canonical(name)
     return next((other for other in known if canonical(other) == folded), name)

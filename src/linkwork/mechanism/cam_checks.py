@@ -35,7 +35,9 @@ class CamChecks(PartChecks):
         elif cam.contact == "roller":
             self.positive(cam.radius, (*key, "radius"), "radius")
         elif cam.radius != 0:
-            self.problems.add((*key, "radius"), f"goes with a roller, this is a {cam.contact}")
+            self.problems.add(
+                (*key, "radius"), f"is used with a roller only, the contact is {cam.contact}"
+            )
         if bool(cam.segments) == bool(cam.profile):
             what = "both" if cam.segments else "neither"
             message = f"needs either segments or a profile, it has {what}"
@@ -44,14 +46,16 @@ class CamChecks(PartChecks):
             self._segments(cam, key)
         else:
             if cam.base is not None:
-                self.problems.add((*key, "base"), "goes with segments: a profile has its own size")
+                self.problems.add(
+                    (*key, "base"), "is used with segments only: a profile contains its own size"
+                )
             self._outline(cam.profile, (*key, "profile"), closed=True)
 
     def _follower(self, cam: Cam, key: Key) -> None:
         if (cam.slider is None) == (cam.link is None):
             what = "both" if cam.slider is not None else "neither"
             self.problems.add(
-                key, f"needs a follower, either a slider or a link that swings; it has {what}"
+                key, f"needs a follower, either a slider or an oscillating link; it has {what}"
             )
             return
         if cam.slider is not None:
@@ -74,7 +78,7 @@ class CamChecks(PartChecks):
                 )
             for field in ("pivot", "point"):
                 if getattr(cam, field) is not None:
-                    self.problems.add((*key, field), "goes with link, not with slider")
+                    self.problems.add((*key, field), "is used with link, not with slider")
             return
         assert cam.link is not None
         if not self.link(cam.link, (*key, "link")):
@@ -82,7 +86,7 @@ class CamChecks(PartChecks):
         for field in ("pivot", "point"):
             name = getattr(cam, field)
             if name is None:
-                self.problems.add((*key, field), "is missing: a follower that swings needs it")
+                self.problems.add((*key, field), "is missing: an oscillating follower needs it")
             else:
                 self.on(name, cam.link, (*key, field))
         if cam.pivot is not None and cam.pivot == cam.point:
@@ -90,7 +94,7 @@ class CamChecks(PartChecks):
         if cam.pivot is not None and not any(swinging_frames(self.linkage, cam)):
             self.problems.add(
                 (*key, "pivot"),
-                f"no link carries both {cam.center} and {cam.pivot}: cam and follower turn on "
+                f"no link carries both {cam.center} and {cam.pivot}: cam and follower need "
                 "one frame",
             )
 
@@ -118,7 +122,7 @@ class CamChecks(PartChecks):
                 message = f"{over:g} is too small: at least {_SHORTEST * unit.turn:g}"
                 self.problems.add((*here, "over"), message)
             if from_law[k] == "dwell" and lift:
-                self.problems.add((*here, "lift"), "must be 0: a dwell moves nothing")
+                self.problems.add((*here, "lift"), "must be 0: a dwell has no rise")
             overs.append(over)
             lifts.append(lift)
         total = sum(overs)
@@ -131,8 +135,8 @@ class CamChecks(PartChecks):
         if not math.isnan(height) and abs(height) > AGREE * max(map(abs, lifts), default=0.0):
             self.problems.add(
                 (*key, "segments"),
-                f"end {height:+.10g} away from where they began: a closed cam brings its "
-                "follower back",
+                f"end {height:+.10g} away from their start: on a closed cam the "
+                "follower returns to its start",
             )
 
     def curve(self, curve: Curve, key: Key) -> None:
@@ -145,7 +149,7 @@ class CamChecks(PartChecks):
         elif curve.point in self.linkage.links[curve.on]:
             self.problems.add(
                 (*key, "point"),
-                f'{curve.point} is fixed on "{curve.on}" and cannot run along its curve',
+                f'{curve.point} is fixed on "{curve.on}" and cannot move along its curve',
             )
         self._outline(curve.through, (*key, "through"), closed=curve.closed)
 
@@ -166,7 +170,7 @@ class CamChecks(PartChecks):
             )
             places.append(vector(x, y))
         if closed and places[0] == places[-1]:
-            self.problems.add(key, "closes by itself: leave out the last point, it is the first")
+            self.problems.add(key, "is closed automatically: leave out the repeated last point")
         for k in range(1, len(places)):
             if places[k] == places[k - 1]:
                 self.problems.add((*key, k), "is the same point as the one before")

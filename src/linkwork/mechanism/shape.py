@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from linkwork.foundation.lanes import many
+from linkwork.foundation.lanes import is_batched
 from linkwork.mechanism.link_shape import Distance, LinkShape, ShapeError, VertexAngle, place
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def _check_ground(
     named: dict[complex, str] = {}
     varying: list[str] = []
     for point, place_ in sketch.items():
-        if many(place_):
+        if is_batched(place_):
             varying.append(point)
         elif (other := named.setdefault(place_, point)) != point:
             raise _same_point(other, point)

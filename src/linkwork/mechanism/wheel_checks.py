@@ -117,7 +117,7 @@ class WheelChecks(PartChecks):
                     self.on(point, part.on, (*key, "line"))
             if part.inside or part.circle_radius is not None:
                 field = "inside" if part.inside else "circle_radius"
-                self.problems.add((*key, field), "goes with circle only")
+                self.problems.add((*key, field), "is used with circle only")
             return
         assert part.circle is not None
         self.on(part.circle, part.on, (*key, "circle"))
@@ -135,7 +135,7 @@ class WheelChecks(PartChecks):
         size = self.positive(part.circle_radius, (*key, "circle_radius"), "radius")
         if part.inside and radius == size:
             self.problems.add(
-                (*key, "radius"), "equals circle_radius: a wheel inside a circle is smaller"
+                (*key, "radius"), "equals circle_radius: a wheel inside a circle must be smaller"
             )
 
 

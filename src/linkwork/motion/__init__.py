@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from linkwork.motion.configuration_list import (
         configurations as configurations,
         solve_configuration as solve_configuration,
-        started_in as started_in,
+        start_in_configuration as start_in_configuration,
     )
     from linkwork.motion.described import as_described as as_described
     from linkwork.motion.extremes import check_quantities as check_quantities

@@ -13,7 +13,7 @@ from linkwork.foundation.presenting import presenter
 from linkwork.results.position import Position
 from linkwork.results.summary import Summary, driven_text
 
-__all__ = ["Configurations", "PathCount", "configurations_summary"]
+__all__ = ["Configurations", "PathCount", "configurations_summary", "solution_counts"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,8 +151,11 @@ def configurations_summary(found: Configurations) -> Summary:
         certified = "certified" if position.certificate.certified else "not certified"
         rows.append((position.configuration, f"{values}  {certified}"))
     rows.append(("completeness", found.message))
-    paths = [
-        f"{count.real} real of {count.finite + count.multiple} solutions" for count in found.paths
-    ]
-    rows.append(("paths", "; ".join(paths)))
+    rows.append(("paths", "; ".join(map(solution_counts, found.paths))))
     return Summary(head, tuple(rows))
+
+
+def solution_counts(count: PathCount) -> str:
+    """``6 complex solutions, 4 of them real``."""
+    finite = count.finite + count.multiple
+    return f"{finite} complex solution{'' if finite == 1 else 's'}, {count.real} of them real"

@@ -12,7 +12,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
-from linkwork.foundation.names import spelled
+from linkwork.foundation.names import find_spelling
 from linkwork.foundation.presenting import presenter
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
@@ -51,7 +51,7 @@ class NewtonStep:
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonTrail:
-    """The iterates of one block of equations, in everyday units.
+    """The iterates of one block of equations, in file units.
 
     ``residual`` in the steps is the 2-norm of the block's real equations in their own unit,
     ``step`` the largest weighted change of an unknown.
@@ -147,11 +147,11 @@ class Position:
         """A value by name: input, unknown, link angle, slider, output or ``<point>.x``."""
         tables = (self.input, self.unknowns, self.links, self.sliders, self.outputs)
         for table in tables:
-            own = spelled(name, table)
+            own = find_spelling(name, table)
             if own in table:
                 return table[own]
         point, _, axis = name.rpartition(".")
-        point = spelled(point, self.points)
+        point = find_spelling(point, self.points)
         if point in self.points and axis in ("x", "y"):
             return self.points[point][axis == "y"]
         known = dict.fromkeys(known for table in tables for known in table)

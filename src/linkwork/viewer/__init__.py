@@ -1,4 +1,4 @@
-"""Mechanisms in a browser: offline pages and films, the data of the front end, the live page."""
+"""Mechanisms in a browser: offline pages, films, widgets and the live page."""
 
 from __future__ import annotations
 

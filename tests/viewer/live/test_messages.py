@@ -85,7 +85,7 @@ def test_changes_together_are_messages_inside_a_message() -> None:
         ),
         (
             '{"kind": "set_number", "name": "a", "value": NaN}',
-            "NaN is no number of JSON: send a finite number or null",
+            "NaN is not a number in JSON: send a finite number or null",
         ),
         (
             '{"kind": "undo", "kind": "redo"}',

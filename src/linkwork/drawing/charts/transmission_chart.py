@@ -16,7 +16,7 @@ from linkwork.drawing.charts.motion_chart import across_axis, check_found, share
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import spelled
+from linkwork.foundation.names import find_spelling
 from linkwork.mechanism.dyad import Dyad
 from linkwork.results.motion import Motion
 from linkwork.results.transmission import transmission_angles
@@ -48,7 +48,7 @@ def transmission_chart(motion: Motion, names: Sequence[str] = (), *, against: st
     found = transmission_angles(motion)
     if not names and not found:
         raise InputError(
-            f'"{motion.mechanism}" has no two links of which the transmission angle is known: '
+            f'"{motion.mechanism}" has no pair of links with a known transmission angle: '
             'add it to [outputs], as in mu = "rocker - coupler", and name it'
         )
     pins = {dyad.pin: dyad for dyad in found}
@@ -93,7 +93,7 @@ def _column(
     motion: Motion, found: Mapping[Dyad, Array], pins: Mapping[str, Dyad], name: str
 ) -> Column:
     radians = motion.units.angle.radians
-    pin = spelled(name, pins)
+    pin = find_spelling(name, pins)
     if pin in pins:
         label = f"{printed_name(pin)}: {', '.join(pins[pin].links)}"
         values = found[pins[pin]] / radians
@@ -104,7 +104,7 @@ def _column(
         column = column_of(motion, name)
         if not column.turn:
             raise UnknownNameError(
-                f'"{name}" is no angle {choices("pins", pins, name)}; name a pin between two '
+                f'"{name}" is not an angle {choices("pins", pins, name)}; name a pin between two '
                 "links, or an angle"
             )
         label = column.label

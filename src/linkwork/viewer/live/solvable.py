@@ -1,4 +1,4 @@
-"""What the live page needs of a mechanism; it is given from outside, for showing never solves."""
+"""The interface of a mechanism that the live page needs; its caller supplies the mechanism."""
 
 from __future__ import annotations
 
