@@ -199,7 +199,6 @@ export interface MotionFound {
   missing: number;
   certified: number;
   limits: readonly (LimitFound)[];
-  worst_residual: number | null;
   message: string;
   page: PageData | null;
 }

@@ -29,7 +29,7 @@ from linkwork.numerics.continuation.branch_tracking import (
     rows_on_track,
 )
 from linkwork.numerics.continuation.path_proof import ProvenPath, prove_path
-from linkwork.numerics.proof.kantorovich import Bounds, bounds, radii
+from linkwork.numerics.proof.kantorovich import Bounds, radii
 from linkwork.numerics.proof.position_proof import (
     Proof,
     prove,
@@ -40,6 +40,7 @@ from linkwork.numerics.proof.position_proof import (
 from tests.campaigns.certificates import judge
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.steps import beads_of, judge_steps
+from tests.numerics.proof_bounds import bounds
 from tests.numerics.systems import blocks_of, four_bar_table
 from tests.oracles.balls import BallTable, certainly_above, exactly, newton
 from tests.oracles.four_bar import FourBar

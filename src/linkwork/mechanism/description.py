@@ -155,10 +155,6 @@ class Description:
         )
         return replace(self, inputs=(changed,))
 
-    def unit_of_input(self, which: Input) -> str:
-        """``deg``, ``rad`` or the length unit."""
-        return self.length if which.drives[0] in ("slider", "cylinder") else self.angle.value
-
     def speed(self, which: Input) -> float | None:
         """The speed of an input in its own unit per second, if it has one."""
         if which.speed is None:

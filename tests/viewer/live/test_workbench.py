@@ -15,10 +15,10 @@ from linkwork.mechanism.linkage import Linkage
 from linkwork.viewer.live import events as tell, requests as ask
 from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.workbench import Workbench
-from linkwork.viewer.packing import unpacked
 from tests.described import described_as
 from tests.thinned import thinned
 from tests.viewer.live.conftest import FOUR_BAR
+from tests.viewer.unpacking import unpacked
 
 
 def only(events: list[tell.Event], kind: type) -> Any:

@@ -145,7 +145,6 @@ class MotionFound:
     missing: int
     certified: int
     limits: tuple[LimitFound, ...]
-    worst_residual: float | None
     message: str
     page: PageData | None
 

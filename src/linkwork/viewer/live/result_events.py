@@ -61,7 +61,6 @@ def motion_found(
             )
             for limit in motion.limits
         ),
-        worst_residual=_number(motion.worst),
         message=message or motion.message,
         page=page,
     )

@@ -13,7 +13,7 @@ from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import InputError, NotConvergedError, UnknownNameError, choices
 from linkwork.foundation.status import Status
 from linkwork.motion.assembly.assembling import Assemblies, positions_at
-from linkwork.motion.circuit.circuits import branch_start, is_branch_name
+from linkwork.motion.circuit_list import branch_start, is_branch_name
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import name_series
 from linkwork.motion.positions import (

@@ -18,9 +18,9 @@ from linkwork.foundation.short_number import short_number
 from linkwork.foundation.status import Status
 from linkwork.motion import failure as why
 from linkwork.motion.circuit.arcs import Arc, Explorer, positions_near
-from linkwork.motion.circuit.branches import CurveBranch
 from linkwork.motion.circuit.seeding import Seeding
 from linkwork.motion.circuit.weakest import weakest_place
+from linkwork.motion.curve_branches import CurveBranch
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import change_point_limit, dead_point_limit
 from linkwork.motion.lock_step import lock_step
