@@ -45,17 +45,18 @@ if TYPE_CHECKING:
     )
     from linkwork.foundation.newton_trouble import NewtonTrouble
     from linkwork.foundation.status import Status
-    from linkwork.mechanism.contacts import (
-        Belt,
-        Cam,
-        Curve,
-        Gear,
-        Rack,
-        Rolling,
-        Segment,
-        Weld,
-    )
-    from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot, Spring
+    from linkwork.mechanism.driven_input import Input
+    from linkwork.mechanism.part.belt import Belt
+    from linkwork.mechanism.part.cam import Cam, Segment
+    from linkwork.mechanism.part.curve import Curve
+    from linkwork.mechanism.part.cylinder import Cylinder
+    from linkwork.mechanism.part.gear import Gear
+    from linkwork.mechanism.part.rack import Rack
+    from linkwork.mechanism.part.rolling import Rolling
+    from linkwork.mechanism.part.slider import Slider
+    from linkwork.mechanism.part.slot import Slot
+    from linkwork.mechanism.part.spring import Spring
+    from linkwork.mechanism.part.weld import Weld
     from linkwork.numerics.newton import NewtonOptions
     from linkwork.results.check import CheckReport
     from linkwork.results.circuits import Branch, Circuit, Circuits
@@ -98,17 +99,18 @@ else:
             ),
             "foundation.newton_trouble": ("NewtonTrouble",),
             "foundation.status": ("Status",),
-            "mechanism.contacts": (
-                "Belt",
-                "Cam",
-                "Curve",
-                "Gear",
-                "Rack",
-                "Rolling",
-                "Segment",
-                "Weld",
-            ),
-            "mechanism.parts": ("Cylinder", "Input", "Slider", "Slot", "Spring"),
+            "mechanism.driven_input": ("Input",),
+            "mechanism.part.belt": ("Belt",),
+            "mechanism.part.cam": ("Cam", "Segment"),
+            "mechanism.part.curve": ("Curve",),
+            "mechanism.part.cylinder": ("Cylinder",),
+            "mechanism.part.gear": ("Gear",),
+            "mechanism.part.rack": ("Rack",),
+            "mechanism.part.rolling": ("Rolling",),
+            "mechanism.part.slider": ("Slider",),
+            "mechanism.part.slot": ("Slot",),
+            "mechanism.part.spring": ("Spring",),
+            "mechanism.part.weld": ("Weld",),
             "numerics.newton": ("NewtonOptions",),
             "results.check": ("CheckReport",),
             "results.circuits": ("Branch", "Circuit", "Circuits"),

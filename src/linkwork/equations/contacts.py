@@ -25,10 +25,11 @@ from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.lanes import settled
 from linkwork.foundation.names import canonical
 from linkwork.kernels.piecewise import Piecewise
-from linkwork.mechanism.contacts import Cam, Curve
 from linkwork.mechanism.description import Problems
-from linkwork.mechanism.followers import guide_named
-from linkwork.mechanism.parts import Slider
+from linkwork.mechanism.part.cam import Cam
+from linkwork.mechanism.part.curve import Curve
+from linkwork.mechanism.part.guide import guide_named
+from linkwork.mechanism.part.slider import Slider
 
 __all__ = ["Contacts"]
 
@@ -145,7 +146,7 @@ class Contacts:
         if cam.slider is not None:
             guide = guide_named(linkage, cam.slider)
             assert guide is not None
-            point = guide.points[0] if isinstance(guide, Slider) else guide.point
+            point = guide.point_on_line
         assert point is not None
         self._check_hollows(cam, outline, (*key, "profile"))
         at = (cam.cam, cam.center)

@@ -15,10 +15,11 @@ from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, Node
 from linkwork.foundation.lanes import choose, copysign, degrees, kept, phase, remainder, turn
 from linkwork.foundation.names import canonical
-from linkwork.mechanism.contacts import Weld
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.linkage import GROUND, Linkage
-from linkwork.mechanism.parts import Cylinder, Slider
+from linkwork.mechanism.part.cylinder import Cylinder
+from linkwork.mechanism.part.slider import Slider
+from linkwork.mechanism.part.weld import Weld
 
 __all__ = ["Frames", "Place"]
 

@@ -25,8 +25,8 @@ from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.lanes import hypot, largest, phase, row_of, smallest, turn
 from linkwork.foundation.names import canonical, pretty
 from linkwork.mechanism.description import Problems
+from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import GROUND, Linkage
-from linkwork.mechanism.parts import Input
 
 __all__ = ["write_loops"]
 

@@ -13,10 +13,13 @@ from linkwork.equations.frames import Frames
 from linkwork.equations.model import LinearEquation
 from linkwork.foundation.lanes import choose, copysign, largest, led, many, settled
 from linkwork.foundation.names import canonical
-from linkwork.mechanism.contacts import Belt, Gear, Rack, Rolling
 from linkwork.mechanism.description import Problems
-from linkwork.mechanism.followers import guide_named
-from linkwork.mechanism.parts import Slider
+from linkwork.mechanism.part.belt import Belt
+from linkwork.mechanism.part.gear import Gear
+from linkwork.mechanism.part.guide import guide_named
+from linkwork.mechanism.part.rack import Rack
+from linkwork.mechanism.part.rolling import Rolling
+from linkwork.mechanism.part.slider import Slider
 
 __all__ = ["wheels_in_mesh"]
 

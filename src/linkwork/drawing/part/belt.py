@@ -6,20 +6,15 @@ import cmath
 import math
 from collections.abc import Iterator
 
+from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, xy
-from linkwork.mechanism.contact_shapes import BeltRun
+from linkwork.mechanism.part.belt import BeltRun
 
-__all__ = ["belt_symbols"]
-
-
-def belt_symbols(pose: Pose) -> Iterator[Primitive]:
-    """Every belt around its two pulleys."""
-    for belt in pose.skeleton.contacts.belts:
-        yield from _belt(pose, belt)
+__all__ = ["symbols"]
 
 
-def _belt(pose: Pose, belt: BeltRun) -> Iterator[Primitive]:
+def symbols(belt: BeltRun, pose: Pose, measures: Measures) -> Iterator[Primitive]:
     """Radii to both ends of a run are parallel, at ±β from the line of centres.
 
     cos β = (r1 - r2)/d for an open belt; a crossed one ends on the other side of the second

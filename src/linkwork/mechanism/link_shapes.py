@@ -7,73 +7,47 @@ and reported; more than 2n - 3 must agree.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from linkwork.foundation.lanes import many
+from linkwork.mechanism.bodies import GROUND, Bodies, Measured, Shapes
+from linkwork.mechanism.description import Problems
 from linkwork.mechanism.link_shape import Distance, LinkShape, ShapeError, VertexAngle, place
 
-if TYPE_CHECKING:
-    from linkwork.mechanism.description import Problems
-    from linkwork.mechanism.linkage import Linkage
+__all__ = ["link_shapes"]
 
-__all__ = ["Measured", "Shapes"]
-
-GROUND = "ground"
 _AGREE = 1e-9  # relative; given dimensions that say the same thing must agree to this
 
 
-@dataclass(frozen=True, kw_only=True)
-class Measured:
-    """A dimension that was not given and was measured between sketched points."""
-
-    link: str
-    points: tuple[str, str]
-    length: float
-
-
-@dataclass(frozen=True)
-class Shapes:
-    """Local coordinates of every link's points; real axis from the first to the second point.
-
-    ``local[link][point]`` is complex, in the mechanism's length unit; ground is in absolute
-    coordinates.
-    """
-
-    local: Mapping[str, Mapping[str, complex]] = field(default_factory=dict)
-    measured: tuple[Measured, ...] = ()
-
-    @classmethod
-    def of(cls, linkage: Linkage, problems: Problems) -> Shapes:
-        """Shapes of all links; what contradicts itself is added to ``problems``."""
-        local: dict[str, Mapping[str, complex]] = {}
-        measured: list[Measured] = []
-        lengths = {tuple(key.split()): number for key, number in linkage.lengths.items()}
-        angles = {tuple(key.split()): number for key, number in linkage.angles.items()}
-        lengths_at = _by_point(lengths)
-        angles_at = _by_point(angles)
-        for link, points in linkage.links.items():
-            sketch = {point: linkage.sketched(point) for point in points}
-            distances = [
-                Distance(pair[0], pair[1], linkage.numbers(lengths[pair]))
-                for pair in _inside(lengths_at, points)
-            ]
-            vertices = [
-                VertexAngle(a, v, b, linkage.numbers(angles[a, v, b]) * linkage.angle.radians)
-                for a, v, b in _inside(angles_at, points)
-            ]
-            try:
-                if link == GROUND:
-                    _check_ground(sketch, distances, vertices)
-                    local[link] = sketch
-                    continue
-                shape = place(tuple(points), sketch, distances, vertices)
-            except ShapeError as error:
-                problems.add(_key_of(error, link), error.message)
+def link_shapes(linkage: Bodies, problems: Problems) -> Shapes:
+    """Shapes of all links; what contradicts itself is added to ``problems``."""
+    local: dict[str, Mapping[str, complex]] = {}
+    measured: list[Measured] = []
+    lengths = {tuple(key.split()): number for key, number in linkage.lengths.items()}
+    angles = {tuple(key.split()): number for key, number in linkage.angles.items()}
+    lengths_at = _by_point(lengths)
+    angles_at = _by_point(angles)
+    for link, points in linkage.links.items():
+        sketch = {point: linkage.sketched(point) for point in points}
+        distances = [
+            Distance(pair[0], pair[1], linkage.numbers(lengths[pair]))
+            for pair in _inside(lengths_at, points)
+        ]
+        vertices = [
+            VertexAngle(a, v, b, linkage.numbers(angles[a, v, b]) * linkage.angle.radians)
+            for a, v, b in _inside(angles_at, points)
+        ]
+        try:
+            if link == GROUND:
+                _check_ground(sketch, distances, vertices)
+                local[link] = sketch
                 continue
-            local[link] = shape.local
-            measured += _measured(link, shape, linkage, problems)
-        return cls(local, tuple(measured))
+            shape = place(tuple(points), sketch, distances, vertices)
+        except ShapeError as error:
+            problems.add(_key_of(error, link), error.message)
+            continue
+        local[link] = shape.local
+        measured += _measured(link, shape, linkage, problems)
+    return Shapes(local, tuple(measured))
 
 
 def _by_point(table: Mapping[tuple[str, ...], object]) -> dict[str, list[tuple[str, ...]]]:
@@ -125,7 +99,7 @@ def _same_point(first: str, second: str) -> ShapeError:
     return ShapeError(f"{first} and {second} of ground are the same point: give it one name")
 
 
-def _measured(link: str, shape: LinkShape, linkage: Linkage, problems: Problems) -> list[Measured]:
+def _measured(link: str, shape: LinkShape, linkage: Bodies, problems: Problems) -> list[Measured]:
     found = [Measured(link=link, points=(d.a, d.b), length=d.length) for d in shape.measured]
     if linkage.sketch and found:
         wanted = ", ".join(f'"{m.points[0]} {m.points[1]}"' for m in found)

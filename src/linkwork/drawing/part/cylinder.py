@@ -7,21 +7,16 @@ from collections.abc import Iterator
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose, Travel
 from linkwork.drawing.scene import Polygon, Polyline, Primitive, Role, xy
-from linkwork.mechanism.skeleton import Strut
+from linkwork.mechanism.part.cylinder import Strut
 
-__all__ = ["cylinder_symbols"]
+__all__ = ["symbols"]
 
 _HELD = 1e-9  # of its length: a cylinder that moves less is held
 
 
-def cylinder_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
-    """Every cylinder, its barrel at the first of its two points."""
-    driven = {part.name for part in pose.skeleton.driven}
-    for strut in pose.skeleton.struts:
-        yield from _cylinder(pose, strut, measures, tone=0 if strut.name in driven else 1)
-
-
-def _cylinder(pose: Pose, strut: Strut, measures: Measures, tone: int) -> Iterator[Primitive]:
+def symbols(strut: Strut, pose: Pose, measures: Measures) -> Iterator[Primitive]:
+    """A cylinder, its barrel at the first of its two points."""
+    tone = 0 if strut.name in {part.name for part in pose.skeleton.driven} else 1
     base, tip = (pose.points[name] for name in strut.between)
     length = pose.length(strut)
     if not length.now:
