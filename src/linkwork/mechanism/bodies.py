@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TypeVar
 
 from linkwork.foundation.frozen import FrozenDict
-from linkwork.foundation.lanes import vector
+from linkwork.foundation.lanes import phase, vector
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
 
@@ -73,3 +73,10 @@ class Bodies(Description):
         for link, points in self.links.items():
             if point in points:
                 yield link
+
+    def sketched_angle(self, link: str) -> float:
+        """The direction of a link in the sketch [rad]; 0 for ground and wheels of one point."""
+        if link == GROUND or len(self.links[link]) < 2:
+            return 0.0
+        first, second = self.links[link][:2]
+        return phase(self.sketched(second) - self.sketched(first))

@@ -44,6 +44,7 @@ class Part:
     doc: ClassVar[str]
     keys: ClassVar[tuple[FileKey, ...]]
     kind: ClassVar[JointKind | None] = None
+    holders: ClassVar[str] = "joints"  # what may contradict an angle that it keeps
 
     def __post_init__(self) -> None:
         """Turn lists into tuples, so that parts compare and cannot change."""
@@ -100,6 +101,10 @@ class Part:
     def joined(self, linkage: Bodies) -> tuple[str, ...]:
         """The links that the joint joins."""
         return ()
+
+    def kept_angle(self, linkage: Bodies) -> tuple[str, str, float] | None:
+        """A link that keeps its angle against another one, that one, and the angle [rad]."""
+        return None
 
     @property
     def guided(self) -> tuple[str, str, str] | None:

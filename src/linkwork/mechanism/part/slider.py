@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Self
 
 from linkwork.foundation.file_keys import Key, ListOf, Text
 from linkwork.foundation.file_keys import Number as NumberKey
-from linkwork.mechanism.bodies import Bodies
+from linkwork.foundation.lanes import choose, phase
+from linkwork.mechanism.bodies import GROUND, Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Figure, Guide, Outlines
 from linkwork.mechanism.joint import JointKind
@@ -43,6 +45,7 @@ class Slider(GuidePart):
         Key("angle", NumberKey(), "With one point: the angle from the line to the sliding link"),
     )
     kind = JointKind.PRISMATIC
+    holders = "sliders"
 
     link: str
     points: tuple[str, ...]
@@ -59,6 +62,26 @@ class Slider(GuidePart):
 
     def joined(self, linkage: Bodies) -> tuple[str, ...]:
         return self.link, self.on
+
+    def kept_angle(self, linkage: Bodies) -> tuple[str, str, float]:
+        return self.link, self.on, self._angle_against(linkage)
+
+    def _angle_against(self, linkage: Bodies) -> float:
+        """The link's angle minus the carrier's, from the line and the sliding points."""
+        s, t = (linkage.shapes.local[self.on][p] for p in self.line)
+        line = phase(t - s)
+        local = linkage.shapes.local[self.link]
+        if len(self.points) == 2:
+            own = phase(local[self.points[1]] - local[self.points[0]])
+            d, e, a, b = (linkage.sketched(p) for p in (*self.points, *self.line))
+            along = ((e - d) * (b - a).conjugate()).real >= 0
+            return line - own + choose(along, 0.0, math.pi)
+        if self.angle is not None:
+            return line + linkage.numbers(self.angle) * linkage.angle.radians
+        if self.link != GROUND and len(linkage.links[self.link]) < 2:
+            return line
+        a, b = (linkage.sketched(p) for p in self.line)
+        return line + linkage.sketched_angle(self.link) - phase(b - a)
 
     def check(self, checks: PartChecks) -> None:
         links = checks.linkage.links

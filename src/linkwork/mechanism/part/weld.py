@@ -52,6 +52,12 @@ class Weld(Part):
         """The pin of its two links has lost its freedom."""
         return -1
 
+    def kept_angle(self, linkage: Bodies) -> tuple[str, str, float]:
+        first, second = self.links
+        if self.angle is not None:
+            return second, first, linkage.numbers(self.angle) * linkage.angle.radians
+        return second, first, linkage.sketched_angle(second) - linkage.sketched_angle(first)
+
     def check(self, checks: PartChecks) -> None:
         if not checks.two(self.links, "link", "links"):
             return
