@@ -6,8 +6,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import linkwork as lw
 from linkwork.batch import building
@@ -284,7 +283,7 @@ def test_scalars_hold_for_all_designs_and_no_designs_are_fine() -> None:
 
 def test_names_that_mean_nothing_are_refused_with_what_exists() -> None:
     with pytest.raises(
-        UnknownNameError, match=r'"O2 B" is no number of .* \(numbers: O4 B, O2 A, '
+        UnknownNameError, match=r'"O2 B" is not a number of .* \(numbers: O4 B, O2 A, '
     ):
         designs_of(_four_bar(), {"O2 B": [1.0]})
     for name in ("zz", "O4.z", "s16.offset", "", "A B P"):

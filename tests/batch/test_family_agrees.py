@@ -25,10 +25,11 @@ from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 from tests.batch.rate_referee import assert_same_evidence, assert_same_limits, assert_same_rates
 from tests.described import described_as
+from tests.library_mechanisms import driven_examples
 from tests.oracles.balls import BallTable, exactly, newton
 
 Array = npt.NDArray[np.float64]
-DRIVEN = [name for name in lw.examples() if lw.example(name).description.inputs]
+DRIVEN = driven_examples()
 #: What the compiled march does not lead through all rows, and why.
 ALONE = {"cam-roller-follower": "a law", "curved-slot": "a law", "garage-door": "a curve"}
 #: Whose guess lies beside the table's path of inputs.

@@ -69,7 +69,7 @@ def test_a_classification_as_json(run: Run) -> None:
         "chain": "four-bar chain",
         "links": 4,
         "inversion": None,
-        "type": "crank-rocker (GCRR): Grashof, s + l is 20 mm below p + q",
+        "type": "crank-rocker (GCRR): Grashof, s + l < p + q by 20 mm",
         "blocks": [],
         "loop": {
             "links": ["ground", "crank", "coupler", "rocker"],

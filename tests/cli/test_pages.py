@@ -41,7 +41,7 @@ Position found at crank = 90 deg
   A        0.000  40.000
   B      113.137   0.000
 
-  derivatives  by crank in rad
+  derivatives  with respect to crank (rad)
 """
 
 CUBIC_STEPS = """\
@@ -123,7 +123,7 @@ Four-bar
   blocks      1, all unknowns are solved together: dyad RRR, class II
   mobility    1 by Grübler's count, 1 by rank
   chain       four-bar chain
-  type        crank-rocker (GCRR): Grashof, s + l is 20 mm below p + q
+  type        crank-rocker (GCRR): Grashof, s + l < p + q by 20 mm
   class       II
 
 """
@@ -143,7 +143,7 @@ SHAPER = """\
   blocks      1, all unknowns are solved together: dyad RPR, class II
   mobility    1 by Grübler's count, 1 by rank
   chain       slider-crank chain (RRRP); pin in slot s counted as a block
-  type        crank shaper: the driven link turns fully, s + e is 150 mm below l
+  type        crank shaper: the driven link turns fully, s + e < l by 150 mm
   class       II
 
 """
@@ -169,7 +169,7 @@ EXTREMUM = """\
 """
 
 MEASURED = """
-Lengths measured between [points], because [lengths] leaves them open
+Lengths measured between [points], because [lengths] does not give them
   link     points  length [mm]
   coupler  A P         89.0225
   coupler  B P         60.9262
@@ -395,7 +395,7 @@ def test_sweep_without_a_start_says_why_and_what_to_do(run: Run) -> None:
     text = " ".join(run("sweep", "open.toml").stdout.split())
     assert 'no start 361 at 0 to 360 deg why loop "O2 A B O4" cannot be closed' in text
     assert " remedy it just closes with " in text
-    assert text.endswith("How it went: linkwork solve open.toml --show-steps")
+    assert text.endswith("To see the iterations: linkwork solve open.toml --show-steps")
 
 
 def test_limits_bear_the_inputs_of_their_rows(run: Run, folder: Path) -> None:
@@ -413,7 +413,7 @@ def test_limits_bear_the_inputs_of_their_rows(run: Run, folder: Path) -> None:
 
 def test_a_list_without_configurations_says_where_to_ask(run: Run) -> None:
     text = run("configurations", "open.toml", "--at", "90").stdout
-    assert text.endswith("\nWhat is in the way: linkwork solve open.toml --at 90\n")
+    assert text.endswith("\nFor the reason: linkwork solve open.toml --at 90\n")
 
 
 def test_check_tells_what_was_understood(run: Run) -> None:
@@ -491,6 +491,6 @@ def test_the_library_is_listed_with_titles(run: Run) -> None:
     text = run("examples").stdout
     assert "\n\nrapier drive\n  rapier-drive-limited-links  Rapier drive of a loom, limited" in text
     assert "\n  rapier-drive                Rapier drive of a loom\n\n" in text
-    assert text.endswith("\n\nTo start from one: linkwork examples NAME -o FILE.toml\n")
+    assert text.endswith("\n\nTo copy an example: linkwork examples NAME -o FILE.toml\n")
     assert all(f"\n  {name}  " in text for name in examples())
     assert _too_wide(text) == []

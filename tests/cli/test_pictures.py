@@ -299,7 +299,7 @@ def test_unknowns_that_are_left_out_are_told(
         ),
         (
             "crank",
-            "Error: --of crank: everything is drawn over the input: name an unknown, a link,\n"
+            "Error: --of crank: curves are drawn over the input: name an unknown, a link,\n"
             "  an output or the coordinate of a point\n",
         ),
     ],

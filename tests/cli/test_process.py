@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import os
 import pty
@@ -17,7 +18,10 @@ from tests.cli.conftest import Start
 from tests.interruptible import interruptible
 
 #: Nothing is followed when the position asked for is the guess's own.
-FOR_MOTION = {f"linkwork.numerics.{name}" for name in ("curve", "proven_path", "track")}
+FOR_MOTION = {
+    f"linkwork.numerics.continuation.{name}"
+    for name in ("branch_tracking", "curve_tracing", "path_proof")
+}
 HEAVY = {"matplotlib", "networkx", "numba", "pandas", "rich", "scipy", "xarray"}
 
 
@@ -36,6 +40,7 @@ def test_solve_loads_nothing_heavy(environment: dict[str, str]) -> None:
     assert not {name.partition(".")[0] for name in loaded} & HEAVY
     assert "linkwork.numerics.proof.position_proof" in loaded
     assert not FOR_MOTION & set(loaded)
+    assert all(importlib.util.find_spec(name) for name in FOR_MOTION)
 
 
 def test_a_reader_that_goes_away_is_no_trouble(environment: dict[str, str]) -> None:

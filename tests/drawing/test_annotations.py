@@ -53,7 +53,7 @@ def vectors(scene: Scene, role: Role) -> dict[str, complex]:
 
 def scale_of(caption: str, word: str) -> float:
     """Length units per unit of the rate, as the caption has it."""
-    found = re.search(rf"{word}: ([\d.e+-]+) \w+ shows ([\d.e+-]+) ", caption)
+    found = re.search(rf"{word} scale: ([\d.e+-]+) \w+ = ([\d.e+-]+) ", caption)
     assert found
     return float(found[1]) / float(found[2])
 

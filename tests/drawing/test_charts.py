@@ -14,8 +14,7 @@ from matplotlib.lines import Line2D
 
 import linkwork as lw
 from linkwork.drawing import LIGHT, circuit_chart, render
-from linkwork.drawing.charts import chart as chart_module
-from linkwork.drawing.charts import circuit_chart as circuit_chart_module
+from linkwork.drawing.charts import chart as chart_module, circuit_chart as circuit_chart_module
 from linkwork.drawing.charts.chart import Chart, Curve
 from linkwork.drawing.charts.matplotlib_page import chart_figure
 from linkwork.drawing.charts.theme import LIGHT_CHART

@@ -25,8 +25,7 @@ from linkwork.drawing import (
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.tooth_outline import tooth_outline, tooth_phases
 from linkwork.foundation.arrays import ComplexArray
-from linkwork.mechanism.figures import Contour
-from linkwork.mechanism.figures import Disc as Wheel
+from linkwork.mechanism.figures import Contour, Disc as Wheel
 from linkwork.mechanism.part.belt import BeltRun
 from linkwork.mechanism.part.weld import RigidJoint
 

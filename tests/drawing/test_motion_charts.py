@@ -358,7 +358,7 @@ def test_the_leading_input_is_the_one_that_moves() -> None:
         ),
         (
             "four-bar", ["status"], {}, InputError,
-            '"status" is text: there is nothing to plot but numbers',
+            '"status" is text and cannot be plotted',
         ),
         (
             "four-bar", ["B"], {}, InputError,
@@ -400,7 +400,7 @@ def test_the_leading_input_is_the_one_that_moves() -> None:
         ),
         (
             "four-bar", ["B"], {"kind": "path", "against": "time"}, InputError,
-            'a path is drawn in the plane, over nothing: leave out "time"',
+            'a path is drawn in the plane: leave out against="time"',
         ),
     ],
 )  # fmt: skip

@@ -12,9 +12,10 @@ from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, Scene, Text
 from linkwork.drawing.shape_corners import corners
 from linkwork.mechanism.linkage import Linkage
 from tests.described import described_as
+from tests.library_mechanisms import read_example
 from tests.thinned import thinned
 
-_DRAWN = [n for n in lw.examples() if lw.example(n).model.compiled.points.names]
+_DRAWN = [n for n in lw.examples() if read_example(n).model.compiled.points.names]
 _FURTHEST = 1e-6  # of the drawn size: rows and positions agree to rounding
 
 

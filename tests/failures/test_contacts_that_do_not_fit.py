@@ -156,7 +156,7 @@ def test_a_cam_that_is_held_on_its_frame_is_refused() -> None:
     held = text + '[[welds]]\nlinks = ["ground", "disc"]\n'
     with pytest.raises(lw.MechanismFileError) as caught:
         lw.loads(held).equations()
-    message = '"disc" cannot turn against "ground": a slider or a weld holds its angle'
+    message = '"disc" cannot turn relative to "ground": a slider or a weld holds its angle'
     assert [problem.message for problem in caught.value.problems] == [message, message]
 
 
@@ -170,7 +170,7 @@ def test_a_link_that_is_welded_to_what_it_is_driven_against_is_refused() -> None
         ).equations()
     (problem,) = caught.value.problems
     assert problem.message == (
-        '"crank" cannot turn against "ground": a slider or a weld holds its angle'
+        '"crank" cannot turn relative to "ground": a slider or a weld holds its angle'
     )
 
 
@@ -189,7 +189,7 @@ def test_welds_around_a_ring_have_to_agree() -> None:
     (problem,) = caught.value.problems
     assert problem.key == ("welds", 2)
     assert problem.message == (
-        '"c" cannot keep its angle against "a": other joints turn it by 1° from there'
+        '"c" cannot keep its angle relative to "a": other joints turn it by 1° from there'
     )
 
 

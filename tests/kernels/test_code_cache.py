@@ -163,8 +163,8 @@ def test_without_a_folder_to_write_to_the_machine_serves(
     with pytest.raises(lw.InputError) as told:
         kernel().shift(Gear(specialised=True))
     assert str(told.value) == (
-        f"compiled code cannot be kept in {taken} ({os.strerror(17)}): "
-        "name another folder in LINKWORK_CACHE, or ask for specialised=False"
+        f"compiled code cannot be stored in {taken} ({os.strerror(17)}): "
+        "name another folder in LINKWORK_CACHE, or use specialised=False"
     )
     mine = kernel()
     mine.shift(Gear(positions=1 << 40))

@@ -212,10 +212,10 @@ def test_the_ground_itself_changes_nothing_but_the_input() -> None:
 def test_all_inversions_are_listed_with_their_names() -> None:
     told = [entry.text for entry in lw.example("four-bar").inversions()]
     assert told == [
-        "ground: crank-rocker (GCRR): Grashof, s + l is 20 mm below p + q",
-        "crank: double-crank (GCCC): Grashof, s + l is 20 mm below p + q",
-        "coupler: crank-rocker: Grashof, s + l is 20 mm below p + q",
-        "rocker: double-rocker: Grashof, s + l is 20 mm below p + q",
+        "ground: crank-rocker (GCRR): Grashof, s + l < p + q by 20 mm",
+        "crank: double-crank (GCCC): Grashof, s + l < p + q by 20 mm",
+        "coupler: crank-rocker: Grashof, s + l < p + q by 20 mm",
+        "rocker: double-rocker: Grashof, s + l < p + q by 20 mm",
     ]
     shaper = lw.example("inverted-slider-crank").inversions()
     assert [entry.like for entry in shaper] == ["ground", "ground", "lever"]

@@ -22,14 +22,15 @@ from linkwork.kernels.program.kernel_cache import kernels_are_compiled, say_that
 from linkwork.motion import by_kernels
 from linkwork.motion.drive import Drive
 from linkwork.numerics.continuation.branch_tracking import Track
+from tests.library_mechanisms import read_example
 from tests.thinned import thinned
 
 ROWS = 2400
 SERVED = [
     name
     for name in lw.examples()
-    if by_kernels.are_served(lw.example(name).model)
-    and len(lw.example(name).description.inputs) == 1
+    if by_kernels.are_served(read_example(name).model)
+    and len(read_example(name).description.inputs) == 1
 ]
 Sweep = Callable[..., tuple[lw.Motion, lw.Motion]]
 

@@ -6,8 +6,7 @@ import base64
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from linkwork.viewer.packing import packed, shortened, unpacked, unpressed
 

@@ -34,7 +34,7 @@ const one = (name: string, entry: string, required = true): Field => ({ name, en
 export const PIECES: readonly Piece[] = [
   {
     title: "Point",
-    doc: "x and y are its place in the sketch of the file, where the mechanism is first put together",
+    doc: "x and y are its coordinates in the sketch of the file, from which the mechanism is first assembled",
     fields: [one("name", "text"), one("x", "plain number"), one("y", "plain number"), one("on link", "link", false)],
     edit: (v) => ({
       kind: "add_point",
@@ -80,9 +80,9 @@ export class Build {
   constructor(private readonly desk: Desk) {
     this.input = this.group("Input", true);
     this.palette = this.group("Add", true);
-    const label = html("label", { class: "lw-toggle", title: "What stands between several changes need not be a mechanism" });
+    const label = html("label", { class: "lw-toggle", title: "The states between queued changes need not be valid mechanisms" });
     this.collect = html("input", { type: "checkbox" }, label);
-    label.append("Collect changes, then make them as one");
+    label.append("Queue changes and apply them together");
     this.waiting = html("div", { class: "lw-waiting" });
     this.palette.append(label, this.waiting);
     this.collect.addEventListener("change", () => this.pending());
@@ -143,14 +143,14 @@ export class Build {
     if (!this.collected.length) return;
     const list = html("ol", {}, this.waiting);
     for (const edit of this.collected) html("li", {}, list, described(edit));
-    const apply = html("button", { type: "button", class: "lw-wanted lw-save" }, this.waiting, `Make ${this.collected.length} as one`);
+    const apply = html("button", { type: "button", class: "lw-wanted lw-save" }, this.waiting, `Apply ${this.collected.length} change${this.collected.length > 1 ? "s" : ""}`);
     apply.addEventListener("click", () => {
       this.desk.ask({ kind: "together", edits: this.collected });
       this.collected = [];
       this.pending();
       this.pieces(this.desk.file());
     });
-    const drop = html("button", { type: "button" }, this.waiting, "Forget them");
+    const drop = html("button", { type: "button" }, this.waiting, "Discard");
     drop.addEventListener("click", () => {
       this.collected = [];
       this.pending();
@@ -199,7 +199,7 @@ export class Build {
     const open = Array.from(this.palette.querySelectorAll(".lw-piece[open] > summary"), (one) => one.textContent);
     this.palette.querySelectorAll("details, p").forEach((old) => old.remove());
     const sketched = file.form === "points-and-links";
-    if (!sketched) html("p", { class: "lw-empty" }, this.palette, "Equations are added in the text of the file.");
+    if (!sketched) html("p", { class: "lw-empty" }, this.palette, "To add equations, edit the text of the file.");
     for (const piece of sketched ? [...PIECES].reverse() : []) {
       const box = html("details", { class: "lw-piece" });
       this.palette.querySelector("summary")!.after(box);

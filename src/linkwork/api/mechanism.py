@@ -131,9 +131,9 @@ class Mechanism(SolvableMechanism):
         """
         kind = viewer.check_animation(path, options)
         if all_circuits and (motion is not None or kind != "html"):
-            raise InputError("all circuits are shown by a page of the mechanism's own: a .html")
+            raise InputError("all circuits need the page of a mechanism: use the suffix .html")
         if forces and kind != "html":
-            raise InputError("forces are shown by a page: a .html")
+            raise InputError("only a page shows forces: use the suffix .html")
         motions = self._shown(motion, all_circuits, progress)
         content = viewer.animation(
             motions,
@@ -178,7 +178,7 @@ class Mechanism(SolvableMechanism):
             Without anywidget.
         """
         if all_circuits and motion is not None:
-            raise InputError("a widget shows the motion that is given, or all circuits: not both")
+            raise InputError("a widget shows either the given motion or all circuits, not both")
         motions = self._shown(motion, all_circuits)
         equations = self.equations().mathml()
         return viewer.motions_widget(
@@ -225,7 +225,7 @@ class Mechanism(SolvableMechanism):
             Without XlsxWriter.
         """
         if Path(path).suffix.lower() != ".xlsx":
-            raise InputError(f'cannot write "{path}": workbooks are written as .xlsx')
+            raise InputError(f'cannot write "{path}": a workbook needs the suffix .xlsx')
         cycle = self.sweep() if motion is None else motion
         written = export.workbook_of(self.model, cycle)
         Path(path).write_bytes(written.content)

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self
 
-from linkwork import batch, motion, textfile
-from linkwork import equations as closure
+from linkwork import batch, equations as closure, motion, textfile
+from linkwork.foundation.deprecation import former_method
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
@@ -138,7 +138,7 @@ class SolvableMechanism:
         """
         if configuration is not None:
             if from_guess or with_steps:
-                raise InputError("a configuration has no steps from the guess: ask for one of both")
+                raise InputError("configuration= has no steps from a guess: leave one out")
             return motion.solve_configuration(self.model, at, configuration, throw=throw)
         return motion.solve(
             self.model,
@@ -169,7 +169,7 @@ class SolvableMechanism:
         Parameters
         ----------
         start, stop, step : number, optional
-            Replace the range of the (only) input, in everyday units.
+            Replace the range of the (only) input, in file units.
         configuration : str, optional
             Start from the configuration of this name at the guess's own input value, or on this
             branch of ``circuits()``.
@@ -198,17 +198,19 @@ class SolvableMechanism:
             progress=progress,
         )
 
-    def sweep_beside(self, neighbour: Motion | None = None) -> Motion:
+    def approximate_sweep(self, neighbour: Motion | None = None) -> Motion:
         """The cycle of a mechanism whose numbers differ a little from another's; nothing proved.
 
         Many times faster than :meth:`sweep`, for pictures while a dimension is being changed:
         Newton-Raphson starts from the neighbour's positions, at all rows at once. Where that
-        would not be safe, the branch is followed anew; see :func:`linkwork.motion.renewed`.
+        would not be safe, the branch is followed anew; see :func:`linkwork.motion.warm_started`.
         """
-        renewed = None if neighbour is None else motion.renewed(self.model, neighbour)
-        if renewed is None:
-            renewed = motion.sweep(self.model, certify=False, explained=False)
-        return renewed
+        started = None if neighbour is None else motion.warm_started(self.model, neighbour)
+        if started is None:
+            started = motion.sweep(self.model, certify=False, explained=False)
+        return started
+
+    sweep_beside = former_method("sweep_beside", approximate_sweep, removed_in="0.4")
 
     def moving_loops(self, cycle: Motion) -> tuple[MovingLoop, ...]:
         """The loop equations over a motion, as vectors; none if there are no loops."""
@@ -258,7 +260,7 @@ class SolvableMechanism:
         Parameters
         ----------
         dimensions : Mapping[str, number or (D,)]
-            What varies, everyday units: dimensions, lengths (``"O2 A"``), angles, coordinates
+            What varies, file units: dimensions, lengths (``"O2 A"``), angles, coordinates
             (``"O4.x"``); a plan of :mod:`linkwork.batch`.
         """
         return batch.family_of(self.model, dimensions)

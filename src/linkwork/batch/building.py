@@ -56,7 +56,7 @@ class Builder:
     base : Model
         The family's structure; see :func:`family_base`.
     values : Mapping[Quantity, (B,)]
-        What varies, everyday units.
+        What varies, file units.
     together : bool
         Whether designs can be built in passes; else one at a time.
 

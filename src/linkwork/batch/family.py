@@ -49,7 +49,7 @@ class Family:
 
     @property
     def dimensions(self) -> Mapping[str, Array]:
-        """What varies, (D,) each, everyday units."""
+        """What varies, (D,) each, file units."""
         return self.designs.dimensions
 
     def take(self, index: Sequence[int] | IndexArray | BoolArray | slice) -> Family:
@@ -105,7 +105,7 @@ class Family:
         if 8 * count > _MOST_BYTES:
             raise InputError(
                 f"{len(self)} designs × {len(model.rows)} rows take {8 * count / 2**30:.0f} GiB: "
-                "go through family.parts(), or ask for family.reduced({...})"
+                "use family.parts() or family.reduced({...})"
             )
         rows = design_rows(self.designs, certify=certify, threads=threads, gear=gear)
         return FamilyMotion(

@@ -50,7 +50,7 @@ class FamilyMotion:
     ----------
     designs : Designs
     inputs : (R, p)
-        What was asked, everyday units.
+        What was asked, file units.
     rows : DesignRows
         Unknowns, statuses and proofs, internal units.
     threads : int
@@ -95,7 +95,7 @@ class FamilyMotion:
         return design_evidence(self.designs, self.rows, self.threads)
 
     def __getitem__(self, name: str) -> Array:
-        """Values of a quantity by name, (D, R), everyday units; NaN where there is no position.
+        """Values of a quantity by name, (D, R), file units; NaN where there is no position.
 
         Names are those of a :class:`~linkwork.results.motion.Motion`: ``family["B.x"]``, and of its
         rates ``family["B.x.d1"]``, ``family["B.x.velocity"]`` (angles in radians): NaN at dead
@@ -191,7 +191,7 @@ class FamilyMotion:
 
     @property
     def dimensions(self) -> Mapping[str, Array]:
-        """What varies from design to design, (D,) each, everyday units."""
+        """What varies from design to design, (D,) each, file units."""
         return self.designs.dimensions
 
     @property
@@ -286,7 +286,7 @@ class FamilyMotion:
         if needed > _MOST_BYTES:
             raise InputError(
                 f"{len(names)} quantities and rates of {len(self)} designs take "
-                f"{needed / 2**30:.0f} GiB: name those that are wanted"
+                f"{needed / 2**30:.0f} GiB: name the ones that you need"
             )
         return names
 

@@ -32,7 +32,7 @@ class QuantityValues:
     ----------
     designs : Designs
     inputs : (R, p)
-        As asked, everyday units.
+        As asked, file units.
     v : (n, R, D)
         Unknowns, internal units; NaN where there is no position.
     turns : (R, D)
@@ -68,7 +68,7 @@ class QuantityValues:
         return quantity_names(self.model)
 
     def of(self, name: str) -> Array:
-        """A quantity by name, (D, R), everyday units.
+        """A quantity by name, (D, R), file units.
 
         Raises
         ------
@@ -88,7 +88,7 @@ class QuantityValues:
         return places
 
     def jet(self, name: str) -> tuple[Kind, Jet]:
-        """What is named, (R, D): the value in everyday units, rates in radians and lengths.
+        """What is named, (R, D): the value in file units, rates in radians and lengths.
 
         Raises
         ------
@@ -180,7 +180,7 @@ class QuantityValues:
         return value * s.v, first, value * second
 
     def _output(self, name: str) -> Jet:
-        """Formulas see and give everyday units; derivatives of angles come back in radians."""
+        """Formulas see and give file units; derivatives of angles come back in radians."""
         output, shape = self.equations.outputs[name], self._lost.shape
         scale = self.model.units.scale(Kind(output.kind))
         with np.errstate(all="ignore"):

@@ -72,7 +72,7 @@ def design_rates(designs: Designs, rows: DesignRows, threads: int = 1) -> Design
     if 2 * rows.v.nbytes > _MOST_BYTES:
         raise InputError(
             f"the rates of {width} designs × {count} rows take {2 * rows.v.nbytes / 2**30:.0f} "
-            "GiB: go through family.parts(), or ask for family.reduced({...})"
+            "GiB: use family.parts() or family.reduced({...})"
         )
     both = np.full((2, n, count, width), np.nan)
     if _together(designs, rows):

@@ -327,7 +327,7 @@ def _some(given: Mapping[str, Any]) -> Mapping[str, Any]:
     if not isinstance(given, Mapping):
         raise InputError(f"a plan needs a mapping of names and values, got {as_told(given)}")
     if not given:
-        raise InputError("a plan needs something that varies: name a dimension and its values")
+        raise InputError("nothing varies in this plan: give a dimension and its values")
     return given
 
 

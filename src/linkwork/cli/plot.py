@@ -37,24 +37,26 @@ __all__ = ["plot"]
 
 @click.command
 @file_argument
-@click.option("-o", "--output", metavar="PATH", required=True, help="Picture: .png, .svg or .pdf.")
+@click.option(
+    "-o", "--output", metavar="PATH", required=True, help="Picture file: .png, .svg or .pdf."
+)
 @click.option(
     "--of",
     "names",
     metavar="NAME",
     multiple=True,
-    help="What to plot: a column of the table; a point for path and hodograph; a pin for "
-    "transmission; repeatable. Left out: unknowns and outputs, traced points, all pins.",
+    help="Column of the table to plot; a point for path and hodograph; a pin for "
+    "transmission; may be repeated. Default: unknowns and outputs, traced points, all pins.",
 )
 @click.option(
     "--kind",
     type=click.Choice([kind.value for kind in PlotKind]),
     default=PlotKind.CURVES.value,
     show_default=True,
-    help="Which plot.",
+    help="Kind of plot.",
 )
-@click.option("--against", metavar="NAME", default="", help="Plot over this column, or over time.")
-@click.option("--wrapped", is_flag=True, help="Show angles over one turn.")
+@click.option("--against", metavar="NAME", default="", help="Plot over this column or over time.")
+@click.option("--wrapped", is_flag=True, help="Reduce angles to one turn.")
 @click.option(
     "--theme", type=click.Choice(list(THEMES)), default="light", show_default=True, help="Colours."
 )
@@ -78,16 +80,16 @@ def plot(
     changes: tuple[str, ...],
     **sweeping: Any,
 ) -> None:
-    """Plot columns over the input, paths, hodographs, circuits.
+    """Plot columns, paths, hodographs, transmission angles or circuits.
 
     \b
-    curves        columns over the input, over time or over each other
-    polar         columns as radii over the input
+    curves        columns over the input, over time or over another column
+    polar         columns as radii over the input angle
     path          paths of points in the plane
-    hodograph     velocities and accelerations of a point as vectors
+    hodograph     tips of the velocity and acceleration vectors of a point
     transmission  transmission angles with the band of 40 to 140 degrees
-    circuits      unknowns over the input: every circuit, limits marked
-    branches      the same branch by branch, side by side
+    circuits      unknowns over the input for every circuit, limits marked
+    branches      as circuits, with one panel for each branch
 
     \b
       linkwork plot rapier.toml -o s16.png --of s16 --of s16.d1
@@ -116,7 +118,7 @@ def plot(
 
 
 def _circuits(mechanism: Mechanism, kind: str, options: dict[str, Any]) -> Circuits:
-    """Circuits are followed as far as they go: what a sweep is asked for would be ignored."""
+    """Find the circuits; reject options of a sweep, which have no effect on whole circuits."""
     options["change_points"] = options["change_points"] != ChangePointPolicy.STOP.value
     spelled = {"start": "from", "stop": "to"}
     ignored = [

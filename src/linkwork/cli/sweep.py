@@ -46,12 +46,12 @@ __all__ = ["sweep"]
     "--limits-of",
     metavar="NAME",
     multiple=True,
-    help="Locate where NAME is largest and smallest; repeatable.",
+    help="Locate the maxima and minima of NAME; may be repeated.",
 )
-@click.option("--no-certificates", is_flag=True, help="Prove nothing: faster.")
-@click.option("--csv", metavar="PATH", help="Write the whole table; - is standard output.")
-@click.option("--xlsx", metavar="PATH", help="Write a workbook whose formulas solve it again.")
-@click.option("--draw", metavar="PATH", help="Draw the motion: .png, .svg or .pdf.")
+@click.option("--no-certificates", is_flag=True, help="Skip the proofs (faster).")
+@click.option("--csv", metavar="PATH", help="Write the table of all rows; - is standard output.")
+@click.option("--xlsx", metavar="PATH", help="Write a workbook whose formulas solve the cycle.")
+@click.option("--draw", metavar="PATH", help="Draw the motion as .png, .svg or .pdf.")
 @click.option("--plot", metavar="PATH", help="Plot unknowns and outputs over the input.")
 @set_option
 @json_option
@@ -75,10 +75,10 @@ def sweep(
     changes: tuple[str, ...],
     as_json: bool,
 ) -> None:
-    """Solve the whole cycle, following the motion of the guess.
+    """Solve the whole cycle, following the branch of the initial guess.
 
-    Prints a summary; rows that were not found are kept in the table, with
-    the reason.
+    Prints a summary. Rows without a position stay in the table with the
+    reason.
 
     \b
       linkwork sweep rapier.toml
@@ -88,7 +88,7 @@ def sweep(
       linkwork sweep rapier.toml --through --limits-of s16
     """
     if as_json and csv == "-":
-        raise InputError("--json and --csv - both want standard output: name a file for the table")
+        raise InputError("--json and --csv - both use standard output: name a file for the table")
     for name in (draw, plot):
         if name is not None:
             picture.check_picture(name)
@@ -132,7 +132,7 @@ def _scene(mechanism: Mechanism, motion: Motion, configuration: str | None) -> S
 
 
 def _written(motion: Motion, page: Scene | None, csv: str | None, draw: str | None) -> list[str]:
-    """Write the files that were asked for and say so."""
+    """Write the requested files; returns one line about each."""
     said = []
     if csv == "-":
         for line in csv_lines(table_of(motion)):
@@ -150,7 +150,7 @@ def _written(motion: Motion, page: Scene | None, csv: str | None, draw: str | No
 
 
 def _plotted(motion: Motion, path: str) -> str:
-    """Plot the unknowns and outputs, if there are positions, and say so."""
+    """Plot the unknowns and outputs if there are positions; returns a line about the file."""
     if not motion.found.any():
         return f"Did not write {path}: there is no position to plot."
     picture.write(motion_plot(motion), path)
@@ -158,22 +158,22 @@ def _plotted(motion: Motion, path: str) -> str:
 
 
 def _written_workbook(mechanism: Mechanism, motion: Motion, path: str) -> list[str]:
-    """Write the workbook, and say so with what in it is values only."""
+    """Write the workbook; returns lines about it, with everything that does not recalculate."""
     found = workbook_of(mechanism.model, motion)
     write_bytes(path, [found.content])
     rows = int(motion.asked.sum())
-    said = [f"Wrote {path}: {rows} rows with formulas; change a yellow cell to solve them again."]
+    said = [f"Wrote {path}: {rows} rows with formulas; edit a yellow cell to solve them again."]
     for notice in found.notices:
         said += wrapped(f"  {notice}.")
     return said
 
 
 def _hint(file: str, motion: Motion) -> list[str]:
-    """What to do next."""
+    """A suggestion of the next command."""
     if not motion.found.any():
-        return wrapped(f"How it went: linkwork solve {file} --show-steps")
+        return wrapped(f"To see the iterations: linkwork solve {file} --show-steps")
     stem = "cycle" if file == "-" else Path(file).stem
-    return wrapped(f"The whole table: --csv {stem}.csv. A picture: --draw {stem}.png.")
+    return wrapped(f"For the table add --csv {stem}.csv, for a picture --draw {stem}.png.")
 
 
 def _data(motion: Motion) -> dict[str, Any]:

@@ -112,7 +112,7 @@ def render(
         if isinstance(scene, Chart):
             page = chart_figure(scene, theme)
         elif isinstance(theme, ChartTheme):
-            raise InputError("a drawing needs the theme of a drawing: that of a chart has no links")
+            raise InputError("a drawing needs a theme for drawings, not one for charts")
         elif isinstance(scene, Sheet):
             page = _sheet_figure(scene, theme)
         else:

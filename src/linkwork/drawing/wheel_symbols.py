@@ -15,8 +15,7 @@ import numpy as np
 from linkwork.drawing.link_symbols import tones
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
-from linkwork.drawing.scene import Disc as Circle
-from linkwork.drawing.scene import Hatch, Polygon, Polyline, Primitive, Role, xy
+from linkwork.drawing.scene import Disc as Circle, Hatch, Polygon, Polyline, Primitive, Role, xy
 from linkwork.drawing.tooth_outline import ADDENDUM, DEDENDUM, tooth_outline, tooth_phases
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.mechanism.figures import Disc

@@ -179,7 +179,7 @@ class _Orientation:
             if kept is not None and gap:
                 problems.add(
                     key,
-                    f'"{kept[0]}" cannot keep its angle against "{kept[1]}": '
+                    f'"{kept[0]}" cannot keep its angle relative to "{kept[1]}": '
                     f"other {part.holders} turn it by {degrees(gap):.6g}° from there",
                 )
         driven = {w.link for w in linkage.inputs if w.link}

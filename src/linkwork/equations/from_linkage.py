@@ -139,7 +139,8 @@ class _Writer:
         angle, base = self.frames.angle[link], self.frames.angle[against]
         if angle.variable == base.variable:
             self.problems.add(
-                key, f'"{link}" cannot turn against "{against}": a slider or a weld holds its angle'
+                key,
+                f'"{link}" cannot turn relative to "{against}": a slider or a weld holds its angle',
             )
         elif (
             kind == "link"
@@ -216,14 +217,14 @@ class _Writer:
             return
         if form.missing:
             free = _subjects(names[k] for k in form.underdetermined)
-            wanted = f"{form.missing} more input{'s' if form.missing > 1 else ''}"
-            driven = len(self.linkage.inputs)
-            self.problems.add(
-                ("input",),
-                f"{driven} input{'s' if driven != 1 else ''} leave{'s' if driven == 1 else ''} "
-                f"{form.missing} degree{'s' if form.missing > 1 else ''} of freedom: "
-                f"add {wanted} or a link (free to move: {', '.join(free)})",
-            )
+            freedoms = f"{form.missing} degrees of freedom have no input: add {form.missing} inputs"
+            if form.missing == 1:
+                freedoms = "one degree of freedom has no input: add an input"
+            example = next((link for link in free if link in self.linkage.links), None)
+            text = f"{freedoms} or a link"
+            if example is not None and not self.linkage.inputs:
+                text = f'{freedoms}, for example link = "{example}"'
+            self.problems.add(("input",), f"{text} (free to move: {', '.join(free)})")
         if form.surplus:
             tied = _subjects(names[k] for k in form.conflict_unknowns)
             self.problems.add(

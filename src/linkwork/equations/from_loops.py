@@ -96,7 +96,7 @@ def read_loops(mechanism: Loops) -> LoopEquations:
 def _term(m: Monomial, text: str) -> Term:
     if len(m.factors) > 1:
         raise ExpressionError(
-            f"the product {'·'.join(m.factors)} of two unknowns has no place in a loop equation: "
+            f"the product {'·'.join(m.factors)} of two unknowns is not allowed in a loop equation: "
             "a term is one length times e^(i*angle)",
             text,
             1,
@@ -190,7 +190,7 @@ def _kinds(
                 if kinds.setdefault(name, kind) != kind or kind == "both":
                     problems.add(
                         ("loops", loop.label),
-                        f'"{spelling[name]}" stands as an angle and as a length',
+                        f'"{spelling[name]}" is used as an angle and as a length',
                     )
     for name, spelled in spelling.items():
         if name not in kinds:
@@ -209,7 +209,7 @@ def _check_ranges(
             if number is None:
                 problems.add(
                     (*mechanism.input_key(k), field),
-                    f'is missing: "{which.drives[1]}" is no angle and has no natural range',
+                    f'is missing: "{which.drives[1]}" is not an angle and has no natural range',
                 )
                 break
 

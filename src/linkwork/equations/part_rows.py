@@ -34,13 +34,13 @@ class PartRows:
     def held(self, link: str, frame: str, key: Key) -> None:
         """Report an angle that cannot change."""
         self.problems.add(
-            key, f'"{link}" cannot turn against "{frame}": a slider or a weld holds its angle'
+            key, f'"{link}" cannot turn relative to "{frame}": a slider or a weld holds its angle'
         )
 
     def put(self, body: str, point: str, place: Place, key: Key) -> None:
         """Lead a point in a body that does not lead it yet."""
         if point in self.frames.places[body]:
-            self.problems.add(key, f'point "{point}" is led by "{body}" already')
+            self.problems.add(key, f'point "{point}" is already guided by "{body}"')
             return
         self.frames.places[body][point] = place
 

@@ -101,7 +101,7 @@ def _chain(node: Call, name: str, radians: float) -> Node:
         )
         whole = Binary("/", top, Binary("+", square, Binary("^", other, Number(2.0))))
         return whole if radians == 1.0 else _product(Number(1.0 / radians), whole)
-    raise ValueError(f"{node.function} has no derivative in one formula")
+    raise ValueError(f"{node.function} has a derivative that is not a single formula")
 
 
 def _negative(node: Node) -> Node:

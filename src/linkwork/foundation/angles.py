@@ -1,4 +1,4 @@
-"""Angle units. Radians inside; the file's unit in files, tables and everyday objects."""
+"""Angle units. Radians inside; the file's unit in files, tables and results."""
 
 from __future__ import annotations
 

@@ -245,7 +245,7 @@ def _angle_unit(text: str, name: str) -> AngleUnit:
 def _check_name(problems: Problems, key: Key, name: str, taken: dict[str, str]) -> None:
     folded = canonical(name)
     if is_name(name) and not _reads_as(name, folded):
-        problems.add(key, f'"{name}" cannot be a name: a formula would not read it as one')
+        problems.add(key, f'"{name}" cannot be a name: formulas could not use it')
     elif not is_name(name):
         rule = "letters first, then letters, digits, _ or '"
         problems.add(key, f'"{name}" cannot be a name: {rule}')
@@ -280,7 +280,7 @@ def _check_rows(description: Description, which: Input, key: Key, problems: Prob
     if missing == ["step"] and amounts[0] == amounts[1]:
         missing = []  # held at one value
     if lengthy and missing:
-        problems.add((*key, missing[0]), "is missing: a length has no natural range")
+        problems.add((*key, missing[0]), "is missing: an input length has no natural range")
     if (lengthy and missing) or any(amount != amount for amount in amounts):  # NaN
         return
     start, stop, step = description._range(which)

@@ -102,8 +102,8 @@ def _check_carried(linkage: Linkage) -> None:
     ]
     if held:
         raise InputError(
-            f"an inversion of {linkage.name} would have to carry [{held[0]}] to another ground, "
-            "which it cannot: remove it, or write the inversion by hand"
+            f"an inversion of {linkage.name} cannot move [{held[0]}] to another ground: "
+            "remove it, or write the inversion by hand"
         )
 
 

@@ -56,7 +56,7 @@ def inverted_input(linkage: Linkage, which: Input, frame: Frame) -> Input:
             link, against = against, link
     if frame.ground in (link, against) and len(linkage.links[frame.ground]) < 2:
         raise InputError(
-            f'the input turns against "{frame.ground}", which has one point and no direction: '
+            f'the input turns relative to "{frame.ground}", which has one point and no direction: '
             "give input= for the inversion"
         )
     turn = linkage.angle.from_radians(frame.turn) if against == GROUND else 0.0

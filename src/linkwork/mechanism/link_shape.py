@@ -372,7 +372,9 @@ def _upright(z: Mapping[str, complex], points: tuple[str, ...]) -> dict[str, com
     """Move the first point to the origin and the second onto the positive real axis."""
     axis = z[points[1]] - z[points[0]]
     if axis == 0:
-        raise ShapeError(f"{points[0]} and {points[1]} coincide: a link's angle needs two places")
+        raise ShapeError(
+            f"{points[0]} and {points[1]} coincide: the angle of a link needs two places"
+        )
     size = abs(axis)
     turned = {p: (z[p] - z[points[0]]) * axis.conjugate() / size for p in points[2:]}
     return {points[0]: 0j, points[1]: size + 0j, **turned}

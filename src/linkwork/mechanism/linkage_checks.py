@@ -66,7 +66,7 @@ def _check_points(linkage: JoinedBodies, problems: Problems) -> None:
 
 def _check_links(linkage: JoinedBodies, problems: Problems) -> None:
     if GROUND not in linkage.links:
-        problems.add(("links",), '"ground" is missing: the link that stands still')
+        problems.add(("links",), '"ground" is missing: name the fixed link')
     alone = {GROUND} | {slider.link for slider in linkage.of(Slider)}
     alone |= turning_links(linkage)
     for link, points in linkage.links.items():
@@ -109,7 +109,7 @@ def _check_shared_points(linkage: JoinedBodies, problems: Problems) -> None:
         advice = (
             "a cylinder between them cannot change its length"
             if key[0] != "links"
-            else f"they move as one: make one link of {_union(linkage, other, points)}"
+            else f"they move as one body: make one link of {_union(linkage, other, points)}"
         )
         problems.add(key, f'shares {common[0]} and {common[1]} with "{other}": {advice}')
 
@@ -129,8 +129,8 @@ def _check_guided_once(linkage: JoinedBodies, problems: Problems) -> None:
         if other != part.label:
             problems.add(
                 (*key, field),
-                f'point "{point}" is guided twice by "{on}": "{other}" already leads it along '
-                "a line there, and a second line leaves it no freedom",
+                f'point "{point}" is guided twice by "{on}": "{other}" already guides it along '
+                "a line, and a second line would fix it",
             )
 
 
@@ -195,7 +195,7 @@ def _check_input(
     """The driven quantity in a comparable form, or ``None`` after reporting."""
     kind, name = which.drives
     if which.relative_to is not None and kind != "link":
-        problems.add((*key, "relative_to"), "goes with link only")
+        problems.add((*key, "relative_to"), "is used with link only")
         return None
     if kind == "variable":
         message = "belongs to [loops] and [equations]: use link, slider or cylinder"
@@ -224,10 +224,10 @@ def _check_angle_input(
             problems.add((*key, field), _no_link(linkage, name))
             return None
     if link == GROUND:
-        problems.add((*key, "link"), "ground stands still: drive another link")
+        problems.add((*key, "link"), "ground is fixed: drive another link")
         return None
     if link == against:
-        problems.add((*key, "relative_to"), f'"{link}" has no angle against itself')
+        problems.add((*key, "relative_to"), f'"{link}" has no angle relative to itself')
         return None
     return tuple(sorted((link, against)))
 

@@ -33,7 +33,7 @@ class _Equations(Description):
             key = self.input_key(k)
             kind, name = which.drives
             if kind != "variable" or which.relative_to is not None:
-                problems.add(key, 'must name a variable of the equations, only: variable = "…"')
+                problems.add(key, 'must name only a variable of the equations: variable = "…"')
                 continue
             if canonical(name) not in known:
                 problems.add(

@@ -29,7 +29,7 @@ class Quantity:
     axis: int = 0
 
     def of(self, description: Description) -> float:
-        """Its value in a description, everyday units."""
+        """Its value in a description, file units."""
         return description.numbers(self.written(description))
 
     def written(self, description: Description) -> Number:
@@ -79,7 +79,7 @@ def quantity_named(description: Description, name: str) -> Quantity:
     if wanted not in found:
         names = [quantity.name for quantity in found.values()]
         raise UnknownNameError(
-            f'"{name}" is no number of {description.name} that can vary '
+            f'"{name}" is not a number of {description.name} that can vary '
             f"{choices('numbers', names, name)}"
         )
     return found[wanted]

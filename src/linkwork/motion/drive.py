@@ -48,5 +48,5 @@ class Drive:
 
     @property
     def unit(self) -> float:
-        """Internal units per everyday unit of t."""
+        """Internal units per file unit of t."""
         return float(self.model.input_scale[self.lead])

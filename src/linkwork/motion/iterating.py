@@ -36,9 +36,9 @@ def iterates(
     Parameters
     ----------
     guess : Mapping[str, number], optional
-        Unknowns in everyday units; those left out start where the mechanism's own guess does.
+        Unknowns in file units; those left out start where the mechanism's own guess does.
     at : number or Mapping[str, number], optional
-        Input value(s) in everyday units; the guess's own if left out.
+        Input value(s) in file units; the guess's own if left out.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def pulled_guess(
     Returns
     -------
     dict[str, float]
-        All unknowns in everyday units; as they were where none of them moves the point.
+        All unknowns in file units; as they were where none of them moves the point.
 
     Raises
     ------
@@ -95,7 +95,7 @@ def pulled_guess(
     if point not in names:
         raise UnknownNameError(f'there is no point "{point}" {choices("points", names, point)}')
     if not np.isfinite(place).all():
-        raise InputError(f"the place of {point} must be two finite numbers, got {place}")
+        raise InputError(f"the coordinates of {point} must be two finite numbers, got {place}")
     v = model.equations.start.copy()
     v[len(unknowns) :] = target_values(model, at) * model.input_scale
     wanted = complex(*place)

@@ -185,7 +185,7 @@ def end_at_dead_point(
 
 
 def dead_point_limit(drive: Drive, turn: TurningPoint) -> Limit:
-    """What is told of a dead point, everyday units."""
+    """What is told of a dead point, file units."""
     return _located(drive, turn, LimitKind.DEAD_POINT, _locking(drive, turn.v))
 
 
@@ -196,7 +196,7 @@ def _locking(drive: Drive, v: Array) -> tuple[int, ...]:
 
 
 def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
-    """What is told of a change point between two curves, everyday units."""
+    """What is told of a change point between two curves, file units."""
     leads = drive.leads
     p = leads.parameter
     rates = []

@@ -56,7 +56,7 @@ class Model:
         return replace(self, equations=equations, branch=position.configuration or self.branch)
 
     def guessed(self, values: Mapping[str, float]) -> Model:
-        """The model with another guess for some unknowns, everyday units.
+        """The model with another guess for some unknowns, file units.
 
         Raises
         ------
@@ -90,7 +90,7 @@ class Model:
 
     @cached_property
     def input_scale(self) -> Array:
-        """Internal units per everyday unit of each input, (p,)."""
+        """Internal units per file unit of each input, (p,)."""
         return np.array([self.units.scale(Kind(v.kind)) for v in self.equations.inputs])
 
     @property
@@ -109,7 +109,7 @@ class Model:
 
     @cached_property
     def everyday_rows(self) -> Array:
-        """The table's input values as asked, everyday units, (rows, p)."""
+        """The table's input values as asked, file units, (rows, p)."""
         columns = [self.description.rows(which) for which in self.description.inputs]
         if not columns:
             return np.zeros((1, 0))
@@ -118,7 +118,7 @@ class Model:
 
     @cached_property
     def everyday_start(self) -> Array:
-        """The input values the guess belongs to, everyday units, (p,)."""
+        """The input values the guess belongs to, file units, (p,)."""
         values = [
             self.units.angle.from_radians(float(value)) if variable.kind == "angle" else value
             for variable, value in zip(self.equations.inputs, self.start_inputs, strict=True)
@@ -137,7 +137,7 @@ class Model:
 
     @property
     def input_units(self) -> dict[str, str]:
-        """The everyday unit of every input."""
+        """The file unit of every input."""
         return {v.name: self.units.of(Kind(v.kind)) for v in self.equations.inputs}
 
     @cached_property
@@ -155,7 +155,7 @@ class Model:
         return input_speed(self.description, self.equations.inputs, self.rows)
 
     def input_values(self, at: dict[str, float]) -> Array:
-        """Named everyday input values as an array, everyday units, (p,).
+        """Named everyday input values as an array, file units, (p,).
 
         Raises
         ------

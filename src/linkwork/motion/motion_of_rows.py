@@ -1,4 +1,4 @@
-"""Solved rows as a motion: every quantity by its name, in everyday units."""
+"""Solved rows as a motion: every quantity by its name, in file units."""
 
 from __future__ import annotations
 

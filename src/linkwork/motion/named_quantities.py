@@ -1,4 +1,4 @@
-"""Turning solved arrays into named quantities in everyday units."""
+"""Turning solved arrays into named quantities in file units."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def named_series(
     v, first, second : (B, N)
         Variables with their derivatives by the leading input, internal units.
     inputs : (B, p)
-        The input values asked for, everyday units (they may differ from ``v`` by whole turns).
+        The input values asked for, file units (they may differ from ``v`` by whole turns).
     """
     lost = ~found
     columns = [np.where(lost[:, None], np.nan, part) for part in (v, first, second)]
@@ -126,7 +126,7 @@ def _outputs(
     points: dict[str, tuple[Jet, Jet]],
     count: int,
 ) -> dict[str, Series]:
-    """Formulas see everyday units; derivatives of angles come back in radians."""
+    """Formulas see file units; derivatives of angles come back in radians."""
     if not model.equations.outputs:
         return {}
 

@@ -30,7 +30,7 @@ def nearest_assembly(
     Parameters
     ----------
     at : number or Mapping[str, number], optional
-        Input value(s) in everyday units; the guess's own if left out.
+        Input value(s) in file units; the guess's own if left out.
 
     Raises
     ------

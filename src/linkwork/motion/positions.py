@@ -64,7 +64,7 @@ def found_message(status: Status, condition: float, failure: Failure | None = No
 
 
 def target_values(model: Model, at: float | Mapping[str, float] | None) -> Array:
-    """The input values asked for, everyday units, (p,); the guess's own for ``None``.
+    """The input values asked for, file units, (p,); the guess's own for ``None``.
 
     Raises
     ------

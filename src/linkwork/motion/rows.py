@@ -19,7 +19,7 @@ __all__ = ["SolvedRows"]
 class SolvedRows:
     """B rows; ``v``, ``first``, ``second`` (B, N) are NaN where there is no position.
 
-    ``inputs`` (B, p): what was asked, everyday units. ``branch``, ``limit``: names, or "".
+    ``inputs`` (B, p): what was asked, file units. ``branch``, ``limit``: names, or "".
     """
 
     inputs: Array

@@ -11,8 +11,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
-from linkwork.motion import failure as why
-from linkwork.motion import following
+from linkwork.motion import failure as why, following
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import named_series
 from linkwork.motion.positions import (
@@ -52,7 +51,7 @@ def solve(
     Parameters
     ----------
     at : number or Mapping[str, number], optional
-        Input value(s) in everyday units; the guess's own if left out.
+        Input value(s) in file units; the guess's own if left out.
     from_guess : bool
         Start Newton-Raphson at the asked value directly, as the textbook's example does.
     certify : bool
@@ -140,7 +139,7 @@ def _other_root(model: Model, found: Array) -> Failure | None:
 def failed_position(
     model: Model, target: Array, status: Status, failure: Failure | None, start: Start
 ) -> Position:
-    """No position at the values (p,), everyday units, with the reason and what was tried."""
+    """No position at the values (p,), file units, with the reason and what was tried."""
     nothing = np.full((1, model.compiled.solver.variables), np.nan)
     named = named_series(model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool))
     evidence = Evidence(

@@ -21,7 +21,7 @@ from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Limit, LimitKind, Motion
 
-__all__ = ["renewed"]
+__all__ = ["warm_started"]
 
 _STEPS = 8  # of Newton-Raphson; a neighbour needs three or four
 _NEAR = 0.2  # rad, or of the longest link: what a row may move by from one design to the next
@@ -30,7 +30,7 @@ _GROWTH = 12  # rows by which a dead point may recede from one design to the nex
 _SAME = 1e-9  # rad: a table over a whole turn ends where it begins
 
 
-def renewed(model: Model, before: Motion) -> Motion | None:
+def warm_started(model: Model, before: Motion) -> Motion | None:
     """The positions of a design from those of a neighbour, all rows at once.
 
     Newton-Raphson starts every row from the neighbour's. Where dead points bound the motion, rows

@@ -13,7 +13,7 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
-from linkwork.foundation.showing import shower
+from linkwork.foundation.presenting import presenter
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit, Motion
 from linkwork.results.summary import circuits_summary
@@ -30,7 +30,7 @@ class Branch:
     name : str
         ``circuit 1 branch 2``.
     input_range : (float, float)
-        Smallest and largest value of the leading input, everyday units, unwrapped.
+        Smallest and largest value of the leading input, file units, unwrapped.
     configuration : str
         The name of its configuration at the guess's own input, "" if it does not come by there.
     certified : bool
@@ -60,7 +60,7 @@ class Circuit:
         Whether the curve is proved to be one curve, and to close; up to a millionth of a radian
         at change points.
     input_range : (float, float)
-        Of the leading input, everyday units, unwrapped.
+        Of the leading input, file units, unwrapped.
     turns : int, optional
         Turns of the input until the circuit closes: 0 if it turns back; ``None`` if it does not
         close or the input is a length.
@@ -73,7 +73,7 @@ class Circuit:
         Of diag(1/s) J diag(w) along the circuit, 0 at dead points and change points: J by all
         unknowns, the input known; the equations divided by a length s of their loop, the unknowns
         measured by w, 1 rad or a length. ``weakest`` is the input value at which it is smallest
-        [everyday units]. Both to rounding.
+        [file units]. Both to rounding.
     motion : Motion
         Positions along the circuit in the order of travel, branch by branch.
     """
@@ -197,15 +197,14 @@ class Circuits:
         UnknownNameError
             For a name that does not exist.
         """
-        return shower("Circuits.plot")(self, *names, kind=kind, ax=ax, theme=theme, title=title)
+        return presenter(Circuits.plot)(self, *names, kind=kind, ax=ax, theme=theme, title=title)
 
     def __repr__(self) -> str:
         return str(circuits_summary(self))
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        shown: str = shower("Circuits.html")(self)
-        return shown
+        return presenter(Circuits._repr_html_)(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as in the command line's JSON."""

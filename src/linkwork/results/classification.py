@@ -51,7 +51,7 @@ class LoopType:
 
     @property
     def text(self) -> str:
-        """``crank-rocker (GCRR): Grashof, s + l is 40 mm below p + q``."""
+        """``crank-rocker (GCRR): Grashof, s + l < p + q by 40 mm``."""
         code = f" ({self.barker})" if self.barker else ""
         return f"{self.name}{code}: {self.condition}"
 

@@ -9,7 +9,7 @@ from typing import Any
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
-from linkwork.foundation.showing import shower
+from linkwork.foundation.presenting import presenter
 from linkwork.results.position import Position
 from linkwork.results.summary import configurations_summary
 
@@ -125,8 +125,7 @@ class Configurations:
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        shown: str = shower("Configurations.html")(self)
-        return shown
+        return presenter(Configurations._repr_html_)(self)
 
     def to_dict(self) -> dict[str, Any]:
         """The list as JSON-ready data."""

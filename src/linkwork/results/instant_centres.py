@@ -82,12 +82,12 @@ def instant_centres(position: Position) -> tuple[InstantCentre, ...]:
         raise InputError(f'"{position.mechanism}" has no position here: {position.message}')
     bodies = link_motions(position)
     if len(bodies) < 2:
-        raise InputError(f'"{position.mechanism}" has no links with points: nothing has a centre')
+        raise InputError(f'"{position.mechanism}" has no links with points, so no instant centres')
     lost = [b.link for b in bodies if not (np.isfinite(b.shift[0]) and np.isfinite(b.spin[0]))]
     if lost:
         raise InputError(
             f'"{position.mechanism}" has no instant centres here: '
-            f"the rates of {', '.join(lost)} by the input are not finite or not known"
+            f"the rates of {', '.join(lost)} with respect to the input are not finite or not known"
         )
     size = max((abs(complex(*place)) for place in position.points.values()), default=1.0)
     fastest = max(max(abs(b.shift[0]), abs(b.spin[0]) * size) for b in bodies)

@@ -114,7 +114,7 @@ def _direction(
             with np.errstate(invalid="ignore"):  # rows that were not found are NaN, and stay so
                 return along / np.abs(along), (rates / along).imag
     raise InputError(
-        f'how the link "{link}" turns is not known: give it two points, or its angle a name'
+        f'the rotation of link "{link}" is not known: give it two points, or name its angle'
     )
 
 

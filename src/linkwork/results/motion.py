@@ -17,7 +17,7 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.names import spelled
-from linkwork.foundation.showing import shower
+from linkwork.foundation.presenting import presenter
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
@@ -31,7 +31,7 @@ __all__ = ["Limit", "LimitKind", "Motion", "OutputLimit", "Series"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Series:
-    """One quantity over all rows: values in everyday units, derivatives in radians and lengths."""
+    """One quantity over all rows: values in file units, derivatives in radians and lengths."""
 
     quantity: Quantity
     value: Array
@@ -50,7 +50,7 @@ class Motion:
     Parameters
     ----------
     inputs : Mapping[str, array (N,)]
-        Input values in everyday units.
+        Input values in file units.
     input_units : Mapping[str, str]
         Their units.
     derivative_unit : str
@@ -250,8 +250,16 @@ class Motion:
         UnknownNameError
             For a name that does not exist.
         """
-        options: dict[str, Any] = {"kind": kind, "against": against, "wrapped": wrapped}
-        return shower("Motion.plot")(self, *names, ax=ax, theme=theme, title=title, **options)
+        return presenter(Motion.plot)(
+            self,
+            *names,
+            kind=kind,
+            against=against,
+            wrapped=wrapped,
+            ax=ax,
+            theme=theme,
+            title=title,
+        )
 
     def animate(
         self,
@@ -281,7 +289,7 @@ class Motion:
         MissingPackageError
             Without what writes the format.
         """
-        shower("Motion.animate")(self, path, options=options, progress=progress)
+        presenter(Motion.animate)(self, path, options=options, progress=progress)
 
     def widget(self) -> Any:
         """The motion in a notebook, to play and to drag; needs the extra ``notebook``.
@@ -298,15 +306,14 @@ class Motion:
         MissingPackageError
             Without anywidget.
         """
-        return shower("Motion.widget")(self)
+        return presenter(Motion.widget)(self)
 
     def __repr__(self) -> str:
         return str(motion_summary(self))
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        shown: str = shower("Motion.html")(self)
-        return shown
+        return presenter(Motion._repr_html_)(self)
 
     @property
     def counts(self) -> Counter[Status]:

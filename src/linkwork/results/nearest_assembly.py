@@ -37,7 +37,7 @@ class NearestAssembly:
     Parameters
     ----------
     input, unknowns : Mapping[str, float]
-        Everyday units.
+        File units.
     points : Mapping[str, (x, y)]
         Coordinates of every point, each reached from ground by one way around its loop.
     gaps : Mapping[str, (x, y)]

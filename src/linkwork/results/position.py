@@ -13,7 +13,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.names import spelled
-from linkwork.foundation.showing import shower
+from linkwork.foundation.presenting import presenter
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
@@ -51,7 +51,7 @@ class NewtonStep:
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonTrail:
-    """The iterates of one block of equations, in everyday units.
+    """The iterates of one block of equations, in file units.
 
     ``residual`` in the steps is the 2-norm of the block's real equations in their own unit,
     ``step`` the largest weighted change of an unknown.
@@ -163,8 +163,7 @@ class Position:
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        shown: str = shower("Position.html")(self)
-        return shown
+        return presenter(Position._repr_html_)(self)
 
     def to_dict(self) -> dict[str, Any]:
         """The position as JSON-ready data: NaN becomes null, the status its member name."""

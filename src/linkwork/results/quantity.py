@@ -39,7 +39,7 @@ class Units:
         return {Kind.ANGLE: "rad", Kind.LENGTH: self.length}.get(kind, "1")
 
     def scale(self, kind: Kind) -> float:
-        """Internal units (radians) per everyday unit."""
+        """Internal units (radians) per file unit."""
         return self.angle.radians if kind is Kind.ANGLE else 1.0
 
 
@@ -91,8 +91,8 @@ class Rate(Enum):
         if self.by_time and speed is None:
             by_input = Rate.FIRST if self.order == 1 else Rate.SECOND
             raise UnknownNameError(
-                f'there is no "{name}.{self.value}" without a speed of the input: give it one '
-                f'(speed in [input]), or ask for "{name}.{by_input.value}", which is by the input'
+                f'"{name}.{self.value}" needs the speed of the input: set speed in [input], or '
+                f'use "{name}.{by_input.value}", the derivative with respect to the input'
             )
 
     def of(self, first: Array, second: Array, speed: Array | float | None) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from linkwork.results.circuits import Circuits
-    from linkwork.results.configurations import Configurations
+    from linkwork.results.configurations import Configurations, PathCount
     from linkwork.results.motion import Motion
     from linkwork.results.position import Position
 
@@ -20,6 +20,7 @@ __all__ = [
     "configurations_summary",
     "motion_summary",
     "position_summary",
+    "solution_counts",
 ]
 
 
@@ -67,11 +68,14 @@ def configurations_summary(found: Configurations) -> Summary:
         certified = "certified" if position.certificate.certified else "not certified"
         rows.append((position.configuration, f"{values}  {certified}"))
     rows.append(("completeness", found.message))
-    paths = [
-        f"{count.real} real of {count.finite + count.multiple} solutions" for count in found.paths
-    ]
-    rows.append(("paths", "; ".join(paths)))
+    rows.append(("paths", "; ".join(map(solution_counts, found.paths))))
     return Summary(head, tuple(rows))
+
+
+def solution_counts(count: PathCount) -> str:
+    """``6 complex solutions, 4 of them real``."""
+    finite = count.finite + count.multiple
+    return f"{finite} complex solution{'' if finite == 1 else 's'}, {count.real} of them real"
 
 
 def circuits_summary(circuits: Circuits) -> Summary:

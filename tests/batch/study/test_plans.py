@@ -142,7 +142,7 @@ x = "mew <= 40"
         edited(('"O2 A"', '"O2 X"')),
         """\
 1 problem in plan.toml
-  line 10  dimensions."O2 X"  "O2 X" is no number of Four-bar linkage, open that can vary (numbers: O2 A, O2 O4, A B, O4 B, O2.x, O2.y, A.x, A.y, … 4 more)""",
+  line 10  dimensions."O2 X"  "O2 X" is not a number of Four-bar linkage, open that can vary (numbers: O2 A, O2 O4, A B, O4 B, O2.x, O2.y, A.x, A.y, … 4 more)""",
     ),
     "one number given twice": (
         edited(('"A B"', '"A O2"')),
@@ -154,7 +154,7 @@ x = "mew <= 40"
         HEAD + 'sampling = "grid"\n[dimensions]\n"O2 A" = 40\n',
         """\
 1 problem in plan.toml
-  line 4  dimensions  needs something that varies: values: [40, 50, 60] or { from = 40, to = 60, levels = 3 }""",
+  line 4  dimensions  varies nothing: values: [40, 50, 60] or { from = 40, to = 60, levels = 3 }""",
     ),
     "a grid with a count": (
         HEAD + 'sampling = "grid"\ncount = 3\n[dimensions]\n"O2 A" = { from = 1, to = 2 }\n',

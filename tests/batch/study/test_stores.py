@@ -361,7 +361,7 @@ def test_another_study_is_refused_with_what_differs(whole: Path, tmp_path: Path)
         "  input.rows: 12 there, 23 here\n"
         "  reductions.swing: stroke(rocker) there, nothing here\n"
         "  filters.transmission: min(mu) >= 25 there, min(mu) >= 26 here\n"
-        "Give another name to store this one, or begin again with --fresh, which takes the old "
+        "Choose another store, or start over with --fresh, which takes the old "
         "one away."
     )
     assert contents(whole) == before
@@ -384,7 +384,7 @@ def test_fresh_begins_again_and_takes_nothing_else_away(whole: Path, tmp_path: P
         with pytest.raises(InputError) as caught:
             run_study(study(), tmp_path / "notes", fresh=fresh)
         assert str(caught.value) == (
-            f'"{tmp_path / "notes"}" is there and is no store of a study: give another name'
+            f'"{tmp_path / "notes"}" exists and is not the store of a study: choose another name'
         )
     assert (tmp_path / "notes" / "zarr.json").exists()
 

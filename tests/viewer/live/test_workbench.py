@@ -12,8 +12,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.mechanism.linkage import Linkage
-from linkwork.viewer.live import events as tell
-from linkwork.viewer.live import requests as ask
+from linkwork.viewer.live import events as tell, requests as ask
 from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.workbench import Workbench
 from linkwork.viewer.packing import unpacked
@@ -498,7 +497,7 @@ def test_newton_says_which_trouble_it_met(tmp_path: Path) -> None:
 
 def test_wrong_names_and_numbers_are_refused_with_what_exists(bench: Workbench) -> None:
     requests: list[tuple[ask.Request, str]] = [
-        (ask.SetNumber(name="zz", value=1), '"zz" is no number of Four-bar that can vary'),
+        (ask.SetNumber(name="zz", value=1), '"zz" is not a number of Four-bar that can vary'),
         (ask.MovePoint(point="Z", x=0, y=0), 'there is no point "Z" (points: O2, A, B, O4, P)'),
         (ask.AddPoint(name="A", x=0, y=0), '"A" is already in [points]: choose another name'),
         (ask.AddLink(name="crank", points=("A",)), '"crank" is already in [links]'),
@@ -510,8 +509,8 @@ def test_wrong_names_and_numbers_are_refused_with_what_exists(bench: Workbench) 
         (ask.SolveAt(at={"zz": 1}), '"zz" is not an input of Four-bar (inputs: crank)'),
         (ask.NewtonSteps(guess={"x": 1}, at={}), '"x" is not an unknown of Four-bar'),
         (ask.NewtonSteps(guess={}, at={}, max_steps=0), "max_steps must be from 1 to 200"),
-        (ask.Undo(), "there is nothing to take back"),
-        (ask.Redo(), "there is nothing to do again"),
+        (ask.Undo(), "there is nothing to undo"),
+        (ask.Redo(), "there is nothing to redo"),
     ]
     for request, message in requests:
         assert only(bench.handle(request), tell.Refused).message.startswith(message)

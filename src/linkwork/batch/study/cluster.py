@@ -60,8 +60,8 @@ def cluster_crew(job: Job, tasks: Iterable[Task], scheduler: str) -> Iterator[tu
             ) from None
         except distributed.KilledWorker as error:
             raise InputError(
-                "workers ended again and again over the same designs, perhaps for want of "
-                f"memory: make chunk smaller ({error})"
+                "workers ended repeatedly on the same designs, perhaps for lack of "
+                f"memory: reduce chunk ({error})"
             ) from None
 
 

@@ -92,7 +92,7 @@ def computed(job: Job, values: Mapping[str, Array | float]) -> Part:
     Parameters
     ----------
     values : Mapping[str, (D,) or number]
-        What varies, everyday units.
+        What varies, file units.
 
     Raises
     ------

@@ -308,7 +308,7 @@ def _digest(plan: Plan) -> str:
 
 
 def _units(motion: FamilyMotion, names: set[str]) -> dict[str, str]:
-    """The everyday units of quantities."""
+    """The file units of quantities."""
     if not names:
         return {}
     arrays = motion.to_xarray(*names)

@@ -108,7 +108,7 @@ def attributes_of(path: Path) -> Mapping[str, Any]:
         found[_IDENTITY] = json.loads(found[_IDENTITY])
     except (OSError, ValueError, KeyError, TypeError):
         raise InputError(
-            f'"{path}" is there and is no store of a study: give another name'
+            f'"{path}" exists and is not the store of a study: choose another name'
         ) from None
     attributes: Mapping[str, Any] = found
     return attributes
@@ -159,8 +159,8 @@ def _check_same(study: Study, path: Path) -> None:
     if told := "\n".join(_differences(there, here)):
         raise InputError(
             f'"{path}" holds another study:\n{told}\n'
-            "Give another name to store this one, or begin again with --fresh, "
-            "which takes the old one away."
+            "Choose another store, or start over with --fresh, "
+            "which deletes the old study."
         )
 
 

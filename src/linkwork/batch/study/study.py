@@ -98,7 +98,7 @@ class Study:
         return range(start, min(start + self.chunk_size, self.plan.count))
 
     def varied(self, k: int) -> dict[str, Array]:
-        """What varies in a chunk, everyday units, (designs,) each."""
+        """What varies in a chunk, file units, (designs,) each."""
         designs = self.designs_of(k)
         return values_between(self.plan, designs.start, designs.stop)
 

@@ -112,8 +112,8 @@ class _Processes:
                 raise InputError(answer)
             return answer
         raise InputError(
-            f"worker processes ended {_MOST_DEATHS} times over the same designs, perhaps for want "
-            "of memory: make chunk smaller, or ask for fewer --workers"
+            f"worker processes ended {_MOST_DEATHS} times on the same designs, perhaps for lack "
+            "of memory: reduce chunk or --workers"
         )
 
     def end(self) -> None:

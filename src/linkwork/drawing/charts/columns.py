@@ -48,7 +48,7 @@ class Column:
         What it measures, in a word: ``angle``, ``length``, ``velocity``; columns of one measure
         and unit share a panel. "" for numbers that share it with nothing.
     values : array (N,)
-        Everyday units, NaN where there is no position.
+        File units, NaN where there is no position.
     turn : float
         A full turn in that unit, 0 if it is no angle.
     slope : array (N,), optional
@@ -105,7 +105,7 @@ def column_of(motion: Motion, name: str) -> Column:
         return Column(name=name, label=label, unit="", measure="", values=values, scale=scale,
                       pen=pen)  # fmt: skip
     if name in _TEXTS:
-        raise InputError(f'"{name}" is text: there is nothing to plot but numbers')
+        raise InputError(f'"{name}" is text and cannot be plotted')
     own = spelled(name, motion.inputs)
     if own in motion.inputs:
         return _input(motion, own)
@@ -222,13 +222,13 @@ def _time(motion: Motion) -> Column:
     lead = lead_of(motion)
     if motion.speed is None:
         raise InputError(
-            f"there is no time without a speed of the input: give {lead} one in [input], as in "
+            f"a plot over time needs the speed of {lead}: set it in [input], as in "
             f'speed = "{_speed_of(motion)}", or plot against {lead}'
         )
     if len(set(motion.branch) - {""}) > 1:
         raise InputError(
-            f"there is no time along several branches: {lead} turns back between them, so it has "
-            f"no steady speed; plot against {lead}, or sweep one branch"
+            f"several branches have no common time: {lead} reverses between them, so its speed "
+            f"is not constant; plot against {lead}, or sweep one branch"
         )
     values = motion.inputs[lead]
     angle = motion.input_units[lead] == motion.units.angle.value

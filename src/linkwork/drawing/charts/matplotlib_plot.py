@@ -14,7 +14,7 @@ from linkwork.drawing.charts.chart import Chart, Shape
 from linkwork.drawing.charts.matplotlib_page import draw_page, legend_entries
 from linkwork.drawing.charts.matplotlib_panel import draw_panel
 from linkwork.drawing.charts.page import KEY, SMALL, TITLE
-from linkwork.drawing.charts.plotting import circuits_plot, motion_plot
+from linkwork.drawing.charts.plotting import PlotKind, circuits_plot, motion_plot
 from linkwork.drawing.charts.theme import ChartTheme, chart_theme
 from linkwork.drawing.matplotlib_writer import house_settings
 from linkwork.foundation.errors import InputError
@@ -35,25 +35,29 @@ _ROW = 1.7  # height of a row of the legend, in sizes of its letters
 def plot_motion(
     motion: Motion,
     *names: str,
+    kind: str = PlotKind.CURVES.value,
+    against: str = "",
+    wrapped: bool = False,
     ax: Any = None,
     theme: str = "light",
     title: str | None = None,
-    **options: Any,
 ) -> PlotAxes:
     """Plot a motion; see :meth:`linkwork.results.motion.Motion.plot`."""
-    return plot_chart(motion_plot(motion, names, **options), ax=ax, theme=theme, title=title)
+    chart = motion_plot(motion, names, kind=kind, against=against, wrapped=wrapped)
+    return plot_chart(chart, ax=ax, theme=theme, title=title)
 
 
 def plot_circuits(
     circuits: Circuits,
     *names: str,
+    kind: str = PlotKind.CIRCUITS.value,
     ax: Any = None,
     theme: str = "light",
     title: str | None = None,
-    **options: Any,
 ) -> PlotAxes:
     """Plot circuits; see :meth:`linkwork.results.circuits.Circuits.plot`."""
-    return plot_chart(circuits_plot(circuits, names, **options), ax=ax, theme=theme, title=title)
+    chart = circuits_plot(circuits, names, kind=kind)
+    return plot_chart(chart, ax=ax, theme=theme, title=title)
 
 
 def plot_chart(

@@ -48,7 +48,7 @@ def transmission_chart(motion: Motion, names: Sequence[str] = (), *, against: st
     found = transmission_angles(motion)
     if not names and not found:
         raise InputError(
-            f'"{motion.mechanism}" has no two links of which the transmission angle is known: '
+            f'"{motion.mechanism}" has no pair of links with a known transmission angle: '
             'add it to [outputs], as in mu = "rocker - coupler", and name it'
         )
     pins = {dyad.pin: dyad for dyad in found}
@@ -104,7 +104,7 @@ def _column(
         column = column_of(motion, name)
         if not column.turn:
             raise UnknownNameError(
-                f'"{name}" is no angle {choices("pins", pins, name)}; name a pin between two '
+                f'"{name}" is not an angle {choices("pins", pins, name)}; name a pin between two '
                 "links, or an angle"
             )
         label = column.label

@@ -73,8 +73,8 @@ def _programmed(rows: PartRows, cam: Cam, key: Key) -> None:
         roller = " or a smaller roller" if cam.contact == "roller" else ""
         rows.problems.add(
             (*key, "segments"),
-            f"undercut the cam {where:.4g} {frames.linkage.angle.value} after they begin: "
-            f"its outline would cut into itself; take a larger base circle{roller}",
+            f"undercut the cam {where:.4g} {frames.linkage.angle.value} after their start: "
+            f"its outline would intersect itself; use a larger base circle{roller}",
         )
         return
     rows.outlines[cam.name] = (cam.cam, cam.center, outline)
@@ -110,14 +110,14 @@ def _check_hollows(rows: PartRows, cam: Cam, outline: Outline, key: Key) -> None
     where = f"({place.real:.4g}, {place.imag:.4g})"
     if cam.contact == "flat" and bend <= 0.0:
         rows.problems.add(
-            key, f"is hollow at {where}: a flat face bridges it; round the outline there"
+            key, f"is concave at {where}, where a flat face cannot follow: make it convex"
         )
     size = rows.frames.linkage.numbers(cam.radius)
     if 1.0 + size * bend <= 0.0:
         rows.problems.add(
             key,
-            f"is too hollow at {where}: its radius there is {-1.0 / bend:.4g}, smaller than "
-            "that of the roller",
+            f"is too concave at {where}: its radius of curvature is {-1.0 / bend:.4g}, "
+            "smaller than that of the roller",
         )
 
 

@@ -100,7 +100,7 @@ def _best(equations: LoopEquations, poses: Poses) -> Joints:
         try:
             joints = joints_of(ways, equations.length_scale)
             if joints.mobility != freedom:
-                raise NotRead("the equations do not tell which pins of its loops are the same")
+                raise NotRead("the equations do not determine which pins of its loops are the same")
             driven = inputs_at_joints(equations, joints)
         except NotRead as error:
             why.append(error)
@@ -135,7 +135,7 @@ class _Drawing:
         self.places = {link: dict(self._pins_of(link)) for link in self.names.links}
         rails = [self._rail(*slide) for slide in self._outwards()]
         if not self.places[self.joints.ground]:  # nothing but a line of a slide stands still
-            raise NotRead("no vector begins at a link that stands still")
+            raise NotRead("no vector begins at a fixed link")
         self._move_ground()
         names, shapes = self.names.links, self.places
         return Linkage(

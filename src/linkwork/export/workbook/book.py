@@ -141,7 +141,7 @@ class Book:
         return self.model.units.of(Kind(kind))
 
     def scale(self, variable: Variable) -> float:
-        """Internal units per everyday unit."""
+        """Internal units per file unit."""
         return self.model.units.scale(Kind(variable.kind))
 
     def text(self, formula: CellFormula, **instead: str) -> str:

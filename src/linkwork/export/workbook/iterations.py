@@ -29,7 +29,7 @@ class Iterations:
     rows : (R,)
         Numbers of the rows among those of the motion.
     values : (K + 1, R, N)
-        Unknowns at every iterate, inputs behind them, everyday units; NaN without a position.
+        Unknowns at every iterate, inputs behind them, file units; NaN without a position.
     above : (R,)
         The row from which each row starts, -1 where it starts from an estimate of its own.
     found, live : (R,) bool
@@ -94,7 +94,7 @@ def iterated(model: Model, motion: Motion, closure: ClosureFormulas) -> Iteratio
 
 
 def _everyday(model: Model) -> Array:
-    """Internal units per everyday unit of all variables, (N,)."""
+    """Internal units per file unit of all variables, (N,)."""
     turns = np.array([v.kind == "angle" for v in model.equations.variables])
     return np.where(turns, model.equations.angle.radians, 1.0)
 

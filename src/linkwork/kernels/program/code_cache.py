@@ -85,8 +85,8 @@ def _write(path: Path, source: str) -> None:
         os.replace(part.name, path)
     except OSError as error:
         raise InputError(
-            f"compiled code cannot be kept in {path.parent} ({error.strerror}): "
-            f"name another folder in {FOLDER}, or ask for specialised=False"
+            f"compiled code cannot be stored in {path.parent} ({error.strerror}): "
+            f"name another folder in {FOLDER}, or use specialised=False"
         ) from None
 
 

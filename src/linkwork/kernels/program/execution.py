@@ -47,7 +47,7 @@ class Gear:
             )
         if self.device == "gpu" and self.specialised is False:
             raise InputError(
-                "a graphics card runs nothing but compiled equations: leave out "
+                "a graphics card runs compiled equations only: leave out "
                 'specialised=False or device="gpu"'
             )
 

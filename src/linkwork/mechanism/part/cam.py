@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 from linkwork.foundation.errors import choices
-from linkwork.foundation.file_keys import Key, Tables, Text
-from linkwork.foundation.file_keys import Number as NumberKey
+from linkwork.foundation.file_keys import Key, Number as NumberKey, Tables, Text
 from linkwork.mechanism.bodies import GROUND, Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Contour, Disc, Figure, Outlines
@@ -166,7 +165,7 @@ class Cam(NamedPart):
         elif self.contact == "roller":
             checks.positive(self.radius, "radius", "radius")
         elif self.radius != 0:
-            checks.add(f"goes with a roller, this is a {self.contact}", "radius")
+            checks.add(f"is used with a roller only, the contact is {self.contact}", "radius")
         if bool(self.segments) == bool(self.profile):
             what = "both" if self.segments else "neither"
             checks.add(f"needs either segments or a profile, it has {what}")
@@ -174,13 +173,13 @@ class Cam(NamedPart):
             self._check_segments(checks)
         else:
             if self.base is not None:
-                checks.add("goes with segments: a profile has its own size", "base")
+                checks.add("is used with segments only: a profile contains its own size", "base")
             checks.outline(self.profile, "profile", closed=True)
 
     def _check_follower(self, checks: PartChecks) -> None:
         if (self.slider is None) == (self.link is None):
             what = "both" if self.slider is not None else "neither"
-            checks.add(f"needs a follower, either a slider or a link that swings; it has {what}")
+            checks.add(f"needs a follower, either a slider or an oscillating link; it has {what}")
         elif self.slider is not None:
             self._check_sliding(checks)
         elif self.link is not None and checks.link(self.link, "link"):
@@ -206,20 +205,20 @@ class Cam(NamedPart):
             )
         for field in ("pivot", "point"):
             if getattr(self, field) is not None:
-                checks.add("goes with link, not with slider", field)
+                checks.add("is used with link, not with slider", field)
 
     def _check_swinging(self, checks: PartChecks, link: str) -> None:
         for field in ("pivot", "point"):
             name = getattr(self, field)
             if name is None:
-                checks.add("is missing: a follower that swings needs it", field)
+                checks.add("is missing: an oscillating follower needs it", field)
             else:
                 checks.on(name, link, field)
         if self.pivot is not None and self.pivot == self.point:
             checks.add("must be another point than the pivot", "point")
         if self.pivot is not None and not any(_swinging_frames(checks.linkage, self)):
             checks.add(
-                f"no link carries both {self.center} and {self.pivot}: cam and follower turn on "
+                f"no link carries both {self.center} and {self.pivot}: cam and follower need "
                 "one frame",
                 "pivot",
             )
@@ -244,7 +243,7 @@ class Cam(NamedPart):
                 message = f"{over:g} is too small: at least {_SHORTEST * unit.turn:g}"
                 checks.add(message, "segments", k, "over")
             if segment.law == "dwell" and lift:
-                checks.add("must be 0: a dwell moves nothing", "segments", k, "lift")
+                checks.add("must be 0: a dwell has no rise", "segments", k, "lift")
             overs.append(over)
             lifts.append(lift)
         total = sum(overs)
@@ -256,8 +255,8 @@ class Cam(NamedPart):
         height = sum(lifts)
         if not math.isnan(height) and abs(height) > AGREE * max(map(abs, lifts), default=0.0):
             checks.add(
-                f"end {height:+.10g} away from where they began: a closed cam brings its "
-                "follower back",
+                f"end {height:+.10g} away from their start: on a closed cam the "
+                "follower returns to its start",
                 "segments",
             )
 

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
-from linkwork.foundation.file_keys import Flag, Key, ListOf, Text
-from linkwork.foundation.file_keys import Number as NumberKey
+from linkwork.foundation.file_keys import Flag, Key, ListOf, Number as NumberKey, Text
 from linkwork.mechanism.bodies import GROUND, Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Contour, Figure, Outlines
@@ -89,7 +88,7 @@ class Curve(NamedPart):
         fixed = self.point in checks.linkage.links[self.on]
         if checks.defined(self.point, "point") and fixed:
             checks.add(
-                f'{self.point} is fixed on "{self.on}" and cannot run along its curve', "point"
+                f'{self.point} is fixed on "{self.on}" and cannot move along its curve', "point"
             )
         checks.outline(self.through, "through", closed=self.closed)
 

@@ -7,9 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 from linkwork.foundation.errors import choices
-from linkwork.foundation.file_keys import Key as FileKey
-from linkwork.foundation.file_keys import ListOf, Text
-from linkwork.foundation.file_keys import Number as NumberKey
+from linkwork.foundation.file_keys import Key as FileKey, ListOf, Number as NumberKey, Text
 from linkwork.foundation.lanes import vector
 from linkwork.foundation.names import free_name
 from linkwork.mechanism.bodies import Bodies
@@ -317,7 +315,7 @@ class PartChecks:
             x, y = (self.number(number, field, k) for number in pair)
             places.append(vector(x, y))
         if closed and places[0] == places[-1]:
-            self.add("closes by itself: leave out the last point, it is the first", field)
+            self.add("is closed automatically: leave out the repeated last point", field)
         for k in range(1, len(places)):
             if places[k] == places[k - 1]:
                 self.add("is the same point as the one before", field, k)

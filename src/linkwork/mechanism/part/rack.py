@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from linkwork.foundation.errors import choices
-from linkwork.foundation.file_keys import Key, Text
-from linkwork.foundation.file_keys import Number as NumberKey
+from linkwork.foundation.file_keys import Key, Number as NumberKey, Text
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Disc, Figure, Outlines

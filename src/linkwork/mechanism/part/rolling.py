@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from linkwork.foundation.file_keys import Flag, Key, Text
-from linkwork.foundation.file_keys import Number as NumberKey
+from linkwork.foundation.file_keys import Flag, Key, Number as NumberKey, Text
 from linkwork.mechanism.bodies import GROUND, Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Disc, Figure, Outlines
@@ -125,7 +124,7 @@ class Rolling(NamedPart):
                     checks.on(point, self.on, "line")
             if self.inside or self.circle_radius is not None:
                 field = "inside" if self.inside else "circle_radius"
-                checks.add("goes with circle only", field)
+                checks.add("is used with circle only", field)
         else:
             self._check_circle(checks, radius)
 
@@ -146,7 +145,7 @@ class Rolling(NamedPart):
             )
         size = checks.positive(self.circle_radius, "radius", "circle_radius")
         if self.inside and radius == size:
-            checks.add("equals circle_radius: a wheel inside a circle is smaller", "radius")
+            checks.add("equals circle_radius: a wheel inside a circle must be smaller", "radius")
 
     def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:
         small = linkage.numbers(self.radius)

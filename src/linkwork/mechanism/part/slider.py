@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Self
 
-from linkwork.foundation.file_keys import Key, ListOf, Text
-from linkwork.foundation.file_keys import Number as NumberKey
+from linkwork.foundation.file_keys import Key, ListOf, Number as NumberKey, Text
 from linkwork.foundation.lanes import choose, phase
 from linkwork.mechanism.bodies import GROUND, Bodies
 from linkwork.mechanism.dimensions import Number

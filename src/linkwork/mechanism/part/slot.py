@@ -51,7 +51,7 @@ class Slot(GuidePart):
         fixed = self.point in checks.linkage.links.get(self.on, ())
         if checks.defined(self.point, "point") and fixed:
             checks.add(
-                f'point "{self.point}" is fixed on "{self.on}" and cannot run in its slot', "point"
+                f'point "{self.point}" is fixed on "{self.on}" and cannot move in its slot', "point"
             )
 
     def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:

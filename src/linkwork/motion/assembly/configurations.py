@@ -46,7 +46,7 @@ def configurations(model: Model, at: float | Mapping[str, float] | None = None) 
     Parameters
     ----------
     at : number or Mapping[str, number], optional
-        Input value(s) in everyday units; the guess's own if left out.
+        Input value(s) in file units; the guess's own if left out.
 
     Raises
     ------

@@ -295,7 +295,7 @@ def branch_start(model: Model, name: str) -> Model:
     branch = known[name]
     here = work._solved(branch, float(model.start_inputs[work.drive.lead]))
     if not here and branch.ratio == 0.0:
-        raise InputError(f'the input stands still on "{name}", so no motion can start there')
+        raise InputError(f'the input is at rest on "{name}", so no motion can start there')
     start = here[0] if here else branch.anchor
     equations = replace(model.equations, start=start)
     return replace(

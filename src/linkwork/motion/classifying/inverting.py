@@ -35,7 +35,7 @@ def inversion(model: Model, link: str, which: Input | None = None) -> Linkage:
     seen = _seen(model)
     if seen.loose:
         raise InputError(
-            f"the loops of {model.description.name} do not tell where on "
+            f"the loops of {model.description.name} do not determine where on "
             f"{' and '.join(seen.loose)} they are joined: write it as points and links to invert it"
         )
     linkage = seen.linkage

@@ -224,6 +224,6 @@ def _condition(
     words: tuple[str, str], left: str, right: str, margin: float, small: float, unit: str
 ) -> str:
     if abs(margin) <= small:
-        return f"change point, {left} equals {right} (margin {margin:.3g} {unit})"
-    side = "below" if margin > 0 else "above"
-    return f"{words[margin < 0]}, {left} is {abs(margin):.6g} {unit} {side} {right}"
+        return f"change point, {left} = {right} (margin {margin:.3g} {unit})"
+    sign = "<" if margin > 0 else ">"
+    return f"{words[margin < 0]}, {left} {sign} {right} by {abs(margin):.6g} {unit}".rstrip()

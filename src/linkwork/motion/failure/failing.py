@@ -214,7 +214,7 @@ def _loops_in(model: Model, block: Block) -> int:
 
 
 def _named(model: Model, block: Block, x: Array) -> dict[str, float]:
-    """The unknowns (n,) of a block by name, everyday units, angles within half a turn."""
+    """The unknowns (n,) of a block by name, file units, angles within half a turn."""
     unknowns = [model.equations.unknowns[int(k)] for k in block.unknowns]
     turned = within_half_a_turn(x, block.system.turns[: len(x)])
     return {

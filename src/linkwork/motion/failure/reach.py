@@ -45,7 +45,7 @@ class _Edge:
 class Reach:
     """The nearest input values that a circuit reaches.
 
-    ``inputs`` (p,): everyday units. ``kind``: what ends the circuit there; empty if the circuit
+    ``inputs`` (p,): file units. ``kind``: what ends the circuit there; empty if the circuit
     reaches what was asked. ``proved``: whether it was followed with proof. ``first_dead_point``
     (p,): the first one met on the way from the start.
     """

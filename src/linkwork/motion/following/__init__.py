@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
-    from linkwork.motion.following.to_value import OutOfReach, followed
+    from linkwork.motion.following.to_value import (
+        OutOfReach as OutOfReach,
+        followed as followed,
+    )
 else:
-    __getattr__ = loader(__name__, {"to_value": ("OutOfReach", "followed")})
-
-__all__ = ["OutOfReach", "followed"]
+    __getattr__ = loader(__name__)

@@ -60,7 +60,7 @@ def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | Ou
     v : (N,)
         The position at the guess's own input value.
     target : (p,)
-        The value asked, everyday units.
+        The value asked, file units.
     """
     solver = model.compiled.solver
     origin = model.start_inputs

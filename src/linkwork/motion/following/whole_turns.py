@@ -41,7 +41,7 @@ def laps_to(model: Model, v: Array, target: Array) -> Laps | None:
     v : (N,)
         The position at the start.
     target : (1,)
-        The value asked, everyday units.
+        The value asked, file units.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Where else a sketch can begin: an input at which the mechanism closes, and the points there."""
+"""Alternative starts of a sketch: an input value at which the loops close, and the points there."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def sketch_at(mechanism: Solvable, at: Mapping[str, float]) -> tuple[MovePoint, 
     """
     description = mechanism.description
     if not isinstance(description, Linkage):
-        raise InputError("only the points of a sketch can be put elsewhere")
+        raise InputError("only the points of a sketch can be moved")
     still = description.links[GROUND]
     return tuple(
         MovePoint(point=name, x=x, y=y)

@@ -1,4 +1,4 @@
-"""What the page is told: one frozen dataclass per event, ``kind`` is its name in snake case.
+"""Events for the page: one frozen dataclass per event, ``kind`` is its name in snake case.
 
 Numbers are in the file's units; what does not exist is ``None``, never NaN.
 """

@@ -1,4 +1,4 @@
-"""Parts that can be added from the page: what has to be filled in, and a part from what was.
+"""Parts that the page can add: the fields of their forms, and a part from a filled-in form.
 
 Tables and keys are those of mechanism files (:mod:`linkwork.textfile.keys`), so that whatever a
 file can hold can be added; the reader judges what comes out.

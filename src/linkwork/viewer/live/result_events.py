@@ -208,7 +208,7 @@ def _unit(description: Description, quantity: Quantity, kinds: Mapping[str, str]
 
 
 def unknowns_of(sheet: EquationSheet, description: Description) -> tuple[tell.Unknown, ...]:
-    """The unknowns with their guess, everyday units."""
+    """The unknowns with their guess, in file units."""
     units = {"angle": description.angle.value, "length": description.length}
     scale = {"angle": description.angle.radians}
     equations = sheet.equations
