@@ -166,6 +166,12 @@ export interface Reload {
   id?: number;
 }
 
+export interface PaletteShown {
+  kind: "palette_shown";
+  answers: number | null;
+  parts: readonly (PalettePart)[];
+}
+
 export interface FileState {
   kind: "file_state";
   answers: number | null;
@@ -293,6 +299,22 @@ export interface Saved {
   file: string;
 }
 
+export interface PalettePart {
+  table: string;
+  title: string;
+  doc: string;
+  fields: readonly (PaletteField)[];
+}
+
+export interface PaletteField {
+  name: string;
+  doc: string;
+  entry: string;
+  required: boolean;
+  words: readonly (string)[];
+  named: readonly (string)[];
+}
+
 export interface ChangeableNumber {
   name: string;
   value: number;
@@ -406,6 +428,7 @@ export type LiveRequest =
   | Reload;
 
 export type LiveEvent =
+  | PaletteShown
   | FileState
   | MotionFound
   | PositionFound

@@ -8,45 +8,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import NoReturn
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.file_keys import Flag, Key, ListOf, Number, Tables, Text
 from linkwork.mechanism.part.index import PARTS
+from linkwork.viewer.live.events import PaletteField, PalettePart
 
-__all__ = ["PALETTE", "PaletteField", "PalettePart", "Typed", "part_name", "part_of"]
+__all__ = ["PALETTE", "Typed", "part_name", "part_of"]
 
 #: What was typed or chosen: one entry, or several; a row of numbers or of a table is one line,
 #: "10, 20".
 Typed = str | tuple[str, ...]
-
-
-@dataclass(frozen=True, kw_only=True)
-class PaletteField:
-    """One thing to fill in: a key of a table, what it is for, and how it is entered.
-
-    ``entry``: ``text``, ``number``, ``flag``, ``choice`` of some ``words``; the name of a
-    ``point``, ``link`` or ``slider``; several ``points`` or ``links``; ``numbers`` in one line;
-    ``lines`` of numbers, or of words that are ``named`` in this order.
-    """
-
-    name: str
-    doc: str
-    entry: str
-    required: bool
-    words: tuple[str, ...] = ()
-    named: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
-class PalettePart:
-    """A kind of part: the table of the file where it belongs."""
-
-    table: str
-    title: str
-    doc: str
-    fields: tuple[PaletteField, ...]
 
 
 def part_of(table: str, typed: Mapping[str, Typed]) -> dict[str, object]:

@@ -21,6 +21,7 @@ from linkwork.viewer.live.history import History
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
 from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.motion_picture import MotionPicture
+from linkwork.viewer.live.palette import PALETTE
 from linkwork.viewer.live.solvable import Read, Solvable
 
 __all__ = ["GivenUpError", "Workbench"]
@@ -97,7 +98,8 @@ class Workbench:
         """Everything that a page needs to begin."""
         self._end_drag()
         conflict = [] if self._conflict is None else [self._conflict]
-        return [self._state(), *self._solved(), *conflict]
+        palette = tell.PaletteShown(parts=PALETTE)
+        return [palette, self._state(), *self._solved(), *conflict]
 
     def handle(self, request: ask.Request) -> Events:
         """Carry out a request and send its events; wrong requests are answered, not raised."""
