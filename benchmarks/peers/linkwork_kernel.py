@@ -39,8 +39,8 @@ class LinkworkKernel(Peer):
         # compiled code is loaded by those who use it
         path = import_module("linkwork.batch.lane_rows").Path.of(model)
         assert path is not None
-        gear = import_module("linkwork.kernels.program.execution").Gear
-        march = path.march(family.designs, self.certify, 1, gear(specialised=self.compiled))
+        execution = import_module("linkwork.kernels.program.execution").Execution
+        march = path.march(family.designs, self.certify, 1, execution(specialised=self.compiled))
         t = model.rows[:, path.lead]
         t = np.ascontiguousarray(t[::-1] if path.falling else t)
 

@@ -15,7 +15,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, MechanismError, UnknownNameError
 from linkwork.mechanism import link_shape
 from linkwork.mechanism.quantities import Quantity, quantities
-from tests.batch.alone import agree
+from tests.batch.single_design import agree
 
 FOUR_BAR = {
     "points": {"O2": (0, 0), "A": (20, 35), "B": (120, 70), "O4": ("d", 0), "P": (60, 90)},

@@ -50,7 +50,7 @@ def by_itself(family: Family, k: int, certify: bool = True) -> Motion:
     """A design's own sweep, over the table that all of the family share."""
     model = family.designs.design(k)
     base = family.designs.base
-    if not np.array_equal(model.everyday_rows, base.everyday_rows):
+    if not np.array_equal(model.rows_in_file_units, base.rows_in_file_units):
         number = base.description.numbers
         inputs = []
         for which in base.description.inputs:

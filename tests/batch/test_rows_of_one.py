@@ -8,9 +8,9 @@ import pytest
 import linkwork as lw
 from linkwork.batch import Family
 from linkwork.batch.lane_rows import March, Path
-from linkwork.kernels.march.rowwise import _proved, _smooth
-from linkwork.kernels.march.work_arrays import Found
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.march.rowwise import _is_smooth, _prove_rows
+from linkwork.kernels.march.work_arrays import MarchResult
+from linkwork.kernels.program.execution import Execution
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.mechanism.linkage import Linkage
 from tests.described import described_as
@@ -21,7 +21,7 @@ def _march(family: Family, certify: bool) -> tuple[March, np.ndarray]:
     path = Path.of(designs.base)
     assert path is not None
     t = designs.base.rows[:, path.lead]
-    return path.march(designs, certify, 1, Gear()), np.ascontiguousarray(t)
+    return path.march(designs, certify, 1, Execution()), np.ascontiguousarray(t)
 
 
 @pytest.mark.parametrize("certify", [False, True])
@@ -104,9 +104,11 @@ class Proving:
         topology, scout, space, _ = self.one.loaded.spaces
         node = np.zeros(scout.nodes.shape[1])
         node[: len(begin)], node[-1] = begin, self.t[self.start]
-        kept = Found(0, rows.copy(), np.empty((len(self.t), 1)), *self.one.room)
+        kept = MarchResult(0, rows.copy(), np.empty((len(self.t), 1)), *self.one.room)
         alone = self.one.loaded.alone
-        done = _proved(topology, space, node, alone.table, alone.scale[0], kept, self.one.counts)
+        done = _prove_rows(
+            topology, space, node, alone.table, alone.scale[0], kept, self.one.counts
+        )
         return bool(done), kept.unknowns
 
 
@@ -153,7 +155,9 @@ def test_without_proofs_rows_have_to_follow_from_the_rates_before_them(row: int)
         space = np.zeros((scout.nodes.max() + 1, LANES))
         space[scout.nodes[0], :8] = node[:, 51:59]
         space[scout.nodes[0, place], row] += off
-        return bool(_smooth(scout, 0, space, 8, node[:, 50].copy(), is_first, np.ones(2), gap, 0.6))
+        return bool(
+            _is_smooth(scout, 0, space, 8, node[:, 50].copy(), is_first, np.ones(2), gap, 0.6)
+        )
 
     coupler, rate, side = 0, 2, 4
     assert follow(coupler, 0.0)

@@ -200,7 +200,7 @@ def _lipschitz(rng: np.random.Generator, case: Case, shifts: list[Array], false:
     omega = case.bounds.omega[0] + rho * case.bounds.omega_slope[0]
     # rounding of the two Jacobians and of large angles
     size = (np.abs(case.matrix) @ np.abs(j_x) * w).sum(axis=2) / w
-    rounding = 1e-14 * size * (1 + np.abs(base[table.turns.nonzero()]).max(initial=0.0))
+    rounding = 1e-14 * size * (1 + np.abs(base[table.is_angle.nonzero()]).max(initial=0.0))
     if not (rows <= omega * far * (1 + 1e-9) + rounding).all():
         false("A J changes faster than ω")
 
@@ -210,10 +210,13 @@ def _radii(case: Case, root: list[arb], false: object) -> None:
     assert callable(false)
     for k in range(case.n):
         off = abs(root[k] - arb(float(case.v[k])))
-        if not off <= arb(float(case.radii.exists[0])) * case.balls.weights[k]:
-            false(f"unknown {k} is {float(off.mid())} away, beyond r- = {case.radii.exists[0]}")
-        if not off <= arb(float(case.radii.each[0, k])):
-            false(f"unknown {k} is {float(off.mid())} away, beyond {case.radii.each[0, k]}")
+        if not off <= arb(float(case.radii.existence_radius[0])) * case.balls.weights[k]:
+            false(
+                f"unknown {k} is {float(off.mid())} away, "
+                f"beyond r- = {case.radii.existence_radius[0]}"
+            )
+        if not off <= arb(float(case.radii.error_bound[0, k])):
+            false(f"unknown {k} is {float(off.mid())} away, beyond {case.radii.error_bound[0, k]}")
 
 
 def _alone(
@@ -227,7 +230,7 @@ def _alone(
     """No second root within r+: J is regular in balls halfway out, and Newton finds no other."""
     assert callable(false)
     n, table, w = case.n, case.placed.table, case.weights
-    unique = float(case.radii.unique[0])
+    unique = float(case.radii.uniqueness_radius[0])
     here = np.array([float(x.mid()) for x in root])
     inside = min(unique, 1e3)
     # I - A J contracts up to (1 - Z0)/ω, which is r+ at least halved; balls are a little wider

@@ -26,7 +26,7 @@ COMPLEX = REAL + 1j * np.roll(REAL, 5)
 FUNCTIONS: dict[str, tuple[Any, ...]] = {  # a function, and arrays
     "vector": (lanes.vector, REAL, np.roll(REAL, 1)),
     "phase": (lanes.phase, COMPLEX),
-    "turn": (lanes.turn, REAL),
+    "turn": (lanes.cis, REAL),
     "rect": (lanes.rect, REAL, np.roll(REAL, 1)),
     "sqrt": (lanes.sqrt, np.abs(REAL)),
     "exponential": (lanes.exponential, COMPLEX),
@@ -74,7 +74,7 @@ def test_both_of_two_conditions_are_one_question() -> None:
 
 def test_a_settled_number_sets_others_apart_without_making_them_leave() -> None:
     consensus = Consensus(3)
-    assert lanes.settled(consensus.lanes(np.array([2.0, 2.0, 3.0]))) == 2.0
+    assert lanes.uniform_value(consensus.lanes(np.array([2.0, 2.0, 3.0]))) == 2.0
     assert consensus.apart.tolist() == [False, False, True]
     assert consensus.agreeing.all()
 

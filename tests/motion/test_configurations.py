@@ -486,14 +486,14 @@ def test_two_solutions_that_settle_on_one_position_make_no_claim(
 ) -> None:
     bar = lw.example("four-bar").model
     once = positions_at(bar, np.array([1.0]))
-    settled = assembling._settled
+    settled = assembling._polish_roots
 
     def merged(*arguments: Any) -> tuple[np.ndarray, ...]:
         end, good, iterations = settled(*arguments)
         end[1] = end[0]
         return end, good, iterations
 
-    monkeypatch.setattr(assembling, "_settled", merged)
+    monkeypatch.setattr(assembling, "_polish_roots", merged)
     found = positions_at(bar, np.array([1.0]))
     assert (len(once.v), len(found.v)) == (2, 1)
     assert found.completeness is Completeness.NOT_PROVED

@@ -32,7 +32,7 @@ def test_only_where_a_turn_changes_nothing_the_input_turns_freely(kind: str) -> 
     ends = mechanism.sweep(start=0, stop=360, step=360)
     assert ends.found.all()
     first, last = ends.q
-    turning = mechanism.model.compiled.table.turns[: len(first)]
+    turning = mechanism.model.compiled.table.is_angle[: len(first)]
     back = np.where(turning, np.abs(np.exp(1j * (last - first)) - 1), np.abs(last - first))
     assert bool(back.max() < 1e-9) is FREE[kind]
 

@@ -83,7 +83,7 @@ def _never(model: object, rows: int, certify: bool) -> bool:
 
 def fine(mechanism: lw.Mechanism, rows: int = ROWS) -> lw.Mechanism:
     """With so many steps through its own range."""
-    asked = mechanism.model.everyday_rows[:, 0]
+    asked = mechanism.model.rows_in_file_units[:, 0]
     (own,) = mechanism.description.inputs
     step = float(asked[-1] - asked[0]) / rows
     return mechanism.changed(
@@ -164,7 +164,7 @@ def test_a_table_that_falls_or_winds_is_no_other(start: float, both: Sweep) -> N
 
 def test_two_inputs_move_together(both: Sweep) -> None:
     mechanism = lw.example("five-bar-robot")
-    ranges = mechanism.model.everyday_rows
+    ranges = mechanism.model.rows_in_file_units
     inputs = tuple(
         replace(
             own,

@@ -187,7 +187,7 @@ class SolvableMechanism:
             asked = motion.model_of(self.description.with_range(start, stop, step))
             asked = asked.from_start_of(self.model)
         if configuration is not None:
-            asked = motion.started_in(asked, configuration)
+            asked = motion.start_in_configuration(asked, configuration)
         return motion.sweep(
             asked,
             through=through,
@@ -260,7 +260,7 @@ class SolvableMechanism:
         Parameters
         ----------
         dimensions : Mapping[str, number or (D,)]
-            What varies, file units: dimensions, lengths (``"O2 A"``), angles, coordinates
+            What varies, in file units: dimensions, lengths (``"O2 A"``), angles, coordinates
             (``"O4.x"``); a plan of :mod:`linkwork.batch`.
         """
         return batch.family_of(self.model, dimensions)

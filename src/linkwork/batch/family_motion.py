@@ -26,7 +26,7 @@ from linkwork.batch.rates import (
     design_speeds,
 )
 from linkwork.batch.rows import DesignRows
-from linkwork.batch.single_sweep import message_alone
+from linkwork.batch.single_sweep import message_single
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import InputError, MissingPackageError
@@ -50,7 +50,7 @@ class FamilyMotion:
     ----------
     designs : Designs
     inputs : (R, p)
-        What was asked, file units.
+        What was asked, in file units.
     rows : DesignRows
         Unknowns, statuses and proofs, internal units.
     threads : int
@@ -95,7 +95,7 @@ class FamilyMotion:
         return design_evidence(self.designs, self.rows, self.threads)
 
     def __getitem__(self, name: str) -> Array:
-        """Values of a quantity by name, (D, R), file units; NaN where there is no position.
+        """Values of a quantity by name, (D, R), in file units; NaN where there is no position.
 
         Names are those of a :class:`~linkwork.results.motion.Motion`: ``family["B.x"]``, and of its
         rates ``family["B.x.d1"]``, ``family["B.x.velocity"]`` (angles in radians): NaN at dead
@@ -191,7 +191,7 @@ class FamilyMotion:
 
     @property
     def dimensions(self) -> Mapping[str, Array]:
-        """What varies from design to design, (D,) each, file units."""
+        """What varies from design to design, (D,) each, in file units."""
         return self.designs.dimensions
 
     @property
@@ -235,7 +235,7 @@ class FamilyMotion:
         """
         if self.found[k].all():
             return ""
-        return self.designs.message(k) or message_alone(self.designs, k)
+        return self.designs.message(k) or message_single(self.designs, k)
 
     def to_xarray(self, *names: str) -> Any:
         """An xarray Dataset over designs and inputs, with units.

@@ -23,7 +23,7 @@ class FamilyLimits:
     Parameters
     ----------
     lower, upper : (D,)
-        The leading input there, file units, around the input of the design's own start: -∞, ∞
+        The leading input there, in file units, around the input of the design's own start: -∞, ∞
         where nothing ended the branch on the way to the rows of the table; NaN where an end was
         met and not located, or the design has no position.
     lower_kind, upper_kind : (D,) text

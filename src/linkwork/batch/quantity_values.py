@@ -14,7 +14,7 @@ from linkwork.expression.tree import names_in
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, ComplexArray, TurnArray
 from linkwork.foundation.errors import UnknownNameError, choices
-from linkwork.foundation.names import canonical, spelled
+from linkwork.foundation.names import canonical, find_spelling
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.results.quantity import Kind
@@ -32,7 +32,7 @@ class QuantityValues:
     ----------
     designs : Designs
     inputs : (R, p)
-        As asked, file units.
+        As asked, in file units.
     v : (n, R, D)
         Unknowns, internal units; NaN where there is no position.
     turns : (R, D)
@@ -68,7 +68,7 @@ class QuantityValues:
         return quantity_names(self.model)
 
     def of(self, name: str) -> Array:
-        """A quantity by name, (D, R), file units.
+        """A quantity by name, (D, R), in file units.
 
         Raises
         ------
@@ -76,7 +76,7 @@ class QuantityValues:
             With the names that exist.
         """
         inputs = [x.name for x in self.equations.inputs]
-        own = spelled(name, inputs)
+        own = find_spelling(name, inputs)
         if own in inputs:
             column = self.inputs[:, inputs.index(own)]
             return np.broadcast_to(column, (len(self.designs), len(self.inputs)))
@@ -200,10 +200,10 @@ class QuantityValues:
         for variable in equations.variables:
             if variable.symbol in used:
                 jet = self._variable(variable.symbol)
-                found[variable.symbol] = self._everyday(jet, Kind(variable.kind))
+                found[variable.symbol] = self._in_file_units(jet, Kind(variable.kind))
         for link in equations.links:
             if canonical(link) in used and canonical(link) not in found:
-                found[canonical(link)] = self._everyday(self._link(link), Kind.ANGLE)
+                found[canonical(link)] = self._in_file_units(self._link(link), Kind.ANGLE)
         for point in equations.points:
             for axis in "xy":
                 symbol = coordinate_name(point, axis)
@@ -211,7 +211,7 @@ class QuantityValues:
                     found[symbol] = self._coordinate(point, axis)
         return found
 
-    def _everyday(self, jet: Jet, kind: Kind) -> Jet:
+    def _in_file_units(self, jet: Jet, kind: Kind) -> Jet:
         scale = 1.0 / self.model.units.scale(kind)
         return Jet(jet.v * scale, jet.d1 * scale, jet.d2 * scale)
 
@@ -250,11 +250,11 @@ def quantity_found(model: Model, name: str) -> tuple[Kind, str, str]:
         ("slider", dict.fromkeys(equations.sliders, Kind.LENGTH)),
         ("output", outputs),
     ):
-        own = spelled(name, table)
+        own = find_spelling(name, table)
         if own in table:
             return table[own], own, what
     point, _, axis = name.rpartition(".")
-    point = spelled(point, equations.points)
+    point = find_spelling(point, equations.points)
     if point in equations.points and axis in ("x", "y"):
         return Kind.LENGTH, point, axis
     raise UnknownNameError(f'there is no "{name}" {choices("names", quantity_names(model), name)}')
@@ -269,7 +269,7 @@ def point_named(model: Model, name: str) -> str:
         With the points that exist.
     """
     points = model.equations.points
-    own = spelled(name, points)
+    own = find_spelling(name, points)
     if own not in points:
         raise UnknownNameError(f'there is no point "{name}" {choices("points", points, name)}')
     return own

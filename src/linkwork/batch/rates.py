@@ -12,7 +12,7 @@ from linkwork.batch.designs import Designs
 from linkwork.batch.rows import DesignRows
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError, LinkworkError
-from linkwork.foundation.lanes import Consensus, NotElementwise, many
+from linkwork.foundation.lanes import Consensus, NotElementwise, is_batched
 from linkwork.foundation.status import Status
 from linkwork.kernels.march.closure import BlockPart
 from linkwork.kernels.march.position_programs import at_places
@@ -168,5 +168,5 @@ def _speeds_together(designs: Designs, fine: IndexArray, found: Array) -> BoolAr
         speed = _speed_of(designs, with_numbers(designs.base.description, numbers))
     except (NotElementwise, LinkworkError):
         return np.ones(len(fine), dtype=bool)
-    found[fine] = speed.values if many(speed) else speed
+    found[fine] = speed.values if is_batched(speed) else speed
     return ~consensus.agreeing

@@ -13,7 +13,15 @@ from dataclasses import dataclass, field
 from linkwork.equations.model import LinkAngle, Redundant, Term
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, Node
-from linkwork.foundation.lanes import choose, copysign, degrees, kept, phase, remainder, turn
+from linkwork.foundation.lanes import (
+    choose,
+    cis,
+    copysign,
+    degrees,
+    is_structurally_nonzero,
+    phase,
+    remainder,
+)
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.linkage import GROUND, Linkage
@@ -76,12 +84,12 @@ class Frames:
         linkage, (own, body, line) = self.linkage, guide
         s, t = (linkage.shapes.local[body][p] for p in line)
         along = (t - s) / abs(t - s)
-        terms = [self.turned(along, None, body, own)]
-        if kept(offset):
+        terms = [self.vector_term(along, None, body, own)]
+        if is_structurally_nonzero(offset):
             name = canonical(symbol)
             self.symbols[name] = abs(offset)
             sideways = 1j * along * copysign(1.0, offset)
-            terms.append(self.turned(sideways * abs(offset), Name(name, name), body))
+            terms.append(self.vector_term(sideways * abs(offset), Name(name, name), body))
         self.places[body][point] = Place(s, tuple(terms), base=line[0])
         self.lengths.append(own)
         a, b, p = (linkage.sketched(q) for q in (*line, point))
@@ -98,13 +106,13 @@ class Frames:
         span = self.linkage.sketched(b) - self.linkage.sketched(a)
         self.start[turning] = phase(span)
         if length is None:
-            rod = self.turned(1.0 + 0j, None, name, name)
+            rod = self.vector_term(1.0 + 0j, None, name, name)
             self.lengths.append(name)
             self.start[name] = abs(span)
         else:
             symbol = canonical(f"{name}_rod")
             self.symbols[symbol] = length
-            rod = self.turned(length + 0j, Name(symbol, symbol), name)
+            rod = self.vector_term(length + 0j, Name(symbol, symbol), name)
         self.places[name] = {a: Place(0j, base=a), b: Place(0j, (rod,), base=a)}
 
     def release(self, link: str, a: str, b: str) -> None:
@@ -112,7 +120,7 @@ class Frames:
         name = f"{link}_length"
         first = self.places[link][a].fixed
         span = self.places[link][b].fixed - first
-        along = self.turned(span / abs(span), None, link, name)
+        along = self.vector_term(span / abs(span), None, link, name)
         self.places[link][b] = Place(first, (along,), base=a)
         self.start[name] = abs(span)
         self.released.append(Redundant(variable=name, link=link, points=(a, b), length=abs(span)))
@@ -132,12 +140,14 @@ class Frames:
                 weights[angle.variable] = weights.get(angle.variable, 0.0) + weight
         return {name: weight for name, weight in weights.items() if weight}, constant
 
-    def turned(self, z: complex, shown: Node | None, body: str, length: str | None = None) -> Term:
+    def vector_term(
+        self, z: complex, shown: Node | None, body: str, length: str | None = None
+    ) -> Term:
         """A vector of the body's frame as a term."""
         angle = self.angle[body]
         turning = ((canonical(angle.variable), 1.0),) if angle.variable is not None else ()
         symbol = None if length is None else canonical(length)
-        return Term.vector(z * turn(angle.constant), shown, symbol, turning)
+        return Term.vector(z * cis(angle.constant), shown, symbol, turning)
 
     def between(self, body: str, start: str, end: str) -> list[Term]:
         """The vector from one point to another across a body, as terms."""
@@ -145,7 +155,7 @@ class Frames:
         terms = []
         if a.base != b.base:
             shown = self._distance(body, a.base, b.base)
-            terms.append(self.turned(b.fixed - a.fixed, shown, body))
+            terms.append(self.vector_term(b.fixed - a.fixed, shown, body))
         terms += [term.negated() for term in a.sliding]
         terms += list(b.sliding)
         return terms

@@ -22,7 +22,7 @@ from linkwork.equations.redundancy import Bar, released_links
 from linkwork.equations.structure import Node, Structure, StructureBlock
 from linkwork.expression.tree import Name
 from linkwork.foundation.errors import MechanismError, Problem
-from linkwork.foundation.lanes import hypot, largest, phase, row_of, smallest, turn
+from linkwork.foundation.lanes import cis, hypot, largest, phase, row_of, smallest
 from linkwork.foundation.names import canonical, pretty
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.driven_input import Input
@@ -41,12 +41,12 @@ def write_loops(linkage: Linkage) -> LoopEquations:
         If inputs contradict each other, or do not determine the motion: with the links that
         stay free or the parts that conflict.
     """
-    writer = _Writer(linkage)
-    return writer.written()
+    writer = _LoopWriter(linkage)
+    return writer.write()
 
 
 @dataclass
-class _Writer:
+class _LoopWriter:
     linkage: Linkage
     released: tuple[Bar, ...] = ()
     surplus: Problem | None = None
@@ -57,7 +57,7 @@ class _Writer:
     points: dict[str, PointPath] = field(default_factory=dict)
     base: dict[str, str | None] = field(default_factory=dict)
 
-    def written(self) -> LoopEquations:
+    def write(self) -> LoopEquations:
         """Everything, in order."""
         linkage = self.linkage
         where = f'mechanism "{linkage.name}"'
@@ -163,7 +163,7 @@ class _Writer:
             if part.variable is not None:
                 terms.append((canonical(part.variable), sign))
                 value += sign * self.frames.start[part.variable]
-        wrapped = phase(turn(value))
+        wrapped = phase(cis(value))
         constant = angle.constant - base.constant + wrapped - value  # off by whole turns
         self.linear.append(
             LinearEquation(label=f"{link} against {against}", terms=tuple(terms), constant=constant)
@@ -243,7 +243,7 @@ class _Writer:
         if len(bars) < form.surplus:
             return None
         try:
-            return _Writer(self.linkage, released=bars, surplus=self.problems[0]).written()
+            return _LoopWriter(self.linkage, released=bars, surplus=self.problems[0]).write()
         except MechanismError:
             return None
 

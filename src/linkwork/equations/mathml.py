@@ -47,13 +47,13 @@ class MathML:
 
     def formula(self, node: Node) -> str:
         """A formula on its own."""
-        return self._written(node)
+        return self._write(node)
 
     def node(self, node: Node) -> str:
         """A formula as one factor of a product."""
-        shown = self._written(node)
+        shown = self._write(node)
         loose = isinstance(node, Binary) and node.operator in "+-"
-        return _fenced(shown) if loose or isinstance(node, Negative) else _group(shown)
+        return _fence(shown) if loose or isinstance(node, Negative) else _group(shown)
 
     def degrees(self, radians: float) -> str:
         """A fixed angle."""
@@ -63,25 +63,25 @@ class MathML:
         """e to the i times an angle."""
         negative = angle.startswith("-") and " " not in angle
         turned = angle[1:] if negative else angle
-        inside = _fenced(turned) if " " in turned or turned.startswith("-") else _row(turned)
+        inside = _fence(turned) if " " in turned or turned.startswith("-") else _row(turned)
         sign = f"<mo>{_MINUS}</mo>" if negative else ""
         return f"<msup><mi>e</mi><mrow>{sign}<mi>i</mi>{inside}</mrow></msup>"
 
     def function(self, name: str, angle: str) -> str:
         """cos or sin of an angle."""
         compound = " " in angle or angle.startswith("-")
-        inside = _fenced(angle) if compound else _row(angle)
+        inside = _fence(angle) if compound else _row(angle)
         return _group(f"<mi>{name}</mi><mo>{_APPLY}</mo>{inside}")
 
     def law(self, name: str, primes: int, argument: str) -> str:
         """A named function, or a derivative of it."""
-        return _group(f"{self.name(name + primes * chr(39))}<mo>{_APPLY}</mo>{_fenced(argument)}")
+        return _group(f"{self.name(name + primes * chr(39))}<mo>{_APPLY}</mo>{_fence(argument)}")
 
     def product(self, factors: Sequence[str]) -> str:
         """Factors in a row."""
         return f"<mo>{_INVISIBLE_TIMES}</mo>".join(map(_whole, factors))
 
-    def _written(self, node: Node) -> str:
+    def _write(self, node: Node) -> str:
         match node:
             case Number():
                 return number_text(node.value)
@@ -90,15 +90,15 @@ class MathML:
             case Negative():
                 return f"-{self._inside(node.operand, NEGATIVE)}"
             case Call("sqrt"):
-                return f"<msqrt>{_row(self._written(node.arguments[0]))}</msqrt>"
+                return f"<msqrt>{_row(self._write(node.arguments[0]))}</msqrt>"
             case Call():
-                inside = "<mo>,</mo>".join(_row(self._written(a)) for a in node.arguments)
-                return _group(f"<mi>{node.function}</mi><mo>{_APPLY}</mo>{_fenced(inside)}")
+                inside = "<mo>,</mo>".join(_row(self._write(a)) for a in node.arguments)
+                return _group(f"<mi>{node.function}</mi><mo>{_APPLY}</mo>{_fence(inside)}")
             case Binary("/"):
-                above, below = (_row(self._written(part)) for part in (node.left, node.right))
+                above, below = (_row(self._write(part)) for part in (node.left, node.right))
                 return f"<mfrac><mrow>{above}</mrow><mrow>{below}</mrow></mfrac>"
             case Binary("^"):
-                raised = _row(self._written(node.right))
+                raised = _row(self._write(node.right))
                 return f"<msup>{_group(self._inside(node.left, ATOM))}<mrow>{raised}</mrow></msup>"
             case Binary():
                 own = STRENGTH[node.operator]
@@ -108,8 +108,8 @@ class MathML:
                 return f"{left} {node.operator} {right}"
 
     def _inside(self, node: Node, least: int) -> str:
-        shown = self._written(node)
-        return _fenced(shown) if strength(node) < least else shown
+        shown = self._write(node)
+        return _fence(shown) if strength(node) < least else shown
 
 
 def _whole(factor: str) -> str:
@@ -121,7 +121,7 @@ def _group(text: str) -> str:
     return f"<mrow>{_row(text)}</mrow>"
 
 
-def _fenced(text: str) -> str:
+def _fence(text: str) -> str:
     return f"<mrow><mo>(</mo>{_row(text)}<mo>)</mo></mrow>"
 
 

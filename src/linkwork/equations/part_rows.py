@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from linkwork.equations.frames import Frames, Place
 from linkwork.equations.model import LawEquation, LinearEquation, LoopEquation
 from linkwork.foundation.arrays import ComplexArray
-from linkwork.foundation.lanes import copysign, largest, settled
+from linkwork.foundation.lanes import copysign, largest, uniform_value
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Key, Problems
 
@@ -66,7 +66,9 @@ class PartRows:
     ) -> None:
         """Σ weight · angle of body (+ weight · length) = total, as it is in the sketch if open."""
         frames = self.frames
-        weights, constant = frames.angles_of((body, settled(weight)) for body, weight in turns)
+        weights, constant = frames.angles_of(
+            (body, uniform_value(weight)) for body, weight in turns
+        )
         now = sum(weight * frames.start[name] for name, weight in weights.items())
         if length is not None:
             weights[length[0]] = length[1]

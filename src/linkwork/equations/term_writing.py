@@ -10,7 +10,7 @@ from linkwork.equations.model import Term
 from linkwork.equations.notation import Notation
 from linkwork.expression.tree import Number
 
-__all__ = ["Signed", "TermWriter", "joined"]
+__all__ = ["Signed", "TermWriter", "join_terms"]
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Signed:
     text: str
 
 
-def joined(parts: Iterable[Signed]) -> str:
+def join_terms(parts: Iterable[Signed]) -> str:
     """A sum of signed products: ``a - b + c``; ``0`` if empty."""
     shown = ""
     for part in parts:
@@ -51,7 +51,7 @@ class TermWriter:
         if with_turn and term.turn:
             turn = term.turn * sign
             parts.append(Signed(-1 if turn < 0 else 1, self.notation.degrees(abs(turn))))
-        return joined(parts)
+        return join_terms(parts)
 
     def _factors(self, term: Term, length: bool = True) -> list[str]:
         found = []

@@ -11,7 +11,7 @@ from typing import Any
 from linkwork.equations.mathml import MathML, math_element
 from linkwork.equations.model import LawEquation, LoopEquation, LoopEquations, Variable
 from linkwork.equations.notation import Latex, Notation, PlainText
-from linkwork.equations.term_writing import Signed, TermWriter, joined
+from linkwork.equations.term_writing import Signed, TermWriter, join_terms
 from linkwork.expression.derivative import derivative
 from linkwork.expression.tree import Binary, Number
 from linkwork.expression.writing import number_text
@@ -40,8 +40,8 @@ class EquationSheet:
     def loop(self, loop: LoopEquation, notation: Notation) -> str:
         """``a2·e^(iθ12) + … = …``."""
         write = self._writer(notation)
-        left = joined(write.complex_form(term) for term in loop.left)
-        right = joined(write.complex_form(term) for term in loop.right)
+        left = join_terms(write.complex_form(term) for term in loop.left)
+        right = join_terms(write.complex_form(term) for term in loop.right)
         return f"{left} = {right}"
 
     def real_rows(self, notation: Notation) -> list[str]:
@@ -51,14 +51,14 @@ class EquationSheet:
         for imaginary in (False, True):
             for loop in self.equations.loops:
                 forms = [write.real_form(term, imaginary=imaginary) for term in loop.terms]
-                rows.append(joined(signed for form in forms for signed in form))
+                rows.append(join_terms(signed for form in forms for signed in form))
         for line in self.equations.linear:
             parts = self._sum(line.terms, line.constant, notation, angle=line.kind == "angle")
-            rows.append(joined(parts))
+            rows.append(join_terms(parts))
         rows += [notation.formula(_difference(e.left, e.right)) for e in self.equations.real]
         for law in self.equations.laws:
             parts = self._sum(law.terms, law.constant, notation, angle=law.kind == "angle")
-            rows.append(joined([*parts, Signed(-1, self._law(law, notation))]))
+            rows.append(join_terms([*parts, Signed(-1, self._law(law, notation))]))
         return rows
 
     def _sum(
@@ -83,7 +83,7 @@ class EquationSheet:
     def _law(self, law: LawEquation, notation: Notation, primes: int = 0) -> str:
         """The function of a law equation, or its derivative, at its argument."""
         angle = {v.symbol: v.kind for v in self.equations.variables}[law.inner[0][0]] == "angle"
-        argument = joined(self._sum(law.inner, law.offset, notation, angle=angle))
+        argument = join_terms(self._sum(law.inner, law.offset, notation, angle=angle))
         return notation.law(law.shown, law.primes + primes, argument)
 
     def _law_entry(self, law: LawEquation, symbol: str, notation: Notation) -> str:
@@ -96,7 +96,7 @@ class EquationSheet:
             slope = self._law(law, notation, primes=1)
             weight = [] if abs(turned) == 1 else [number_text(abs(turned))]
             parts.append(Signed(1 if turned < 0 else -1, notation.product([*weight, slope])))
-        return joined(parts)
+        return join_terms(parts)
 
     @staticmethod
     def _weighted(weight: float, name: str) -> str:
@@ -121,7 +121,7 @@ class EquationSheet:
                             parts.append(
                                 write.complex_form(term, length=False, conjugate=conjugate)
                             )
-                    row.append(joined(parts))
+                    row.append(join_terms(parts))
                 rows.append(row)
         return rows
 
@@ -169,7 +169,7 @@ class EquationSheet:
                 parts += write.real_form(term, imaginary=imaginary, weight=weight)
             if term.length == unknown.symbol:
                 parts += write.real_form(term, imaginary=imaginary, length=False)
-        return joined(parts)
+        return join_terms(parts)
 
     # Plain text
 
@@ -180,30 +180,28 @@ class EquationSheet:
     def _text_lines(self, width: int) -> Iterator[str]:
         notation, equations = PlainText(), self.equations
         described = ", ".join(map(self._described, equations.unknowns))
-        yield from _wrapped("unknowns  ", described, width)
+        yield from _wrap("unknowns  ", described, width)
         if equations.inputs:
-            yield from _wrapped(
-                "inputs    ", ", ".join(map(self._described, equations.inputs)), width
-            )
+            yield from _wrap("inputs    ", ", ".join(map(self._described, equations.inputs)), width)
         values = [f"{pretty(n)} = {number_text(v)}" for n, v in equations.symbols.items()]
         if values:
-            yield from _wrapped("with      ", ", ".join(values), width)
+            yield from _wrap("with      ", ", ".join(values), width)
         for k, loop in enumerate(equations.loops):
             yield ""
             yield f'Loop {k + 1} "{loop.label}"'
-            yield from _wrapped("  ", self.loop(loop, notation), width, "      ")
+            yield from _wrap("  ", self.loop(loop, notation), width, "      ")
         for k in range(len(equations.loops), len(equations.labels)):
             yield ""
             yield f'Equation "{equations.labels[k]}"'
             row = self.real_rows(notation)[k + len(equations.loops)]
-            yield from _wrapped("  ", f"{row} = 0", width, "      ")
+            yield from _wrap("  ", f"{row} = 0", width, "      ")
             if (law := k - len(equations.labels) + len(equations.laws)) >= 0:
-                yield from _wrapped("  where ", equations.laws[law].meaning, width, "      ")
+                yield from _wrap("  where ", equations.laws[law].meaning, width, "      ")
         if equations.loops:
             yield from ("", "Real form")
             for k, row_text in enumerate(self.real_rows(notation)):
                 head = f"  F{k + 1} = "
-                yield from _wrapped(head, row_text, width, "       ")
+                yield from _wrap(head, row_text, width, "       ")
         columns = [notation.name(u.shown) for u in equations.unknowns]
         if equations.loops:
             count = len(equations.loops)
@@ -292,7 +290,7 @@ def _environment(name: str, body: str) -> str:
     return f"\\begin{{{name}}}\n{body}\n\\end{{{name}}}\n"
 
 
-def _wrapped(head: str, body: str, width: int, indent: str = "") -> list[str]:
+def _wrap(head: str, body: str, width: int, indent: str = "") -> list[str]:
     return textwrap.wrap(
         body,
         width,
@@ -320,6 +318,6 @@ def _matrix_lines(
     for label, row in zip(labels, matrix, strict=True):
         for column, entry in zip(columns, row, strict=True):
             if entry != "0":
-                yield from _wrapped(f"  ∂({label})/∂{column} = ", entry, width, "      ")
+                yield from _wrap(f"  ∂({label})/∂{column} = ", entry, width, "      ")
     if any("0" in row for row in matrix):
         yield "  all others = 0"

@@ -13,11 +13,11 @@ __all__ = [
     "GREEK",
     "as_name",
     "canonical",
+    "find_spelling",
     "free_name",
     "is_name",
     "latex_name",
     "pretty",
-    "spelled",
 ]
 
 GREEK = {
@@ -61,7 +61,7 @@ def _canonical(name: str) -> str:
     return "".join(GREEK.get(letter, letter) for letter in folded)
 
 
-def spelled(name: str, known: Iterable[str]) -> str:
+def find_spelling(name: str, known: Iterable[str]) -> str:
     """The spelling among ``known`` of a name that may be written otherwise, else the name."""
     folded = canonical(name)
     return next((other for other in known if canonical(other) == folded), name)

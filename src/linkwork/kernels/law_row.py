@@ -51,7 +51,7 @@ class LawRow:
         straight = v[:, list(self.variables)] @ self.weights + self.constant
         return straight - value, self.weights - slope[:, None] * self.inner
 
-    def second(self, v: Array, d: Array) -> Array:
+    def second_directional_derivative(self, v: Array, d: Array) -> Array:
         """Second derivative along d, (B,)."""
         turned = d[:, list(self.variables)] @ self.inner
         second: Array = -self.law.jet(self._argument(v))[2] * turned**2

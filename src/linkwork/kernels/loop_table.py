@@ -34,7 +34,7 @@ class FunctionRow(Protocol):
     def value_and_gradient(self, v: Array) -> tuple[Array, Array]:
         """Value (B,) and derivatives by ``variables`` (B, len(variables))."""
 
-    def second(self, v: Array, d: Array) -> Array:
+    def second_directional_derivative(self, v: Array, d: Array) -> Array:
         """Second derivative along d, (B,)."""
 
     def repeats_after(self, turns: Array) -> bool:
@@ -76,7 +76,7 @@ class LoopTable:
         What each real row's residual is divided by before it is compared.
     variable_scale : (N,)
         Weight of each variable: 1 for angles, a length of the mechanism for lengths.
-    turns : (N,) bool
+    is_angle : (N,) bool
         Which variables are angles.
     """
 
@@ -86,7 +86,7 @@ class LoopTable:
     functions: tuple[FunctionRow, ...]
     equation_scale: Array
     variable_scale: Array
-    turns: BoolArray
+    is_angle: BoolArray
 
     @property
     def variables(self) -> int:
@@ -148,13 +148,13 @@ class LoopTable:
         """dF/dv, (B, m, N): the Jacobian by the unknowns, then the derivative by the inputs."""
         return self.residual_and_jacobian(v)[1]
 
-    def second(self, v: Array, d: Array) -> Array:
+    def second_directional_derivative(self, v: Array, d: Array) -> Array:
         """D²F[d, d], the directional second derivative, (B, m)."""
         value = self.loops.jet(v, d, np.zeros_like(d))[2]
         parts = [value.real, value.imag]
         if not self._only_loops:
             parts.append(np.zeros((len(v), len(self.linear.constant))))
-            parts += [row.second(v, d)[:, None] for row in self.functions]
+            parts += [row.second_directional_derivative(v, d)[:, None] for row in self.functions]
         return np.concatenate(parts, axis=1)
 
     def repeats_after(self, turns: Array) -> bool:
@@ -177,14 +177,14 @@ class LoopTable:
         )
 
     @property
-    def bends_boundedly(self) -> bool:
+    def has_curvature_bound(self) -> bool:
         """Whether :meth:`curvature` knows a bound: not for rows of any formula."""
         return len(self._bounded) == len(self.functions)
 
     @property
     def is_straight(self) -> bool:
         """Whether no equation bends with the unknowns: lines, and laws of what is known."""
-        if self.loops.rows or not self.bends_boundedly:
+        if self.loops.rows or not self.has_curvature_bound:
             return False
         return not any(
             weight and variable < self.unknowns
@@ -322,7 +322,7 @@ class TableSplitter:
             functions=tuple(whole.functions[k].moved(index) for k in functions),
             equation_scale=whole.equation_scale[np.array(real, dtype=np.intp)],
             variable_scale=whole.variable_scale[order],
-            turns=whole.turns[order],
+            is_angle=whole.is_angle[order],
         )
         return part, known
 

@@ -11,6 +11,7 @@ import numpy as np
 from linkwork.foundation.lanes import (
     Rest,
     choose,
+    cis,
     degrees,
     everywhere,
     largest,
@@ -18,7 +19,6 @@ from linkwork.foundation.lanes import (
     rect,
     rest_of,
     sqrt,
-    turn,
     vector,
 )
 from linkwork.mechanism.least_norm import full_rank, least_norm
@@ -100,7 +100,7 @@ class VertexAngle:
     def error(self, z: Mapping[str, complex]) -> float:
         """Disagreement with placed points [rad], within half a turn."""
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
-        return phase(rays * turn(-self.angle)) if rays else math.inf
+        return phase(rays * cis(-self.angle)) if rays else math.inf
 
     def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
         return abs(self.error(z)) <= tolerance

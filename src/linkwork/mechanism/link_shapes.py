@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from linkwork.foundation.lanes import many
+from linkwork.foundation.lanes import is_batched
 from linkwork.mechanism.bodies import GROUND, Bodies, Measured, Shapes
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.link_shape import Distance, LinkShape, ShapeError, VertexAngle, place
@@ -76,7 +76,7 @@ def _check_ground(
     named: dict[complex, str] = {}
     varying: list[str] = []
     for point, place_ in sketch.items():
-        if many(place_):
+        if is_batched(place_):
             varying.append(point)
         elif (other := named.setdefault(place_, point)) != point:
             raise _same_point(other, point)

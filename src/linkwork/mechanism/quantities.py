@@ -29,7 +29,7 @@ class Quantity:
     axis: int = 0
 
     def of(self, description: Description) -> float:
-        """Its value in a description, file units."""
+        """Its value in a description, in file units."""
         return description.numbers(self.written(description))
 
     def written(self, description: Description) -> Number:

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from linkwork.motion.assembly.configurations import (
         configurations as configurations,
         solve_configuration as solve_configuration,
-        started_in as started_in,
+        start_in_configuration as start_in_configuration,
     )
     from linkwork.motion.checking import check as check
     from linkwork.motion.circuit.circuits import (

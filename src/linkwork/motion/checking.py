@@ -69,7 +69,7 @@ def check(model: Model) -> CheckReport:
         start_message=start.message,
         start_input={
             v.name: float(value)
-            for v, value in zip(equations.inputs, model.everyday_start, strict=True)
+            for v, value in zip(equations.inputs, model.start_in_file_units, strict=True)
         },
         residual=start.residual,
         failure=start.failure,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from linkwork.equations.leading import LeadTable
+from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import leading_scale, turns_freely
@@ -37,9 +37,9 @@ class Drive:
         return self.model.compiled.solver
 
     @cached_property
-    def leads(self) -> LeadTable:
+    def leads(self) -> ParametrizedTable:
         """The equations along the path, solvable with any variable in the lead."""
-        return LeadTable(self.model.compiled.table, self.path, self.lead)
+        return ParametrizedTable(self.model.compiled.table, self.path, self.lead)
 
     @cached_property
     def free(self) -> bool:

@@ -8,13 +8,13 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import canonical, spelled
+from linkwork.foundation.names import canonical, find_spelling
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.model import Model
-from linkwork.motion.named_quantities import Named, named_series
+from linkwork.motion.named_quantities import Named, name_series
 from linkwork.numerics.continuation.branch_tracking import Track, rows_on_track
 from linkwork.results.motion import OutputLimit, Series
 
@@ -40,7 +40,7 @@ def check_quantities(model: Model, names: str | Iterable[str]) -> tuple[str, ...
     if names:
         blank = np.full((1, model.compiled.solver.variables), np.nan)
         inputs = np.full((1, len(model.equations.inputs)), np.nan)
-        named = named_series(model, blank, blank, blank, inputs, np.zeros(1, dtype=bool))
+        named = name_series(model, blank, blank, blank, inputs, np.zeros(1, dtype=bool))
         for name in names:
             _series(named, name)
     return names
@@ -52,7 +52,7 @@ def _series(named: Named, name: str) -> Series:
             if canonical(known) == canonical(name):
                 return series
     point, _, axis = name.rpartition(".")
-    point = spelled(point, named.points)
+    point = find_spelling(point, named.points)
     if point in named.points and axis in ("x", "y"):
         return named.points[point][axis == "y"]
     tables = (named.unknowns, named.links, named.sliders, named.outputs)
@@ -112,7 +112,7 @@ def output_limit_at(drive: Drive, end: BranchEnd, name: str) -> OutputLimit | No
     led, node, model = end.led, end.node, drive.model
     v, first, second = (led.whole(x)[None, :] for x in (node.v, node.first, node.second))
     inputs = np.zeros((1, len(model.equations.inputs)))
-    series = _series(named_series(model, v, first, second, inputs, np.ones(1, dtype=bool)), name)
+    series = _series(name_series(model, v, first, second, inputs, np.ones(1, dtype=bool)), name)
     rate, bend = float(series.first[0]), float(series.second[0])
     noise = 8.0 * _UNIT * node.condition * float(np.abs(series.first[0]) + np.abs(bend))
     away = (abs(rate) + noise) / abs(bend) if bend else np.inf
@@ -142,7 +142,7 @@ class _Search:
         rows = rows_on_track(self.drive.solver, self.drive.path, self.track, t)
         inputs = np.zeros((len(t), len(model.equations.inputs)))
         good = rows.status == Status.CONVERGED.code
-        named = named_series(model, rows.v, rows.rates.first, rows.rates.second, inputs, good)
+        named = name_series(model, rows.v, rows.rates.first, rows.rates.second, inputs, good)
         series = _series(named, self.name)
         return series.value, series.first, series.second, rows.rates.condition
 

@@ -86,7 +86,10 @@ def _enter_passed(
     proof = _enter(drive, v, row, rows)
     if proof is not None and proof.holds[0]:
         rows.certification[row] = standing.code
-        rows.radius[row], rows.unique[row] = proof.radius[0], proof.alone_within[0]
+        rows.radius[row], rows.uniqueness_radius[row] = (
+            proof.radius[0],
+            proof.least_uniqueness_radius[0],
+        )
 
 
 def _enter(drive: Drive, v: Array, row: int, rows: SolvedRows) -> Proof | None:
@@ -98,7 +101,7 @@ def _enter(drive: Drive, v: Array, row: int, rows: SolvedRows) -> Proof | None:
     rows.residual[row], rows.condition[row] = solver.residual(here)[0], rates.condition[0]
     if rows.certification[row] == Certification.NOT_ASKED.code:
         return None
-    bounded = all(block.system.bends_boundedly for block in solver.blocks)
+    bounded = all(block.system.has_curvature_bound for block in solver.blocks)
     why = Certification.POSITION_NOT_PROVED if bounded else Certification.NO_BOUND
     rows.certification[row] = why.code
     rounding = 4.0 * _UNIT * np.abs(here[:, solver.unknowns :])
@@ -112,12 +115,15 @@ def _fill(
     v = _position(drive, ahead, t) if ahead.located else None
     if v is None:
         return False
-    proof, own = _enter(drive, v, row, rows), drive.leads.by(drive.leads.parameter)
+    proof, own = _enter(drive, v, row, rows), drive.leads.with_parameter(drive.leads.parameter)
     if proof is None or own is None or not proof.holds[0]:
         return True
     if same_solution(ahead.leg.led, own, v):
         rows.certification[row] = end.certification.code
-        rows.radius[row], rows.unique[row] = proof.radius[0], proof.alone_within[0]
+        rows.radius[row], rows.uniqueness_radius[row] = (
+            proof.radius[0],
+            proof.least_uniqueness_radius[0],
+        )
     return True
 
 

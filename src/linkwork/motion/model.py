@@ -55,8 +55,8 @@ class Model:
         equations = replace(self.equations, start=start)
         return replace(self, equations=equations, branch=position.configuration or self.branch)
 
-    def guessed(self, values: Mapping[str, float]) -> Model:
-        """The model with another guess for some unknowns, file units.
+    def with_guess(self, values: Mapping[str, float]) -> Model:
+        """The model with another guess for some unknowns, in file units.
 
         Raises
         ------
@@ -105,11 +105,11 @@ class Model:
             raise InputError(
                 f'mechanism "{self.description.name}" has no input: add [input] to sweep it'
             )
-        return self.everyday_rows * self.input_scale
+        return self.rows_in_file_units * self.input_scale
 
     @cached_property
-    def everyday_rows(self) -> Array:
-        """The table's input values as asked, file units, (rows, p)."""
+    def rows_in_file_units(self) -> Array:
+        """The table's input values as asked, in file units, (rows, p)."""
         columns = [self.description.rows(which) for which in self.description.inputs]
         if not columns:
             return np.zeros((1, 0))
@@ -117,8 +117,8 @@ class Model:
         return np.stack([np.broadcast_to(column, count) for column in columns], axis=1)
 
     @cached_property
-    def everyday_start(self) -> Array:
-        """The input values the guess belongs to, file units, (p,)."""
+    def start_in_file_units(self) -> Array:
+        """The input values the guess belongs to, in file units, (p,)."""
         values = [
             self.units.angle.from_radians(float(value)) if variable.kind == "angle" else value
             for variable, value in zip(self.equations.inputs, self.start_inputs, strict=True)
@@ -155,7 +155,7 @@ class Model:
         return input_speed(self.description, self.equations.inputs, self.rows)
 
     def input_values(self, at: dict[str, float]) -> Array:
-        """Named everyday input values as an array, file units, (p,).
+        """Named input values as an array, in file units, (p,).
 
         Raises
         ------

@@ -15,7 +15,7 @@ from linkwork.motion.model import Model
 from linkwork.results.motion import Series
 from linkwork.results.quantity import Kind, Quantity
 
-__all__ = ["Named", "named_series"]
+__all__ = ["Named", "name_series"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,7 +30,7 @@ class Named:
     outputs: dict[str, Series]
 
 
-def named_series(
+def name_series(
     model: Model,
     v: Array,
     first: Array,
@@ -45,7 +45,7 @@ def named_series(
     v, first, second : (B, N)
         Variables with their derivatives by the leading input, internal units.
     inputs : (B, p)
-        The input values asked for, file units (they may differ from ``v`` by whole turns).
+        The input values asked for, in file units (they may differ from ``v`` by whole turns).
     """
     lost = ~found
     columns = [np.where(lost[:, None], np.nan, part) for part in (v, first, second)]
@@ -130,12 +130,12 @@ def _outputs(
     if not model.equations.outputs:
         return {}
 
-    def everyday(jet: Jet, kind: Kind) -> Jet:
+    def in_file_unit(jet: Jet, kind: Kind) -> Jet:
         scale = 1.0 / model.units.scale(kind)
         return Jet(jet.v * scale, jet.d1 * scale, jet.d2 * scale)
 
-    names = {symbol: everyday(jet, kinds[symbol]) for symbol, jet in jets.items()}
-    names |= {canonical(link): everyday(jet, Kind.ANGLE) for link, jet in links.items()}
+    names = {symbol: in_file_unit(jet, kinds[symbol]) for symbol, jet in jets.items()}
+    names |= {canonical(link): in_file_unit(jet, Kind.ANGLE) for link, jet in links.items()}
     for point, (x, y) in points.items():
         names |= {coordinate_name(point, "x"): x, coordinate_name(point, "y"): y}
     found = {}

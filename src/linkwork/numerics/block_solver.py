@@ -12,7 +12,7 @@ from linkwork.foundation.status import Status
 from linkwork.numerics.newton import NewtonOptions, Watch, newton
 from linkwork.numerics.system import System
 
-__all__ = ["Block", "BlockSolution", "BlockSolver", "Linearised", "Rates", "linearised"]
+__all__ = ["Block", "BlockSolution", "BlockSolver", "Linearised", "Rates", "linearise_block"]
 
 _CONVERGED = Status.CONVERGED.code
 _LARGE = 1e3  # condition up to which nobody asks whether balanced columns would do better
@@ -136,7 +136,7 @@ class BlockSolver:
 
     def linearise(self, v: Array) -> list[Linearised]:
         """Jacobian, its inverse and the sign of its determinant for every block at v (B, N)."""
-        return [linearised(block, v) for block in self.blocks]
+        return [linearise_block(block, v) for block in self.blocks]
 
     def rates(
         self, v: Array, input_rate: Array, linear: Sequence[Linearised] | None = None
@@ -172,7 +172,9 @@ class BlockSolver:
             direction[:, n:] = first[:, known]
             x1 = -_apply(inverse, _apply(jacobian[:, :, n:], direction[:, n:]))
             direction[:, :n] = x1
-            bend = system.second(here, direction) + _apply(jacobian[:, :, n:], second[:, known])
+            bend = system.second_directional_derivative(here, direction) + _apply(
+                jacobian[:, :, n:], second[:, known]
+            )
             first[:, block.unknowns] = x1
             second[:, block.unknowns] = -_apply(inverse, bend)
             own = _condition(system, jacobian[:, :, :n], inverse)
@@ -198,7 +200,7 @@ class BlockSolver:
         return worst
 
 
-def linearised(block: Block, v: Array) -> Linearised:
+def linearise_block(block: Block, v: Array) -> Linearised:
     """One block at v (B, N)."""
     jacobian = block.system.jacobian(v[:, block.variables])
     inverse, sign = _inverse(jacobian[:, :, : len(block.unknowns)])

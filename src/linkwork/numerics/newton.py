@@ -109,7 +109,7 @@ class _Iteration:
         self.live = np.arange(count)
         self.last = np.full(count, np.inf)  # weighted size of each live row's latest correction
         self.weights = system.variable_scale[:n]
-        turns = system.turns[:n]
+        turns = system.is_angle[:n]
         self.turns = turns if turns.any() and not math.isinf(options.largest_turn) else None
 
     def run(self) -> NewtonResult:
@@ -150,7 +150,7 @@ class _Iteration:
             if jacobian is None or not len(self.live):
                 return
             here, f, jacobian = here[stay], f[stay], jacobian[stay]
-        change = self._corrected(k, here, f, jacobian[:, :, :n])
+        change = self._correct(k, here, f, jacobian[:, :, :n])
         if not len(self.live):
             return
         self.v[self.live, :n] += change
@@ -163,7 +163,7 @@ class _Iteration:
             self.contraction[self.live] = np.maximum(self.contraction[self.live], ratio)
         self.last = size
 
-    def _corrected(self, k: int, here: Array, f: Array, jacobian: Array) -> Array:
+    def _correct(self, k: int, here: Array, f: Array, jacobian: Array) -> Array:
         """The corrections of the live rows; rows with a singular Jacobian leave."""
         change, singular = corrections(jacobian, f)
         if singular.any():
@@ -173,7 +173,7 @@ class _Iteration:
             self._keep(~singular)
             change = change[~singular]
         if self.turns is not None:
-            change = _shortened(change, self.turns, self.options.largest_turn)
+            change = _shorten(change, self.turns, self.options.largest_turn)
         if self.watch is not None and len(change):
             self.watch(k, here, f, change)
         return change
@@ -201,7 +201,7 @@ def corrections(jacobian: Array, f: Array) -> tuple[Array, BoolArray]:
     return np.asarray(change, dtype=float), singular
 
 
-def _shortened(change: Array, turns: BoolArray, largest: float) -> Array:
+def _shorten(change: Array, turns: BoolArray, largest: float) -> Array:
     """Corrections scaled down so that no angle turns further than allowed."""
     turn = np.abs(change[:, turns]).max(axis=1)
     if not (turn > largest).any():

@@ -25,7 +25,7 @@ class System(Protocol):
         """(N,) weights of the variables."""
 
     @property
-    def turns(self) -> BoolArray:
+    def is_angle(self) -> BoolArray:
         """(N,) which variables are angles."""
 
     def residual(self, v: Array) -> Array:
@@ -42,11 +42,11 @@ class System(Protocol):
     def jacobian(self, v: Array) -> Array:
         """dF/dv, (B, m, N)."""
 
-    def second(self, v: Array, d: Array) -> Array:
+    def second_directional_derivative(self, v: Array, d: Array) -> Array:
         """D²F[d, d], (B, m)."""
 
     @property
-    def bends_boundedly(self) -> bool:
+    def has_curvature_bound(self) -> bool:
         """Whether :meth:`curvature` knows a bound."""
 
     def curvature(self, v: Array, matrix: Array) -> Curvature:

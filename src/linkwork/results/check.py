@@ -55,7 +55,7 @@ class CheckReport:
         Dimensions that were measured between sketched points.
     start : Status, str
         How Newton-Raphson ended at the guess's own input value, and the sentence.
-    start_input : mapping of the guess's input values, file units.
+    start_input : mapping of the guess's input values, in file units.
     failure : Failure, optional
         Why there is no position at the start.
     classification : Classification, optional

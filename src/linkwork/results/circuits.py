@@ -30,7 +30,7 @@ class Branch:
     name : str
         ``circuit 1 branch 2``.
     input_range : (float, float)
-        Smallest and largest value of the leading input, file units, unwrapped.
+        Smallest and largest value of the leading input, in file units, unwrapped.
     configuration : str
         The name of its configuration at the guess's own input, "" if it does not come by there.
     certified : bool
@@ -60,7 +60,7 @@ class Circuit:
         Whether the curve is proved to be one curve, and to close; up to a millionth of a radian
         at change points.
     input_range : (float, float)
-        Of the leading input, file units, unwrapped.
+        Of the leading input, in file units, unwrapped.
     turns : int, optional
         Turns of the input until the circuit closes: 0 if it turns back; ``None`` if it does not
         close or the input is a length.

@@ -62,7 +62,7 @@ class Failure:
         Smallest relative change first.
     nearest_input : Mapping[str, float]
         The input values nearest to those asked that the mechanism's circuit reaches (the circuit
-        through the start, or, if there is none, the one found nearest to the guess); everyday
+        through the start, or, if there is none, the one found nearest to the guess); file
         units, empty if none is known.
     nearest_kind : str
         What is there: ``dead point``, ``end of what was followed``; empty if the circuit reaches

@@ -35,7 +35,7 @@ class Limit:
     ----------
     kind : LimitKind
     input : float
-        Of the leading input, file units.
+        Of the leading input, in file units.
     bracket : (float, float)
         The dead point lies in it if it is located. Otherwise the last value reached and the first
         that failed.
@@ -110,9 +110,9 @@ class OutputLimit:
     kind : str
         ``maximum`` or ``minimum``.
     input : float
-        Of the leading input, file units, with ``bracket`` around it.
+        Of the leading input, in file units, with ``bracket`` around it.
     value : float
-        Of the quantity, file units.
+        Of the quantity, in file units.
     located : bool
         Whether it was found to rounding.
     """

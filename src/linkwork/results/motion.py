@@ -16,7 +16,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
-from linkwork.foundation.names import spelled
+from linkwork.foundation.names import find_spelling
 from linkwork.foundation.presenting import presenter
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
@@ -150,7 +150,7 @@ class Motion:
         Rates are columns too: ``motion["A.x.d1"]``, ``motion["A.x.velocity"]``; see
         :class:`~linkwork.results.quantity.Rate`.
         """
-        own = spelled(name, self.inputs)
+        own = find_spelling(name, self.inputs)
         if own in self.inputs:
             return self.inputs[own]
         quantity, rate = Rate.split(name)
@@ -163,11 +163,11 @@ class Motion:
     def series(self, name: str) -> Series:
         """The series of a name: unknown, link, slider, output or ``<point>.x``."""
         for table in (self.unknowns, self.links, self.sliders, self.outputs):
-            own = spelled(name, table)
+            own = find_spelling(name, table)
             if own in table:
                 return table[own]
         point, _, axis = name.rpartition(".")
-        point = spelled(point, self.points)
+        point = find_spelling(point, self.points)
         if point in self.points and axis in ("x", "y"):
             return self.points[point][axis == "y"]
         tables = (self.inputs, self.unknowns, self.links, self.sliders, self.outputs)
@@ -326,7 +326,7 @@ class Motion:
         ``motion.trace("B.velocity")`` is its velocity likewise.
         """
         own, rate = Rate.split(point)
-        own = spelled(own, self.points)
+        own = find_spelling(own, self.points)
         if own not in self.points:
             raise UnknownNameError(
                 f'there is no point "{own}" {choices("points", self.points, own)}'

@@ -12,7 +12,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
-from linkwork.foundation.names import spelled
+from linkwork.foundation.names import find_spelling
 from linkwork.foundation.presenting import presenter
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
@@ -147,11 +147,11 @@ class Position:
         """A value by name: input, unknown, link angle, slider, output or ``<point>.x``."""
         tables = (self.input, self.unknowns, self.links, self.sliders, self.outputs)
         for table in tables:
-            own = spelled(name, table)
+            own = find_spelling(name, table)
             if own in table:
                 return table[own]
         point, _, axis = name.rpartition(".")
-        point = spelled(point, self.points)
+        point = find_spelling(point, self.points)
         if point in self.points and axis in ("x", "y"):
             return self.points[point][axis == "y"]
         known = dict.fromkeys(known for table in tables for known in table)

@@ -25,7 +25,7 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class Units:
-    """The units of one mechanism: everyday values and rates."""
+    """The units of one mechanism: values in file units and rates."""
 
     angle: AngleUnit
     length: str

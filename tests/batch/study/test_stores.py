@@ -21,7 +21,7 @@ import linkwork as lw
 from linkwork.batch import Family
 from linkwork.batch.family_motion import FamilyMotion
 from linkwork.batch.study import run_study, summary_of, workers
-from linkwork.batch.study.job import Job, computed
+from linkwork.batch.study.job import Job, compute_part
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.status import Status
 from tests.batch.study.plans import PLAN, contents, edited, study
@@ -115,7 +115,7 @@ def test_chunks_may_come_in_any_order(
 ) -> None:
     def backwards(job: Job, tasks: Iterator[workers.Task]) -> Iterator[object]:
         for k, values in reversed(list(tasks)):
-            yield k, computed(job, values)
+            yield k, compute_part(job, values)
 
     monkeypatch.setattr("linkwork.batch.study.running.one_after_the_other", backwards)
     run_study(study(), tmp_path / "out.zarr", workers=1)

@@ -25,7 +25,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.description import Problems
 
-__all__ = ["Choice", "Triangular", "chosen", "values_between"]
+__all__ = ["Choice", "Triangular", "choose_values", "values_between"]
 
 _RANGE = frozenset({"from", "to"})
 _LEVELS = _RANGE | {"levels"}
@@ -84,7 +84,7 @@ class Triangular:
         return generator.triangular(self.low, self.likeliest, self.high, count)
 
 
-def chosen(
+def choose_values(
     content: Mapping[str, Any], folder: Path, problems: Problems
 ) -> tuple[Plan, Mapping[str, float]] | None:
     """What varies and what is the same for all designs; ``None`` with problems noted.

@@ -18,7 +18,7 @@ from linkwork.foundation.status import Status
 from linkwork.mechanism.description import Description
 from linkwork.motion import Model, as_described
 
-__all__ = ["Job", "Part", "computed", "linkwork_version", "passes_name"]
+__all__ = ["Job", "Part", "compute_part", "linkwork_version", "passes_name"]
 
 _MOST_PROBLEMS = 20  # distinct reasons that are kept of one part
 _FURTHER = "further reasons"
@@ -86,13 +86,13 @@ class Part:
     problems: Mapping[str, int]
 
 
-def computed(job: Job, values: Mapping[str, Array | float]) -> Part:
+def compute_part(job: Job, values: Mapping[str, Array | float]) -> Part:
     """The part of some designs.
 
     Parameters
     ----------
     values : Mapping[str, (D,) or number]
-        What varies, file units.
+        What varies, in file units.
 
     Raises
     ------

@@ -46,7 +46,7 @@ class Measured:
         self._values: dict[str, Array] = {}
 
     def __getitem__(self, name: str) -> Array:
-        """A quantity, (D, R), file units."""
+        """A quantity, (D, R), in file units."""
         if name not in self._values:
             self._values[name] = self.motion[name]
         return self._values[name]
@@ -90,7 +90,7 @@ class Reduced:
 
 @dataclass(frozen=True)
 class Comparison:
-    """A reduction against a number, file units; false where no row is found."""
+    """A reduction against a number, in file units; false where no row is found."""
 
     reduced: Reduced
     sign: str

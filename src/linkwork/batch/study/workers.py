@@ -13,11 +13,11 @@ from queue import Empty, SimpleQueue
 from threading import Lock
 from typing import Any, Protocol
 
-from linkwork.batch.study.job import Job, Part, computed
+from linkwork.batch.study.job import Job, Part, compute_part
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 
-__all__ = ["Task", "Values", "local_crew", "one_after_the_other", "pumped"]
+__all__ = ["Task", "Values", "local_crew", "one_after_the_other", "pump_parts"]
 
 Values = Mapping[str, "Array | float"]
 #: The number of a chunk, and what varies in it.
@@ -36,7 +36,7 @@ class _Future(Protocol):
 def one_after_the_other(job: Job, tasks: Iterable[Task]) -> Iterator[tuple[int, Part]]:
     """Parts computed by this process."""
     for k, values in tasks:
-        yield k, computed(job, values)
+        yield k, compute_part(job, values)
 
 
 def local_crew(job: Job, tasks: Iterable[Task], workers: int) -> Iterator[tuple[int, Part]]:
@@ -45,14 +45,14 @@ def local_crew(job: Job, tasks: Iterable[Task], workers: int) -> Iterator[tuple[
     pool = ThreadPoolExecutor(workers)
 
     try:
-        yield from pumped(tasks, lambda values: pool.submit(crew.part, values), workers + 1)
+        yield from pump_parts(tasks, lambda values: pool.submit(crew.part, values), workers + 1)
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
         crew.end()
         pool.shutdown()
 
 
-def pumped(
+def pump_parts(
     tasks: Iterable[Task], submit: Callable[[Values], _Future], most: int
 ) -> Iterator[tuple[int, Part]]:
     """Parts in the order in which they are ready; no more than ``most`` are under way."""

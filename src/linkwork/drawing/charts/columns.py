@@ -12,7 +12,7 @@ from linkwork.drawing.charts.chart import Pen, Scale
 from linkwork.drawing.charts.labels import rate_label, size_label
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import spelled
+from linkwork.foundation.names import find_spelling
 from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind, Rate
 
@@ -106,11 +106,11 @@ def column_of(motion: Motion, name: str) -> Column:
                       pen=pen)  # fmt: skip
     if name in _TEXTS:
         raise InputError(f'"{name}" is text and cannot be plotted')
-    own = spelled(name, motion.inputs)
+    own = find_spelling(name, motion.inputs)
     if own in motion.inputs:
         return _input(motion, own)
     quantity, rate = Rate.split(name)
-    point = spelled(quantity, motion.points)
+    point = find_spelling(quantity, motion.points)
     if point in motion.points and point not in _named(motion):
         if rate is None:
             raise InputError(

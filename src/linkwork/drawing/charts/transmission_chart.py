@@ -16,7 +16,7 @@ from linkwork.drawing.charts.motion_chart import across_axis, check_found, share
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import spelled
+from linkwork.foundation.names import find_spelling
 from linkwork.mechanism.dyad import Dyad
 from linkwork.results.motion import Motion
 from linkwork.results.transmission import transmission_angles
@@ -93,7 +93,7 @@ def _column(
     motion: Motion, found: Mapping[Dyad, Array], pins: Mapping[str, Dyad], name: str
 ) -> Column:
     radians = motion.units.angle.radians
-    pin = spelled(name, pins)
+    pin = find_spelling(name, pins)
     if pin in pins:
         label = f"{printed_name(pin)}: {', '.join(pins[pin].links)}"
         values = found[pins[pin]] / radians

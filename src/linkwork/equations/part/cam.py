@@ -15,7 +15,7 @@ from linkwork.equations.outline import Outline
 from linkwork.equations.part.curve import add_law, on_outline
 from linkwork.equations.part_rows import PartRows
 from linkwork.expression.tree import Name
-from linkwork.foundation.lanes import settled
+from linkwork.foundation.lanes import uniform_value
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Key
 from linkwork.mechanism.part.cam import Cam
@@ -57,12 +57,12 @@ def _programmed(rows: PartRows, cam: Cam, key: Key) -> None:
         LawEquation(
             label=cam.name,
             terms=tuple((canonical(name), weight) for name, weight in weights.items()),
-            constant=settled(constant),
+            constant=uniform_value(constant),
             law=motion.times(found.sign),
             shown=cam.name,
             meaning=_motion_text(cam, found.sign),
             inner=tuple((canonical(name), weight) for name, weight in turned.items()),
-            offset=settled(at - start),
+            offset=uniform_value(at - start),
             kind="length" if found.length else "angle",
         )
     )
@@ -156,7 +156,7 @@ def _beside(
     _direction(rows, cam.name, outline, tangent)
     size = canonical(f"{cam.name}_roller")
     frames.symbols[size] = radius
-    arm = frames.turned(radius + 0j, Name(size, size), at[0])
+    arm = frames.vector_term(radius + 0j, Name(size, size), at[0])
     arm = Term(
         value=arm.value,
         magnitude=arm.magnitude,
@@ -189,7 +189,7 @@ def _flat(
         own = linkage.shapes.local[body]
         direction = (own[point] - own[base]) / abs(own[point] - own[base])
     way = f"{cam.name}_way"
-    term = frames.turned(direction, None, frame, way)
+    term = frames.vector_term(direction, None, frame, way)
     angle, other = frames.angle[frame], frames.angle[cam.cam]
     facing = direction * cmath.exp(1j * (angle.constant - other.constant))
     facing *= cmath.exp(1j * (frames.now(angle) - frames.now(other)))

@@ -66,7 +66,7 @@ def on_outline(
     ):
         coordinate = f"{name}_{axis}"
         rows.unknown(coordinate, "length", start)
-        terms.append(frames.turned(unit, None, body, coordinate))
+        terms.append(frames.vector_term(unit, None, body, coordinate))
         add_law(rows, f"{name} {axis}", coordinate, law, (name, axis, 0))
     rows.outlines[name] = (body, origin, outline.at(outline.samples()))
     return Place(frames.places[body][origin].fixed, tuple(terms), base=origin)

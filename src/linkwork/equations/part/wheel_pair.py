@@ -6,7 +6,7 @@ import math
 from fractions import Fraction
 
 from linkwork.equations.part_rows import PartRows
-from linkwork.foundation.lanes import choose, led, many, settled
+from linkwork.foundation.lanes import choose, is_batched, leader_value, uniform_value
 from linkwork.mechanism.description import Key
 from linkwork.mechanism.part.wheel_pair import WheelPair
 
@@ -36,12 +36,12 @@ def ratio(first: float, second: float, *, whole: bool = False) -> tuple[float, f
 
     With whole numbers a whole number of turns of one wheel is exactly one of the other.
     """
-    if many(first) or many(second):
-        p, q = ratio(led(first), led(second), whole=whole)
+    if is_batched(first) or is_batched(second):
+        p, q = ratio(leader_value(first), leader_value(second), whole=whole)
         if q == 1.0 and not whole:
-            return settled(first / second), q
+            return uniform_value(first / second), q
         same = abs(q * first - p * second) <= _RATIO * abs(q * first)
-        return settled(choose(same, p, math.nan)), q
+        return uniform_value(choose(same, p, math.nan)), q
     if whole:
         fraction = Fraction(int(first), int(second))
     else:

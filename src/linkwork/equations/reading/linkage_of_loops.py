@@ -228,7 +228,7 @@ class _Drawing:
         if len(own) < 2:
             return rail
         start, end = (guide[name] for name in rail.line)
-        return replace(rail, angle=self._everyday(_direction(own) - cmath.phase(end - start)))
+        return replace(rail, angle=self._in_file_units(_direction(own) - cmath.phase(end - start)))
 
     def _sketch(self) -> dict[str, tuple[Number, Number]]:
         found: dict[str, tuple[Number, Number]] = {}
@@ -252,7 +252,7 @@ class _Drawing:
             for name, vector in others.items():
                 if name != second:
                     angle = cmath.phase(vector / others[second])
-                    yield f"{second} {first} {name}", self._everyday(angle)
+                    yield f"{second} {first} {name}", self._in_file_units(angle)
 
     def _moving(self) -> Iterator[tuple[str, str, dict[str, complex]]]:
         """Second and first point of moving links, and the vectors from it to the others."""
@@ -271,7 +271,7 @@ class _Drawing:
             if other != self.joints.ground:
                 begin -= _direction(self.places[other])
                 part["relative_to"] = self.names.links[other]
-            begin = self._everyday(begin)
+            begin = self._in_file_units(begin)
         else:
             slide = next(s for s in self.joints.slides if s.variable == variable.symbol)
             scale, begin, part = abs(slide.along), 0.0, {"slider": self._shown(slide.variable)}
@@ -283,7 +283,7 @@ class _Drawing:
     def _shown(self, symbol: str) -> str:
         return next(v.name for v in self.equations.variables if v.symbol == symbol)
 
-    def _everyday(self, angle: float) -> float:
+    def _in_file_units(self, angle: float) -> float:
         return self.loops.angle.from_radians(angle)
 
 

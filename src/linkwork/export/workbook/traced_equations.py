@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.batch.building import written_equations
+from linkwork.batch.building import write_equations
 from linkwork.equations.model import LoopEquations
 from linkwork.export.workbook.linear_form import LinearForm
 from linkwork.export.workbook.traced_number import Trace, TracedNumber
@@ -150,6 +150,6 @@ def _built(
     }
     try:
         with np.errstate(all="ignore"):
-            return written_equations(with_numbers(description, numbers)), trace
+            return write_equations(with_numbers(description, numbers)), trace
     except NotElementwise:
         return None

@@ -118,7 +118,7 @@ class TracedNumber(Lanes):
         """The plain number, noted as such."""
         if not self.re.fixed:
             self.consensus.settled.add(self.re.node)
-        return super().settled()
+        return super().uniform_value()
 
     # Arithmetic
 

@@ -26,16 +26,16 @@ from linkwork.kernels.gpu.compiling import kernel, numba_cuda, on_device
 from linkwork.kernels.march import step_control
 from linkwork.kernels.march.march_programs import NODES
 from linkwork.kernels.march.step_control import GROWTH, SAME
-from linkwork.kernels.march.work_arrays import Found, Table
+from linkwork.kernels.march.work_arrays import InputTable, MarchResult
 from linkwork.kernels.program import sine
 from linkwork.kernels.program.program import ROLES
 
 __all__ = [
-    "Found",
+    "InputTable",
+    "MarchResult",
     "Sections",
     "Shape",
     "Start",
-    "Table",
     "begin",
     "cuda",
     "follow",
@@ -155,7 +155,7 @@ def begin(
     sections: Sections, shape: Shape, w: Array, start: Start, node: Array, begun: BoolArray
 ) -> None:
     """From a guess to a position, with small steps and its own proof; see
-    :func:`linkwork.kernels.march.step_trial.solved_slowly`.
+    :func:`linkwork.kernels.march.step_trial.correct_slowly`.
 
     ``node`` (S, M), ``begun`` (M,) bool: what is found, and whether it is a position.
     """
@@ -194,7 +194,7 @@ def _first_row(rows: Array, t: float, way: int) -> int:
 
 
 @on_device
-def _note(shape: Shape, w: Array, row: int, found: Found) -> None:
+def _note(shape: Shape, w: Array, row: int, found: MarchResult) -> None:
     """A row is reached."""
     found.reached[row, found.first] = True
     for j in range(shape.unknowns):
@@ -204,7 +204,7 @@ def _note(shape: Shape, w: Array, row: int, found: Found) -> None:
 
 
 @on_device
-def _stop(shape: Shape, w: Array, way: int, found: Found) -> None:
+def _stop(shape: Shape, w: Array, way: int, found: MarchResult) -> None:
     """A mechanism goes no further: its last node and the one before."""
     size = shape.size
     found.end[way, found.first] = w[2 * size - 1]
@@ -214,7 +214,13 @@ def _stop(shape: Shape, w: Array, way: int, found: Found) -> None:
 
 @on_device
 def follow(
-    sections: Sections, shape: Shape, w: Array, start: Start, way: int, table: Table, found: Found
+    sections: Sections,
+    shape: Shape,
+    w: Array,
+    start: Start,
+    way: int,
+    table: InputTable,
+    found: MarchResult,
 ) -> None:
     """Follow a mechanism from row to row, upwards (way 1) or downwards (0).
 
@@ -225,8 +231,8 @@ def follow(
     w : thread's state
     start : Start
     way : int
-    table : Table
-    found : Found
+    table : InputTable
+    found : MarchResult
         ``first``: the mechanism.
     """
     size, rows, steps = shape.size, table.rows, table.steps

@@ -24,9 +24,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.kernels.march.closure import BlockPart, Closure, solved
+from linkwork.kernels.march.closure import BlockPart, Closure, solve_linear
 from linkwork.kernels.march.proof_program import BlockProof
-from linkwork.kernels.program.lowering import lowered, reserve
+from linkwork.kernels.program.lowering import lower_program, reserve
 from linkwork.kernels.program.program import Program, Registers
 from linkwork.kernels.program.recorder import Recorder, Value
 
@@ -58,7 +58,7 @@ class FoldPrograms:
     aside: Program
 
 
-class _Writer:
+class _FoldWriter:
     def __init__(self, table: LoopTable, lead: int, zeros: Set[str]) -> None:
         self.table, self.lead, self.zeros = table, lead, zeros
         self.n = table.unknowns
@@ -71,7 +71,7 @@ class _Writer:
         return Closure(self.table, self.part, rec, variables, self.zeros)
 
     def _scale(self, rec: Recorder, k: int) -> Value:
-        return rec.constant(1.0) if self.table.turns[k] else rec.input(f"scale{k}")
+        return rec.constant(1.0) if self.table.is_angle[k] else rec.input(f"scale{k}")
 
     def iterate(self) -> Recorder:
         """One step with λ held, and the rates of the others by λ."""
@@ -79,7 +79,7 @@ class _Writer:
         closure = self._closure(rec)
         drives = [row[0] for row in closure.jacobian([self.lead])]
         matrix = closure.jacobian(self.part.unknowns)
-        change, moved = solved(rec, matrix, [closure.residual(), drives]).columns
+        change, moved = solve_linear(rec, matrix, [closure.residual(), drives]).columns
         live, sizes = rec.input("live"), []
         for d, r, k in zip(change, moved, self.part.unknowns, strict=True):
             sizes.append(rec.divide(rec.absolute(d), self._scale(rec, k)))
@@ -129,7 +129,9 @@ class _Writer:
         arc = proof.within(dict.fromkeys(proof.known, far))
         rec.write("sound", rec.where(place.holds, 1.0, 0.0))
         masks = [place.holds, arc.holds]
-        for k, error, alone in zip(self.part.unknowns, place.each, arc.alone, strict=True):
+        for k, error, alone in zip(
+            self.part.unknowns, place.error_bound, arc.isolation_radius, strict=True
+        ):
             rec.write(f"e{k}", error)
             off = rec.absolute(closure.v[k] - rec.input(f"w{k}"))
             known = rec.largest([error, rec.input(f"x{k}")])
@@ -186,7 +188,7 @@ def fold_programs(table: LoopTable, lead: int, zeros: Set[str] = frozenset()) ->
     lead : int
         The unknown that leads.
     """
-    writer = _Writer(table, lead, zeros)
+    writer = _FoldWriter(table, lead, zeros)
     recorded = {
         "iterate": writer.iterate(),
         "move": writer.move(),
@@ -198,7 +200,9 @@ def fold_programs(table: LoopTable, lead: int, zeros: Set[str] = frozenset()) ->
     registers = Registers()
     for rec in recorded.values():
         reserve(rec, registers)
-    programs = {name: lowered(rec, registers, registers.count) for name, rec in recorded.items()}
+    programs = {
+        name: lower_program(rec, registers, registers.count) for name, rec in recorded.items()
+    }
     return FoldPrograms(
         registers=registers,
         height=max(program.height for program in programs.values()),

@@ -21,21 +21,28 @@ from linkwork.kernels.march.step_trial import (
     RADIUS,
     TOPOLOGY,
     Topology,
-    chosen,
-    copied,
-    loaded,
-    settled,
+    copy_lane,
+    correct_and_judge,
+    load_lane,
+    update_weights,
 )
-from linkwork.kernels.march.work_arrays import FOUND, TABLE, TASKS, Found, Table, Tasks
-from linkwork.kernels.program.compiling import compiled_for, types, uncounted
+from linkwork.kernels.march.work_arrays import (
+    INPUT_TABLE,
+    MARCH_RESULT,
+    TASKS,
+    InputTable,
+    MarchResult,
+    Tasks,
+)
+from linkwork.kernels.program.compiling import compiled_for, njit_no_refcount, types
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.program import ROLES
 
 __all__ = ["march"]
 
 
-@uncounted
-def _noted(
+@njit_no_refcount
+def _store_row(
     w: Array,
     lane: int,
     topology: Topology,
@@ -43,7 +50,7 @@ def _noted(
     row: int,
     member: int,
     unknowns: int,
-    found: Found,
+    found: MarchResult,
 ) -> None:
     """A row is reached."""
     place = found.first + member
@@ -54,9 +61,9 @@ def _noted(
         found.radius[row, place] = w[topology.noted[RADIUS], lane]
 
 
-@uncounted
-def _stopped(
-    w: Array, lane: int, topology: Topology, turn: int, way: int, member: int, found: Found
+@njit_no_refcount
+def _stop_design(
+    w: Array, lane: int, topology: Topology, turn: int, way: int, member: int, found: MarchResult
 ) -> None:
     """A mechanism goes no further."""
     nodes = topology.nodes
@@ -70,17 +77,17 @@ def _stopped(
 @compiled_for(
     types.void(
         TOPOLOGY, types.Array(types.float64, 2, "C"),
-        types.Array(types.float64, 2, "C"), TABLE, TASKS, types.int64, FOUND,
+        types.Array(types.float64, 2, "C"), INPUT_TABLE, TASKS, types.int64, MARCH_RESULT,
     )
 )  # fmt: skip
 def march(
     topology: Topology,
     w: Array,
     design: Array,
-    table: Table,
+    table: InputTable,
     tasks: Tasks,
     count: int,
-    found: Found,
+    found: MarchResult,
 ) -> None:
     """Go all ways that are asked for.
 
@@ -89,10 +96,10 @@ def march(
     topology : Topology
     w : (registers, LANES) workspace with constants and options in place
     design : (C, M) coefficients
-    table : Table
+    table : InputTable
     tasks : Tasks
         The first ``count`` of them.
-    found : Found
+    found : MarchResult
     """
     rows, steps, nodes = table.rows, table.steps, topology.nodes
     weights, size = topology.weights, nodes.shape[1]
@@ -119,9 +126,9 @@ def march(
                 task[i] = following
                 following += 1
                 way[i] = tasks.way[task[i]]
-                loaded(w, i, topology.coefficients, design, tasks.member[task[i]])
+                load_lane(w, i, topology.coefficients, design, tasks.member[task[i]])
                 for role in range(1, ROLES):
-                    loaded(w, i, nodes[(role - turn) % ROLES], tasks.node, task[i])
+                    load_lane(w, i, nodes[(role - turn) % ROLES], tasks.node, task[i])
                 known[i] = 1
                 spacing[i, :] = np.inf  # like no other
                 h[i] = steps[0]
@@ -135,10 +142,10 @@ def march(
             w[t0, i] = goal if abs(away) <= h[i] else w[t1, i] + step
             for role in range(1, ROLES):
                 times[role - 1] = w[nodes[(role - turn) % ROLES, size - 1], i]
-            chosen(w, i, weights, times, step, known[i], spacing[i])
+            update_weights(w, i, weights, times, step, known[i], spacing[i])
         if busy == 0:
             break
-        settled(topology, turn, w, standing, False, LANES)
+        correct_and_judge(topology, turn, w, standing, False, LANES)
         for i in range(LANES):
             if task[i] < 0:
                 continue
@@ -148,7 +155,7 @@ def march(
             taken = w[good, i] > 0.5 and not lost
             if taken:
                 if w[t0, i] == rows[row[i]]:
-                    _noted(w, i, topology, turn, row[i], m, table.unknowns, found)
+                    _store_row(w, i, topology, turn, row[i], m, table.unknowns, found)
                     row[i] += 2 * way[i] - 1
                 if moved >= 0.5 * h[i]:
                     h[i] = min(GROWTH * h[i], steps[1])
@@ -156,11 +163,11 @@ def march(
             else:
                 h[i] = 0.5 * moved
                 if h[i] < steps[2]:
-                    _stopped(w, i, topology, turn, way[i], m, found)
+                    _stop_design(w, i, topology, turn, way[i], m, found)
                     row[i] = len(rows) if way[i] == 1 else -1
             if not taken or moved == 0.0:  # the trial is no new node: move the others on
                 if taken:
                     known[i] = 1
                 for role in range(NODES):
-                    copied(w, i, nodes[(role - turn) % ROLES], nodes[(role + 1 - turn) % ROLES])
+                    copy_lane(w, i, nodes[(role - turn) % ROLES], nodes[(role + 1 - turn) % ROLES])
         turn = (turn + 1) % ROLES

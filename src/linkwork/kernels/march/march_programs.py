@@ -38,12 +38,12 @@ from linkwork.kernels.march.closure import (
     BlockPart,
     Closure,
     Phase,
+    cosine_and_sine,
     phasor_name,
-    solved,
-    turned,
+    solve_linear,
 )
 from linkwork.kernels.march.proof_program import BlockProof
-from linkwork.kernels.program.lowering import lowered, reserve
+from linkwork.kernels.program.lowering import lower_program, reserve
 from linkwork.kernels.program.program import ROLES, Program, Registers
 from linkwork.kernels.program.recorder import Recorder, Value
 
@@ -102,7 +102,7 @@ class MarchPrograms:
         )
 
 
-class _Writer:
+class _MarchWriter:
     """Records the programs of one table."""
 
     def __init__(
@@ -120,7 +120,7 @@ class _Writer:
 
     def _scale(self, rec: Recorder, k: int) -> Value:
         """The weight of a variable: 1 for angles."""
-        return rec.constant(1.0) if self.table.turns[k] else rec.input(f"scale{k}")
+        return rec.constant(1.0) if self.table.is_angle[k] else rec.input(f"scale{k}")
 
     def _rate(self, rec: Recorder, j: int) -> Value:
         """By how much an input changes with t."""
@@ -163,7 +163,7 @@ class _Writer:
                 rec.write(f"u{j}.0", value)
         variables = [t] * self.n + inputs  # phases of inputs alone know no unknowns
         for phase in sorted(self._given_phases()):
-            cosine, sine = turned(rec, variables, phase)
+            cosine, sine = cosine_and_sine(rec, variables, phase)
             rec.write(phasor_name("cos", phase), cosine)
             rec.write(phasor_name("sin", phase), sine)
         return rec
@@ -179,9 +179,11 @@ class _Writer:
         matrix, sides = closure.jacobian(part.unknowns), [closure.residual()]
         if not self.certified:
             sides.append(self._drives(closure, rec))
-        answer = solved(rec, matrix, sides)
+        answer = solve_linear(rec, matrix, sides)
         change, live = answer.columns[0], rec.input(f"live{number}.0")
-        turns = [abs(d) for d, k in zip(change, part.unknowns, strict=True) if self.table.turns[k]]
+        turns = [
+            abs(d) for d, k in zip(change, part.unknowns, strict=True) if self.table.is_angle[k]
+        ]
         if damped and turns:
             factor = rec.smallest([1.0, rec.input("most_turn") / rec.largest(turns)])
             change = [factor * d for d in change]
@@ -219,7 +221,7 @@ class _Writer:
         rates = {k: self._moved(rec, k) for k in closure.known()}
         rates |= {k: -r for k, r in zip(unknowns, moved, strict=True)}
         correction = {k: -d for k, d in zip(unknowns, change, strict=True)}
-        (more,) = solved(rec, matrix, [closure.bending(correction, rates)]).columns
+        (more,) = solve_linear(rec, matrix, [closure.bending(correction, rates)]).columns
         return [rec.subtract(rates[k], m) for k, m in zip(unknowns, more, strict=True)]
 
     def _drives(self, closure: Closure, rec: Recorder) -> list[Value]:
@@ -251,7 +253,7 @@ class _Writer:
         here, there = proof.within(near), proof.within(far)
         masks = [here.holds, there.holds]
         for k, error, reach, alone in zip(
-            part.unknowns, here.each, there.each, there.alone, strict=True
+            part.unknowns, here.error_bound, there.error_bound, there.isolation_radius, strict=True
         ):
             rec.write(f"e{k}.0", error)
             rec.write(f"y{k}.0", reach)
@@ -318,7 +320,7 @@ def march_programs(
     certified : bool
         Whether every step is proved.
     """
-    writer, blocks = _Writer(table, parts, zeros, certified), range(len(parts))
+    writer, blocks = _MarchWriter(table, parts, zeros, certified), range(len(parts))
     recorded = [
         writer.predict(),
         writer.given(),
@@ -335,7 +337,7 @@ def march_programs(
     registers.all_of(sorted(noted))
     for rec in recorded:
         reserve(rec, registers)
-    programs = [lowered(rec, registers, registers.count) for rec in recorded]
+    programs = [lower_program(rec, registers, registers.count) for rec in recorded]
     count = len(parts)
     predict, given, judge, *rest = programs
     return MarchPrograms(

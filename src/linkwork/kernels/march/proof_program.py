@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.kernels.march.closure import Closure, Phase, solved
+from linkwork.kernels.march.closure import Closure, Phase, solve_linear
 from linkwork.kernels.program.recorder import Recorder, Value
 
-__all__ = ["BlockProof", "Constants", "Found"]
+__all__ = ["BlockProof", "BlockRadii", "Constants"]
 
 _UNIT = float(np.finfo(float).eps) / 2.0
 _SLACK = 1.0 + 1e-12
@@ -28,16 +28,16 @@ Number = Value | float
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
-    """``holds`` as a mask; a solution within ``each``, no other within ``alone`` (own units); the
-    same as ``radius`` and ``unique``, weighted.
+class BlockRadii:
+    """``holds`` as a mask; a solution within ``error_bound``, no other within ``isolation_radius``
+    (own units); the same as ``radius`` and ``uniqueness_radius``, weighted.
     """
 
     holds: Value
     radius: Value
-    unique: Value
-    each: list[Value]
-    alone: list[Value]
+    uniqueness_radius: Value
+    error_bound: list[Value]
+    isolation_radius: list[Value]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +67,7 @@ class BlockProof:
         self.count = n = len(self.unknowns)
         jacobian = closure.jacobian(self.unknowns)
         unit = [[1.0 if i == k else 0.0 for i in range(n)] for k in range(n)]
-        columns = solved(self.rec, jacobian, unit).columns
+        columns = solve_linear(self.rec, jacobian, unit).columns
         self.inverse = [[columns[k][i] for k in range(n)] for i in range(n)]
         self.size = [[self.rec.absolute(a) for a in row] for row in self.inverse]
         row_error, slope_error = _Rounding(closure, scale).bounds()
@@ -163,7 +163,7 @@ class BlockProof:
         moved = [rate(self.rec, k) for k in self.known]
         return [-self.product(row, moved) for row in self.signed]
 
-    def within(self, known: Mapping[int, Value]) -> Found:
+    def within(self, known: Mapping[int, Value]) -> BlockRadii:
         """The proof for every value of the known variables so far from theirs."""
         return self._radii(self.constants(known))
 
@@ -172,7 +172,7 @@ class BlockProof:
         spread = _Spread(self, known)
         return [spread.constants(i) for i in range(self.count)]
 
-    def _radii(self, rows: Sequence[Constants]) -> Found:
+    def _radii(self, rows: Sequence[Constants]) -> BlockRadii:
         """Existence and uniqueness from the constants, as ``numerics.certificate.radii``."""
         rec = self.rec
         y, z = rec.largest(row.y for row in rows), rec.largest(row.z for row in rows)
@@ -188,17 +188,17 @@ class BlockProof:
         square = room * room - 2.0 * _SLACK * whole * y
         holds = rec.all_of([rec.at_most(_ROOM, room), rec.at_most(_TINY, square)])
         total = room + rec.sqrt(rec.largest([square, 0.0]))
-        exists = 2.0 * _SLACK * y / total
-        unique = total / (whole * _SLACK)
+        existence_radius = 2.0 * _SLACK * y / total
+        uniqueness_radius = total / (whole * _SLACK)
         if reach is not None:
-            unique = rec.smallest([unique, reach / _SLACK])
-        each, alone = [], []
+            uniqueness_radius = rec.smallest([uniqueness_radius, reach / _SLACK])
+        error_bound, isolation_radius = [], []
         for row, k in zip(rows, self.unknowns, strict=True):
             curve = row.omega if reach is None else row.omega + reach * row.bent
-            own = row.y + exists * (row.z + 0.5 * curve * exists)
-            each.append(rec.smallest([own * _SLACK, exists]) * self.scale[k])
-            alone.append(unique * self.scale[k])
-        return Found(holds, exists, unique, each, alone)
+            own = row.y + existence_radius * (row.z + 0.5 * curve * existence_radius)
+            error_bound.append(rec.smallest([own * _SLACK, existence_radius]) * self.scale[k])
+            isolation_radius.append(uniqueness_radius * self.scale[k])
+        return BlockRadii(holds, existence_radius, uniqueness_radius, error_bound, isolation_radius)
 
 
 class _Spread:

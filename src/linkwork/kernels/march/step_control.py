@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwork.foundation.arrays import Array
-from linkwork.kernels.program.compiling import uncounted
+from linkwork.kernels.program.compiling import njit_no_refcount
 
 __all__ = ["GROWTH", "SAME", "START_STEPS", "STEPS", "hermite", "trusted"]
 
@@ -14,7 +14,7 @@ SAME = 1e-9  # relative: steps so nearly equal share the weights of their predic
 _FAR = 2.5  # times the step before: further ahead fewer nodes are trusted
 
 
-@uncounted
+@njit_no_refcount
 def trusted(t: float, times: Array, known: int) -> int:
     """How many of the ``known`` last nodes, at ``times`` (4,), predict well at t."""
     step, used = abs(t - times[0]), min(known, len(times))
@@ -24,7 +24,7 @@ def trusted(t: float, times: Array, known: int) -> int:
     return used
 
 
-@uncounted
+@njit_no_refcount
 def hermite(t: float, times: Array, i: int, count: int) -> tuple[float, float]:
     """Weights at t of the i-th of ``count`` nodes' value and derivative in Hermite's polynomial."""
     basis, slope = 1.0, 0.0

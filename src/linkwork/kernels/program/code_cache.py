@@ -15,7 +15,7 @@ from platformdirs import user_cache_path
 
 from linkwork.foundation.errors import InputError
 
-__all__ = ["is_written", "written"]
+__all__ = ["is_cached", "load_compiled"]
 
 #: A folder that takes the place of the user's cache.
 FOLDER = "LINKWORK_CACHE"
@@ -33,7 +33,7 @@ _KERNELS = Path(__file__).parents[1]
 _ONE_AT_A_TIME = RLock()  # a module is among the known ones before it is whole
 
 
-def written(source: str, function: str) -> Any:
+def load_compiled(source: str, function: str) -> Any:
     """A function of a module of which the source is given; compiled at most once.
 
     Raises
@@ -48,11 +48,11 @@ def written(source: str, function: str) -> Any:
             path = _path(name)
             if not path.exists() or path.read_text(encoding="utf-8") != source:
                 _write(path, source)
-            known = _loaded(name, path)
+            known = _load_module(name, path)
     return getattr(known, function)
 
 
-def is_written(source: str) -> bool:
+def is_cached(source: str) -> bool:
     """Whether the module is there already, so that it costs next to nothing."""
     return _name(source) in sys.modules or _path(_name(source)).exists()
 
@@ -90,7 +90,7 @@ def _write(path: Path, source: str) -> None:
         ) from None
 
 
-def _loaded(name: str, path: Path) -> Any:
+def _load_module(name: str, path: Path) -> Any:
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None
     assert spec.loader is not None

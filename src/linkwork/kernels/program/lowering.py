@@ -10,7 +10,7 @@ import numpy as np
 from linkwork.kernels.program.program import Op, Program, Registers
 from linkwork.kernels.program.recorder import Recorder
 
-__all__ = ["lowered", "reserve"]
+__all__ = ["lower_program", "reserve"]
 
 
 @dataclass
@@ -192,7 +192,7 @@ class _Lowering:
                 self.free.append(place)
 
 
-def lowered(recorder: Recorder, registers: Registers, scratch_from: int) -> Program:
+def lower_program(recorder: Recorder, registers: Registers, scratch_from: int) -> Program:
     """The program of what was recorded, its scratch registers from a number on.
 
     Every name and constant it uses must have its register before (see :func:`reserve`).

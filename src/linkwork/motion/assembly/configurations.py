@@ -15,7 +15,7 @@ from linkwork.foundation.status import Status
 from linkwork.motion.assembly.assembling import Assemblies, positions_at
 from linkwork.motion.circuit.circuits import branch_start, is_branch_name
 from linkwork.motion.model import Model
-from linkwork.motion.named_quantities import named_series
+from linkwork.motion.named_quantities import name_series
 from linkwork.motion.positions import (
     Evidence,
     found_message,
@@ -32,7 +32,7 @@ from linkwork.results.configurations import Configurations
 from linkwork.results.failure import Failure
 from linkwork.results.position import Certificate, Position
 
-__all__ = ["configurations", "solve_configuration", "started_in"]
+__all__ = ["configurations", "solve_configuration", "start_in_configuration"]
 
 _NONE = "there is no configuration at this input: the loops cannot be closed"
 
@@ -75,7 +75,7 @@ def _positions(model: Model, target: Array, found: Assemblies) -> tuple[Position
     rates, proof = solver.rates(found.v, input_rate(model)), found.proof
     residual = solver.residual(found.v)
     inputs = np.repeat(target[None, :], count, axis=0)
-    named = named_series(
+    named = name_series(
         model, found.v, rates.first, rates.second, inputs, np.ones(count, dtype=bool)
     )
     status = Status.CONVERGED
@@ -88,7 +88,7 @@ def _positions(model: Model, target: Array, found: Assemblies) -> tuple[Position
                     model.equations, Certification.CONFIGURATION_CERTIFIED
                 ),
                 radius=float(proof.radius[k]),
-                unique_within=float(proof.alone_within[k]),
+                unique_within=float(proof.least_uniqueness_radius[k]),
             )
         evidence = Evidence(
             status=status,
@@ -122,13 +122,13 @@ def solve_configuration(
         raise InputError(f"{model.description.name}: {found.message}")
     if len(found):
         return found[name]
-    position = _unassembled(model, target_values(model, at))
+    position = _explain_unassembled(model, target_values(model, at))
     if throw:
         raise NotConvergedError(position.message)
     return position
 
 
-def _unassembled(model: Model, target: Array) -> Position:
+def _explain_unassembled(model: Model, target: Array) -> Position:
     """What to say where there is no configuration: the loop that does not close, if one is known.
 
     Newton-Raphson is tried from the guess, as for every position; where it fails is what is told.
@@ -140,7 +140,7 @@ def _unassembled(model: Model, target: Array) -> Position:
     return failed_position(model, target, Status.CANNOT_CLOSE, failure, start)
 
 
-def started_in(model: Model, name: str) -> Model:
+def start_in_configuration(model: Model, name: str) -> Model:
     """The model with a named configuration, at the guess's own input value, as its guess.
 
     A name such as ``circuit 1 branch 2`` takes a position on that branch instead.

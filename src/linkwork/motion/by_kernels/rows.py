@@ -16,7 +16,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.kernels.march.position_programs import along_rows
 from linkwork.kernels.march.sweep_kernel import Steps
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.program.execution import Execution
 from linkwork.motion.by_kernels.equations import own_coefficients, zero_names
 from linkwork.motion.by_kernels.kernels import kernel_of, row_program_of
 from linkwork.motion.drive import Drive
@@ -35,9 +35,9 @@ class KernelRows:
     """Some rows of a table along a track.
 
     ``where`` (R,): which rows they are. ``v``, ``first``, ``second`` (N, R); ``condition``,
-    ``residual``, ``iterations`` (R,); ``radius``, ``unique`` (R,), NaN without a proof. ``checked``
-    (C,): rows of the table that have to be solved along the track, among them all that are not
-    here.
+    ``residual``, ``iterations`` (R,); ``radius``, ``uniqueness_radius`` (R,), NaN without a proof.
+    ``checked`` (C,): rows of the table that have to be solved along the track, among them all that
+    are not here.
     """
 
     where: IndexArray
@@ -48,7 +48,7 @@ class KernelRows:
     residual: Array
     iterations: CountArray
     radius: Array
-    unique: Array
+    uniqueness_radius: Array
     checked: IndexArray
 
     def put_into(self, found: SolvedRows, there: IndexArray, weights: Array, certify: bool) -> bool:
@@ -69,7 +69,7 @@ class KernelRows:
         same = (found.status[place] == Status.CONVERGED.code) & (away <= _SAME)
         if certify:
             same &= found.certification[place] == Certification.CERTIFIED.code
-            same &= away + self.radius[mine] < found.unique[place]
+            same &= away + self.radius[mine] < found.uniqueness_radius[place]
             same &= bool(np.isfinite(self.radius).all())
         if not same.all():
             return False
@@ -81,7 +81,10 @@ class KernelRows:
         for name in ("condition", "residual", "iterations"):
             getattr(found, name)[rows] = getattr(self, name)[fresh]
         if certify:
-            found.radius[rows], found.unique[rows] = self.radius[fresh], self.unique[fresh]
+            found.radius[rows], found.uniqueness_radius[rows] = (
+                self.radius[fresh],
+                self.uniqueness_radius[fresh],
+            )
             found.certification[rows] = Certification.CERTIFIED.code
         return True
 
@@ -107,7 +110,7 @@ def kernel_rows(
         own = {"origin": origin, "rate": rate, "spread": spread[j]}
         coefficients |= {f"u{j}.{name}": np.array([value]) for name, value in own.items()}
     kernel = kernel_of(model, zeros, certify)
-    kernel.shift(Gear(positions=len(rows)))
+    kernel.shift(Execution(positions=len(rows)))
     nearest, begin = _nearest(track, rows)
     steps = Steps().times(path.size)
     march = kernel.alone(coefficients, begin.v[:n], begin.t, rows, steps)
@@ -118,7 +121,7 @@ def kernel_rows(
     read = along_rows(row_program_of(model, zeros, certify), coefficients, v)
     moving = np.repeat(path.rate[:, None], len(rows), axis=1)
     unproved = np.full((0 if certify else 2, len(rows)), np.nan)
-    condition, residual, radius, unique = np.concatenate([read[2 * n :], unproved])
+    condition, residual, radius, uniqueness_radius = np.concatenate([read[2 * n :], unproved])
     return KernelRows(
         where=where,
         v=v,
@@ -128,7 +131,7 @@ def kernel_rows(
         residual=residual,
         iterations=march.counts,
         radius=radius,
-        unique=unique,
+        uniqueness_radius=uniqueness_radius,
         checked=np.setdiff1d(np.arange(len(t)), np.delete(where, nearest)),
     )
 

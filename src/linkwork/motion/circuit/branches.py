@@ -13,15 +13,15 @@ from linkwork.foundation.status import Status
 from linkwork.numerics.continuation.branch_tracking import Track, TrackOptions, rows_on_track
 from linkwork.numerics.continuation.curve_proof import ProvenCurve, prove_curve, same_solution
 from linkwork.numerics.continuation.curve_tracing import Curve, CurveOptions, Leg, trace
-from linkwork.numerics.continuation.local_parametrization import Leads, Led
+from linkwork.numerics.continuation.local_parametrization import Parametrization, Parametrizations
 from linkwork.numerics.continuation.turning_point import TurningPoint, turning_points
 from linkwork.results.motion import LimitKind
 
-__all__ = ["CurveBranch", "Traced", "branches_of", "traced"]
+__all__ = ["CurveBranch", "TracedCurve", "branches_of", "trace_with_proof"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Traced:
+class TracedCurve:
     """A curve, its proof (``None`` if not asked for) and its dead points."""
 
     curve: Curve
@@ -36,18 +36,20 @@ class Traced:
         return self.proof.whole and (self.proof.closed or not self.curve.end.closed)
 
 
-def traced(leads: Leads, start: Array, heading: float | Array, certify: bool) -> Traced:
+def trace_with_proof(
+    leads: Parametrizations, start: Array, heading: float | Array, certify: bool
+) -> TracedCurve:
     """Trace a curve boldly; with care where the bold one cannot be proved, or is not to be."""
-    best: Traced | None = None
-    own = leads.by(leads.parameter)
+    best: TracedCurve | None = None
+    own = leads.with_parameter(leads.parameter)
     proves = certify and own is not None and own.provable
     careful = CurveOptions(track=TrackOptions())
     for care in (CurveOptions(), careful) if proves else (careful,):
         curve = trace(leads, start, heading, care)
         if not curve.legs:
-            return Traced(curve=curve, proof=None, turns=())
+            return TracedCurve(curve=curve, proof=None, turns=())
         proof = prove_curve(leads, curve) if certify else None
-        found = Traced(curve=curve, proof=proof, turns=tuple(turning_points(leads, curve)))
+        found = TracedCurve(curve=curve, proof=proof, turns=tuple(turning_points(leads, curve)))
         if best is None or found.certified:
             best = found
         if best.certified:
@@ -72,7 +74,7 @@ class CurveBranch:
     v: Array
     limits: tuple[str, ...]
     anchor: Array
-    leader: Led
+    leader: Parametrization
     ratio: float
     begin: TurningPoint | None
     end: TurningPoint | None
@@ -83,9 +85,9 @@ class CurveBranch:
         values = self.v[:, parameter]
         return float(values.min()), float(values.max())
 
-    def is_joined(self, leads: Leads) -> bool:
+    def is_joined(self, leads: Parametrizations) -> bool:
         """Whether the anchor is proved to be the same position when the parameter leads."""
-        own = leads.by(leads.parameter)
+        own = leads.with_parameter(leads.parameter)
         return self.proved and own is not None and same_solution(self.leader, own, self.anchor)
 
 
@@ -93,11 +95,11 @@ class CurveBranch:
 class _Sample:
     v: Array
     ratio: float  # of the parameter's speed to the fastest
-    leader: Led
+    leader: Parametrization
     limit: str = ""
 
 
-def branches_of(leads: Leads, found: Traced, fine: int = 1) -> list[CurveBranch]:
+def branches_of(leads: Parametrizations, found: TracedCurve, fine: int = 1) -> list[CurveBranch]:
     """The branches in the order of travel; of a closed curve the first one is whole.
 
     Parameters
@@ -146,7 +148,7 @@ def branches_of(leads: Leads, found: Traced, fine: int = 1) -> list[CurveBranch]
     return branches
 
 
-def _samples(leads: Leads, leg: Leg, fine: int) -> tuple[Array, Array, Array]:
+def _samples(leads: Parametrizations, leg: Leg, fine: int) -> tuple[Array, Array, Array]:
     """Positions along a leg: the leader's values, (K, N), the parameter's speed to the fastest."""
     nodes = leg.nodes
     t = np.array([node.t for node in nodes])

@@ -189,15 +189,15 @@ class _Circuits:
     def _configuration_on(self, branch: CurveBranch) -> str:
         """The first of the configurations at the guess's input that lies on a branch."""
         value = float(self.model.start_inputs[self.drive.lead])
-        for here in self._solved(branch, value):
+        for here in self._solve_branch(branch, value):
             for v, name in self.seeding.names:
                 if same_position(self.leads, here, v):
                     return name
         return ""
 
-    def _solved(self, branch: CurveBranch, value: float) -> list[Array]:
+    def _solve_branch(self, branch: CurveBranch, value: float) -> list[Array]:
         """The positions of a branch at a value of the parameter, whole turns aside."""
-        own = self.leads.by(self.leads.parameter)
+        own = self.leads.with_parameter(self.leads.parameter)
         found = []
         for guess in positions_near(self.leads, branch, value):
             if own is not None:
@@ -213,7 +213,7 @@ class _Circuits:
 
     def _turns(self, around: Array | None) -> int | None:
         p = self.leads.parameter
-        if around is None or not self.leads.turns[p]:
+        if around is None or not self.leads.is_angle[p]:
             return None
         return abs(round(float(around[p]) / FULL_TURN))
 
@@ -293,7 +293,7 @@ def branch_start(model: Model, name: str) -> Model:
             f'there is no "{name}" of {model.description.name} {choices("branches", names, name)}'
         )
     branch = known[name]
-    here = work._solved(branch, float(model.start_inputs[work.drive.lead]))
+    here = work._solve_branch(branch, float(model.start_inputs[work.drive.lead]))
     if not here and branch.ratio == 0.0:
         raise InputError(f'the input is at rest on "{name}", so no motion can start there')
     start = here[0] if here else branch.anchor

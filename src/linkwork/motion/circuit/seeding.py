@@ -49,7 +49,7 @@ class Seeding:
         if found.completeness is Completeness.NOT_LISTED:
             return
         self.names = list(zip(found.v, found.names, strict=True))
-        sure = self._visited(found)
+        sure = self._visit_circuits(found)
         self.dead = dead_point_inputs(model, self.drive.path, self.drive.lead)
         intervals = self._intervals(value, sure)
         for k, interval in enumerate(intervals):
@@ -61,7 +61,7 @@ class Seeding:
         """Where to look; a ``value`` whose list is ``sure`` stands for its own interval."""
         assert self.dead is not None
         place = self.drive.leads.parameter
-        turns, scale = bool(self.drive.leads.turns[place]), float(self.drive.leads.scale[place])
+        turns, scale = bool(self.drive.leads.is_angle[place]), float(self.drive.leads.scale[place])
         cuts = self.dead.cuts
         found = intervals_between(cuts, value if sure else None, scale, turns=turns)
         if not len(cuts) and not sure:
@@ -73,11 +73,12 @@ class Seeding:
     def _look_into(self, interval: Interval) -> None:
         """List the configurations at one value of an interval, at another where that fails."""
         if not any(
-            self._visited(positions_at(self.model, self.drive.path.at(value))) for value in interval
+            self._visit_circuits(positions_at(self.model, self.drive.path.at(value)))
+            for value in interval
         ):
             self.unclear += 1
 
-    def _visited(self, found: Assemblies) -> bool:
+    def _visit_circuits(self, found: Assemblies) -> bool:
         """Follow the circuits of all configurations; whether none is missing or left out."""
         regular = [self._regular(v) for v in found.v]
         for v, good in zip(found.v, regular, strict=True):
@@ -88,7 +89,7 @@ class Seeding:
 
     def _regular(self, v: Array, most: float | None = None) -> bool:
         """Whether the input can lead at a position: not at dead points and change points."""
-        own = self.drive.leads.by(self.drive.leads.parameter)
+        own = self.drive.leads.with_parameter(self.drive.leads.parameter)
         largest = _REGULAR if most is None else most
         return own is not None and own.node(v).nearness < largest
 

@@ -55,7 +55,7 @@ def dyad_of(block: Block, v: Array) -> Dyad | None:
     sums = _sums(table, v[block.variables])
     if sums is None:
         return None
-    turns = [bool(turn) for turn in table.turns[:2]]
+    turns = [bool(turn) for turn in table.is_angle[:2]]
     if all(turns) and not sums.both and len(sums.turning) == 2:
         return _two_links(sums.known, sums.turning[0], sums.turning[1])
     if not any(turns):

@@ -9,7 +9,7 @@ from linkwork.foundation.lazy import loader
 if TYPE_CHECKING:
     from linkwork.motion.following.to_value import (
         OutOfReach as OutOfReach,
-        followed as followed,
+        follow_to_value as follow_to_value,
     )
 else:
     __getattr__ = loader(__name__)

@@ -210,22 +210,22 @@ class _Walk:
         room = _room(here, self.sign, self.solver.variable_scale, scale)
         smallest = self.options.smallest_step * max(scale, abs(here.t))
         if room < smallest:
-            return self._stopped(here.t + self.sign * 2.0 * room)
+            return self._stop(here.t + self.sign * 2.0 * room)
         h = min(self.h, self.options.largest_step * scale, rest, room)
         if h < rest and h < smallest:
-            return self._stopped(self.failed_at)
+            return self._stop(self.failed_at)
         t = self.goal if h == rest else here.t + self.sign * h
         following, correction = _step(self.solver, self.path, here, t, self.quick, self.options)
         if following is None:
             self.failed_at = t
             self.h = h * (0.5 if correction is None else max(0.1, min(0.5, correction)))
-            return self._stopped(t) if self.h < smallest else None
+            return self._stop(t) if self.h < smallest else None
         self.nodes.append(following)
         self.here = following
         self.h = h * min(2.0, max(0.5, correction or 2.0))
         return None
 
-    def _stopped(self, failed: float) -> End:
+    def _stop(self, failed: float) -> End:
         status = _kind_of_end(self.solver, self.start, self.here, self.path.size)
         return End(reached=self.here.t, failed=failed, status=status)
 
@@ -286,7 +286,7 @@ def _kind_of_end(solver: BlockSolver, start: Node, here: Node, scale: float) -> 
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rows:
+class TrackRows:
     """Positions at many values t (B,): as a block solution with rates, rows not found marked."""
 
     t: Array
@@ -297,13 +297,13 @@ class Rows:
     rates: Rates
 
 
-def joined_rows(pieces: Sequence[Rows]) -> Rows:
+def concatenate_rows(pieces: Sequence[TrackRows]) -> TrackRows:
     """Batches of rows as one."""
 
-    def stacked(of: Callable[[Rows], Array]) -> Array:
+    def stacked(of: Callable[[TrackRows], Array]) -> Array:
         return np.concatenate([of(piece) for piece in pieces])
 
-    return Rows(
+    return TrackRows(
         t=stacked(lambda p: p.t),
         v=stacked(lambda p: p.v),
         status=np.concatenate([p.status for p in pieces]),
@@ -319,13 +319,13 @@ def joined_rows(pieces: Sequence[Rows]) -> Rows:
     )
 
 
-def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) -> Rows:
+def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) -> TrackRows:
     """Positions at the values ``t`` (B,), all inside the track, as many lanes at once.
 
     Starts from quintic interpolation between the track's nodes. A row that ends elsewhere than
     predicted, or with another sign of det J, is followed again from its node step by step.
     """
-    guess, left = _interpolated(track, t)
+    guess, left = _interpolate(track, t)
     guess[:, solver.unknowns :] = path.at(t)
     found = solver.solve(guess, replace(solver.options, max_steps=12, largest_turn=math.inf))
     v, status = found.v, found.status.copy()
@@ -349,7 +349,7 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
         residual[row] = solver.residual(arrived.v[None, :])[0]
     if doubtful.any():
         rates = solver.rates(v, path.rate)
-    return Rows(t=t, v=v, status=status, iterations=iterations, residual=residual, rates=rates)
+    return TrackRows(t=t, v=v, status=status, iterations=iterations, residual=residual, rates=rates)
 
 
 def _nearest(track: Track, left: int, t: float) -> Node:
@@ -357,7 +357,7 @@ def _nearest(track: Track, left: int, t: float) -> Node:
     return min(track.nodes[left], track.nodes[right], key=lambda node: abs(node.t - t))
 
 
-def _interpolated(track: Track, t: Array) -> tuple[Array, IndexArray]:
+def _interpolate(track: Track, t: Array) -> tuple[Array, IndexArray]:
     """Quintic Hermite values at t (B, N) and the index of the node at the left of each."""
     nodes = track.nodes
     times = np.array([node.t for node in nodes])

@@ -20,7 +20,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.numerics.block_solver import Block, BlockSolver, Linearised
-from linkwork.numerics.continuation.local_parametrization import Led
+from linkwork.numerics.continuation.local_parametrization import Parametrization
 from linkwork.numerics.proof.kantorovich import Expansion
 from linkwork.numerics.proof.position_proof import expansions, prove, reach
 
@@ -36,18 +36,18 @@ _WIDER = 2.0
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FoldProof:
-    """``each`` (N,): how far the dead point may be from the position it was proved from, in the
-    solver's order, the leader's own last; ``alone`` (n,): within this no other position has the
-    same leader's value. ``radius``, ``unique``: both weighted.
+    """``error_bound`` (N,): how far the dead point may be from the position it was proved from, in
+    the solver's order, the leader's own last; ``isolation_radius`` (n,): within this no other
+    position has the same leader's value. ``radius``, ``uniqueness_radius``: both weighted.
     """
 
-    each: Array
-    alone: Array
+    error_bound: Array
+    isolation_radius: Array
     radius: float
-    unique: float
+    uniqueness_radius: float
 
 
-def prove_dead_point(led: Led, v: Array, place: int) -> FoldProof | None:
+def prove_dead_point(led: Parametrization, v: Array, place: int) -> FoldProof | None:
     """Prove that the parameter turns back next to a position.
 
     Parameters
@@ -81,7 +81,7 @@ def prove_dead_point(led: Led, v: Array, place: int) -> FoldProof | None:
     return None
 
 
-def _turns_within(led: Led, v: Array, place: int, width: float) -> FoldProof | None:
+def _turns_within(led: Parametrization, v: Array, place: int, width: float) -> FoldProof | None:
     """The proof with an interval of the leader of that half width, or ``None``."""
     solver = led.solver
     whole = width + 2.0 * _UNIT * (abs(float(v[-1])) + width)  # the ends are rounded themselves
@@ -96,18 +96,18 @@ def _turns_within(led: Led, v: Array, place: int, width: float) -> FoldProof | N
     errors = _rate_errors(solver, found, rates)
     if errors is None:
         return None
-    off = np.abs(found - v)[:, :-1] + errors.each[:, :-1]
+    off = np.abs(found - v)[:, :-1] + errors.error_bound[:, :-1]
     slow, error = rates[:, place], errors.rates[:, place]
     turned = slow[0] * slow[1] < 0.0 and (np.abs(slow) > error).all()
-    if not (turned and (off < box.alone).all()):
+    if not (turned and (off < box.isolation_radius).all()):
         return None
     weights = solver.variable_scale
-    each = np.append(box.each[0], whole)
+    error_bound = np.append(box.error_bound[0], whole)
     return FoldProof(
-        each=each,
-        alone=box.alone[0],
-        radius=float((each / weights).max()),
-        unique=float((box.alone[0] / weights[:-1]).min()),
+        error_bound=error_bound,
+        isolation_radius=box.isolation_radius[0],
+        radius=float((error_bound / weights).max()),
+        uniqueness_radius=float((box.isolation_radius[0] / weights[:-1]).min()),
     )
 
 
@@ -115,7 +115,7 @@ def _turns_within(led: Led, v: Array, place: int, width: float) -> FoldProof | N
 class _Errors:
     """How far true positions may be from computed ones, and their rates, (B, N) each."""
 
-    each: Array
+    error_bound: Array
     rates: Array
 
 
@@ -129,11 +129,11 @@ def _rate_errors(solver: BlockSolver, v: Array, rates: Array) -> _Errors | None:
     errors = np.zeros_like(rates)
     for block, part, at in zip(solver.blocks, linear, places, strict=True):
         assert at is not None  # the position is proved
-        found = _block_errors(block, part, at, v, rates, position.each, errors)
+        found = _block_errors(block, part, at, v, rates, position.error_bound, errors)
         if found is None:
             return None
         errors[:, block.unknowns] = found
-    return _Errors(each=position.each, rates=errors)
+    return _Errors(error_bound=position.error_bound, rates=errors)
 
 
 def _block_errors(
@@ -142,12 +142,12 @@ def _block_errors(
     at: Expansion,
     v: Array,
     rates: Array,
-    each: Array,
+    error_bound: Array,
     errors: Array,
 ) -> Array | None:
     """The errors of one block's rates (B, n), those of the blocks before in ``errors`` (B, N)."""
     n, system = len(block.unknowns), block.system
-    here, box, d = (x[:, block.variables] for x in (v, each, rates))
+    here, box, d = (x[:, block.variables] for x in (v, error_bound, rates))
     bend = _Bend(at.phase, at.slide, at.weights, at.pair_length, at.pair_group)
     # |A J d|: as computed, the rounding of J, and that of the products
     size, along = np.abs(part.inverse), np.abs(d)

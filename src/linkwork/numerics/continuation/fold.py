@@ -15,7 +15,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 
-__all__ = ["Bending", "Family", "Fold", "locate_fold"]
+__all__ = ["Bending", "Fold", "FoldFamily", "locate_fold"]
 
 
 class Bending(Protocol):
@@ -41,7 +41,7 @@ class Bending(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Family:
+class FoldFamily:
     """Systems with a parameter p and the same unknowns; ``inputs`` are their known variables.
 
     ``low``, ``high``: the systems at two values ``step`` apart, for derivatives by p; they need
@@ -80,7 +80,7 @@ _SOLVED = 1e-13
 class _At:
     """The scaled system and its parameter's derivatives at one (x, p)."""
 
-    def __init__(self, family: Family, x: Array, p: float) -> None:
+    def __init__(self, family: FoldFamily, x: Array, p: float) -> None:
         self.system, inputs = family.at(p), family.inputs
         n = self.n = self.system.unknowns
         self.weights = np.concatenate([self.system.variable_scale[:n], np.zeros(len(inputs))])
@@ -123,7 +123,7 @@ class _At:
         return step
 
 
-def locate_fold(family: Family, x: Array, p: float) -> Fold | None:
+def locate_fold(family: FoldFamily, x: Array, p: float) -> Fold | None:
     """The value of p nearest to ``p``, to first order, at which solutions begin to exist.
 
     Parameters
@@ -149,13 +149,13 @@ def locate_fold(family: Family, x: Array, p: float) -> Fold | None:
             if abs(slope) < 1e-9:
                 return None
             p -= float(here.w @ here.f) / slope * family.size
-            found = _refined(family, x, p)
+            found = _refine_fold(family, x, p)
             return None if found is None else _opening(family, begin, *found)
         except (np.linalg.LinAlgError, ValueError):
             return None
 
 
-def _refined(family: Family, x: Array, p: float) -> tuple[Array, float] | None:
+def _refine_fold(family: FoldFamily, x: Array, p: float) -> tuple[Array, float] | None:
     for _ in range(_MOST_STEPS):
         here = _At(family, x, p)
         step = here.correction()
@@ -173,7 +173,7 @@ def _refined(family: Family, x: Array, p: float) -> tuple[Array, float] | None:
     return x, p
 
 
-def _opening(family: Family, begin: float, x: Array, p: float) -> Fold | None:
+def _opening(family: FoldFamily, begin: float, x: Array, p: float) -> Fold | None:
     """The fold with the side on which solutions exist, and one of them found there."""
     here = _At(family, x, p)
     if np.abs(here.f).max() > _CLOSED:

@@ -17,9 +17,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
-from linkwork.numerics.homotopy.polynomial_system import solved
+from linkwork.numerics.homotopy.polynomial_system import solve_linear
 
-__all__ = ["BilinearSystem", "ProvedRoots", "proved_roots"]
+__all__ = ["BilinearSystem", "ProvedRoots", "prove_roots"]
 
 _UNIT = np.finfo(float).eps / 2
 _SLACK = 1.0 + 1e-12
@@ -104,7 +104,7 @@ def _with_one(u: ComplexArray) -> ComplexArray:
     return padded
 
 
-def proved_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> ProvedRoots:
+def prove_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> ProvedRoots:
     """Newton-Kantorovich for complex roots, largest norm; for any coefficients within ``spread``.
 
     Parameters
@@ -121,7 +121,7 @@ def proved_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prov
     """
     count, m = len(x), system.size
     f, j = system.residual_and_jacobian(x)
-    a = solved(j, np.broadcast_to(np.eye(2 * m, dtype=complex), j.shape))
+    a = solve_linear(j, np.broadcast_to(np.eye(2 * m, dtype=complex), j.shape))
     good: BoolArray = np.asarray(np.isfinite(a).all(axis=(1, 2)))
     a = np.where(good[:, None, None], a, 0.0)
     size = np.abs(a)

@@ -1,4 +1,4 @@
-"""All dead points of a family of mechanisms: homotopies of :class:`LockingSystem`.
+"""All dead points of a family of mechanisms: homotopies of :class:`DeadPointSystem`.
 
 Unknowns are the homogeneous X = ((U, 1), (V, 1), ρ), each of the three on a random patch, or
 coordinates w in which X is linear. So all equations are at most quadratic, and their coefficients
@@ -15,11 +15,11 @@ import numpy as np
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.numerics.homotopy.bilinear_homotopy import null_space
 from linkwork.numerics.homotopy.column_sums import Columns, columns_of, random_closures
-from linkwork.numerics.homotopy.dead_point_system import LockingSystem, Slot, most_dead_points
+from linkwork.numerics.homotopy.dead_point_system import DeadPointSystem, Slot, most_dead_points
 from linkwork.numerics.homotopy.isolated_roots import SEED, isolated_roots
 from linkwork.numerics.homotopy.polynomial_system import Roots
 
-__all__ = ["LockingFamily", "locking_roots"]
+__all__ = ["DeadPointFamily", "dead_point_roots"]
 
 
 def _normal(rng: np.random.Generator, *shape: int) -> ComplexArray:
@@ -35,7 +35,7 @@ class _Straight:
     parts of w of their own for each of the three projective spaces.
     """
 
-    goal: LockingSystem
+    goal: DeadPointSystem
     basis: ComplexArray
     parts: tuple[slice, ...]
     patches: ComplexArray
@@ -101,7 +101,7 @@ class _FromProducts(_Straight):
     forms: ComplexArray
 
     @classmethod
-    def to(cls, goal: LockingSystem, rng: np.random.Generator) -> _FromProducts:
+    def to(cls, goal: DeadPointSystem, rng: np.random.Generator) -> _FromProducts:
         """A random start."""
         own, count = goal.own, goal.size
         spaces = [null_space(goal.left)[0], null_space(goal.right)[0], np.eye(2 * own)]
@@ -159,7 +159,7 @@ class _FromRelative(_Straight):
 
     @classmethod
     def between(
-        cls, start: LockingSystem, goal: LockingSystem, rng: np.random.Generator
+        cls, start: DeadPointSystem, goal: DeadPointSystem, rng: np.random.Generator
     ) -> _FromRelative:
         """With coefficients that run straight from one to the other."""
         return cls(
@@ -177,7 +177,7 @@ class _FromRelative(_Straight):
 
 
 @dataclass(frozen=True)
-class LockingFamily:
+class DeadPointFamily:
     """Systems with the same products and rates and the same sums within columns."""
 
     rows: tuple[tuple[int, ...], ...]
@@ -186,7 +186,7 @@ class LockingFamily:
     slots: tuple[Slot, ...]
 
     @classmethod
-    def of(cls, system: LockingSystem) -> LockingFamily:
+    def of(cls, system: DeadPointSystem) -> DeadPointFamily:
         """The family of a system."""
         return cls(
             rows=tuple(map(tuple, system.rows.tolist())),
@@ -199,10 +199,10 @@ class LockingFamily:
         """Whether so many solutions of a member are all, by Bézout's theorem."""
         return found == most_dead_points(self.own, len(self.rows[0]))
 
-    def random(self, rng: np.random.Generator) -> LockingSystem:
+    def random(self, rng: np.random.Generator) -> DeadPointSystem:
         """A member with random complex free coefficients."""
         left, right = (random_closures(self.columns, rng) for _ in range(2))
-        return LockingSystem(
+        return DeadPointSystem(
             left=left, right=right, rows=np.array(self.rows), own=self.own, slots=self.slots
         )
 
@@ -213,14 +213,14 @@ class LockingFamily:
         flat += [abs(round(w)) for slot in self.slots for w in slot]
         return np.random.default_rng([SEED, 1, purpose, *flat])
 
-    def from_products(self, goal: LockingSystem, rng: np.random.Generator) -> _FromProducts:
+    def from_products(self, goal: DeadPointSystem, rng: np.random.Generator) -> _FromProducts:
         """2 own C(2L + 1, L) paths to all isolated solutions of a member."""
         return _FromProducts.to(goal, rng)
 
     def between(
         self,
-        start: LockingSystem,
-        goal: LockingSystem,
+        start: DeadPointSystem,
+        goal: DeadPointSystem,
         rng: np.random.Generator,
         *,
         nearest: bool = False,
@@ -234,6 +234,6 @@ class LockingFamily:
         return _FromRelative.between(turned, goal, rng)
 
 
-def locking_roots(system: LockingSystem) -> Roots:
+def dead_point_roots(system: DeadPointSystem) -> Roots:
     """All isolated dead points, complex ones among them."""
-    return isolated_roots(system, LockingFamily.of(system))
+    return isolated_roots(system, DeadPointFamily.of(system))

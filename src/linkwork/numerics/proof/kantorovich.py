@@ -46,17 +46,19 @@ class Bounds:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Radii:
-    """What was proved, (B,): ``holds``; a solution within ``exists``, no other within ``unique``.
+    """What was proved, (B,): ``holds``; a solution within ``existence_radius``, no other within
+    ``uniqueness_radius``.
 
-    ``each`` (B, n): a bound of every unknown's error in its own unit, never larger than ``exists``
-    times its weight. ``alone`` (B, n): ``unique`` in their own units.
+    ``error_bound`` (B, n): a bound of every unknown's error in its own unit, never larger than
+    ``existence_radius`` times its weight. ``isolation_radius`` (B, n): ``uniqueness_radius`` in
+    their own units.
     """
 
     holds: BoolArray
-    exists: Array
-    unique: Array
-    each: Array
-    alone: Array
+    existence_radius: Array
+    uniqueness_radius: Array
+    error_bound: Array
+    isolation_radius: Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -103,7 +105,7 @@ def expansion(
     Parameters
     ----------
     system : System
-        With n unknowns and p known variables behind; ``bends_boundedly`` must hold.
+        With n unknowns and p known variables behind; ``has_curvature_bound`` must hold.
     v : (B, N)
     jacobian : (B, n, N)
         dF/dv at v.
@@ -265,11 +267,19 @@ def radii(b: Bounds, weights: Array) -> Radii:
         holds = (room > 0.0) & (square > 0.0)
         root = np.sqrt(square)
         # r- without cancellation; a system without curvature has r- = Y/(1 - Z0) and r+ = ∞
-        exists = np.where(holds, 2.0 * y / (room + root) * _SLACK, np.inf)
-        unique = np.where(holds, np.minimum((room + root) / whole, rho) / _SLACK, 0.0)
+        existence_radius = np.where(holds, 2.0 * y / (room + root) * _SLACK, np.inf)
+        uniqueness_radius = np.where(holds, np.minimum((room + root) / whole, rho) / _SLACK, 0.0)
     with np.errstate(all="ignore"):
         bent = b.omega + np.where(b.omega_slope > 0.0, rho[:, None] * b.omega_slope, 0.0)
-        each = b.y + b.z * exists[:, None] + 0.5 * bent * exists[:, None] ** 2
-    each = np.minimum(each * _SLACK, exists[:, None]) * weights
-    alone = unique[:, None] * weights / _SLACK
-    return Radii(holds=holds, exists=exists, unique=unique, each=each, alone=alone)
+        error_bound = (
+            b.y + b.z * existence_radius[:, None] + 0.5 * bent * existence_radius[:, None] ** 2
+        )
+    error_bound = np.minimum(error_bound * _SLACK, existence_radius[:, None]) * weights
+    isolation_radius = uniqueness_radius[:, None] * weights / _SLACK
+    return Radii(
+        holds=holds,
+        existence_radius=existence_radius,
+        uniqueness_radius=uniqueness_radius,
+        error_bound=error_bound,
+        isolation_radius=isolation_radius,
+    )

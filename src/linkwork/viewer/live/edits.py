@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import singledispatch
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import canonical, spelled
+from linkwork.foundation.names import canonical, find_spelling
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.mechanism.part.index import PARTS
@@ -169,7 +169,7 @@ def _put_place(text: TextEdits, point: str, place: complex) -> None:
 
 
 def _known_point(linkage: Linkage, name: str) -> str:
-    own = spelled(name, linkage.points)
+    own = find_spelling(name, linkage.points)
     if own not in linkage.points:
         raise UnknownNameError(
             f'there is no point "{name}" {choices("points", linkage.points, name)}'

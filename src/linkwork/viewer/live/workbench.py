@@ -96,10 +96,7 @@ class Workbench:
 
     def opened(self) -> Events:
         """Everything that a page needs to begin."""
-        self._end_drag()
-        conflict = [] if self._conflict is None else [self._conflict]
-        palette = tell.PaletteShown(parts=PALETTE)
-        return [palette, self._state(), *self._solved(), *conflict]
+        return [tell.PaletteShown(parts=PALETTE), *self._everything()]
 
     def handle(self, request: ask.Request) -> Events:
         """Carry out a request and send its events; wrong requests are answered, not raised."""
@@ -178,7 +175,7 @@ class Workbench:
         if drag is None or getattr(request, "live", False):
             return []
         self._end_drag()
-        return [] if drag.latest is None else self.opened()
+        return [] if drag.latest is None else self._everything()
 
     @_handle.register
     def _(self, request: ask.Together) -> Events:
@@ -246,6 +243,12 @@ class Workbench:
         return [telling.newton_shown(shown, guess, mechanism.guessed_points())]
 
     # The text and what is solved from it
+
+    def _everything(self) -> Events:
+        """The file and its motion."""
+        self._end_drag()
+        conflict = [] if self._conflict is None else [self._conflict]
+        return [self._state(), *self._solved(), *conflict]
 
     def _before(self) -> Before:
         """The mechanism as it is, with its points where the start closes."""

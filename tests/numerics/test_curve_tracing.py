@@ -11,9 +11,9 @@ import pytest
 from flint import arb, ctx
 
 import linkwork as lw
-from linkwork.equations.leading import LeadTable
+from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.circuit_end import CircuitEnd
-from linkwork.motion.circuit.branches import Traced, branches_of, traced
+from linkwork.motion.circuit.branches import TracedCurve, branches_of, trace_with_proof
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.start import first_position
 from linkwork.numerics.continuation.branch_tracking import InputPath
@@ -31,23 +31,25 @@ PATH = InputPath(origin=np.zeros(1), rate=np.ones(1))
 FOLDING = FourBar(4.0, 2.0, 5.0, 2.0)
 
 
-def around(bar: FourBar, theta: float, side: int, way: float = 1.0) -> tuple[LeadTable, Traced]:
+def around(
+    bar: FourBar, theta: float, side: int, way: float = 1.0
+) -> tuple[ParametrizedTable, TracedCurve]:
     """The curve of a four-bar through a crank angle on one of its assemblies."""
-    leads = LeadTable(four_bar_table(bar), PATH, 0)
+    leads = ParametrizedTable(four_bar_table(bar), PATH, 0)
     e3, e4 = bar.phasors(np.array(theta), side)
     start = np.array([np.angle(e3), np.angle(e4), theta])
-    return leads, traced(leads, start, way, certify=True)
+    return leads, trace_with_proof(leads, start, way, certify=True)
 
 
-def circuit_of(mechanism: lw.Mechanism, way: float = 1.0) -> tuple[LeadTable, Traced]:
+def circuit_of(mechanism: lw.Mechanism, way: float = 1.0) -> tuple[ParametrizedTable, TracedCurve]:
     """The curve of a mechanism through its start, which lies on its table."""
     model = mechanism.model
     lead, rate = lock_step(model.rows)
     path = InputPath(origin=model.rows[0] - rate * model.rows[0, lead], rate=rate)
     start = first_position(model, model.start_inputs, NewtonOptions())
     assert start.status.ok
-    leads = LeadTable(model.compiled.table, path, lead)
-    return leads, traced(leads, start.v, way, certify=True)
+    leads = ParametrizedTable(model.compiled.table, path, lead)
+    return leads, trace_with_proof(leads, start.v, way, certify=True)
 
 
 def exact_turns(bar: FourBar) -> list[arb]:
@@ -73,7 +75,7 @@ def step_count(curve: Curve) -> int:
     return sum(len(leg.nodes) - 1 for leg in curve.legs)
 
 
-def residual(leads: LeadTable, curve: Curve) -> float:
+def residual(leads: ParametrizedTable, curve: Curve) -> float:
     v = np.concatenate([leg.v for leg in curve.legs])
     table = leads.table
     return float(np.abs(table.residual(v) / table.equation_scale).max())
@@ -100,7 +102,7 @@ def test_curves_of_random_four_bars_close_with_proof_and_turn_where_the_closed_f
         assert found.curve.end is CircuitEnd.CLOSED, bar
         assert found.proof is not None
         assert found.proof.legs.all(), bar
-        assert found.proof.joints.all(), bar
+        assert found.proof.junctions.all(), bar
         assert found.proof.closed, bar
         assert step_count(found.curve) < 80
         assert residual(leads, found.curve) < 1e-12
@@ -285,10 +287,10 @@ def test_a_curve_that_passes_itself_closely_is_followed_on(
             break
     assert gap < 3 * apart
     angle = np.angle(ends[:2] if side > 0 else ends[2:])
-    leads = LeadTable(four_bar_table(FOLDING), PATH, 0)
+    leads = ParametrizedTable(four_bar_table(FOLDING), PATH, 0)
     start = np.array([*angle, dead + away])
     for way in (1.0, -1.0):
-        found = traced(leads, start, way, certify)
+        found = trace_with_proof(leads, start, way, certify)
         assert found.curve.end is CircuitEnd.CLOSED
         assert len(found.turns) == 2
         first, last = found.curve.legs[0].v[0], found.curve.legs[-1].v[-1]
@@ -308,7 +310,7 @@ def test_a_gear_of_nearly_one_to_one_does_not_close_after_one_turn(
     )
     model = mechanism.model
     start = first_position(model, model.start_inputs, NewtonOptions())
-    leads = LeadTable(model.compiled.table, PATH, 0)
+    leads = ParametrizedTable(model.compiled.table, PATH, 0)
     curve = trace(leads, start.v, 1.0, CurveOptions(most_turns=3))
     first, after = curve.legs[0].v[0], curve.passes[0][1]
     assert after[2] - first[2] == pytest.approx(2 * math.pi, abs=1e-12)
@@ -465,7 +467,7 @@ def test_a_leg_that_was_left_out_is_missed() -> None:
 
 
 def test_a_parameter_that_determines_nothing_cannot_start_a_curve() -> None:
-    leads = LeadTable(four_bar_table(FOLDING), PATH, 0)
+    leads = ParametrizedTable(four_bar_table(FOLDING), PATH, 0)
     leads._leads[leads.parameter] = None
     with pytest.raises(ValueError, match=r"^the parameter of a curve must determine the position$"):
         trace(leads, np.zeros(3), 1.0)

@@ -15,13 +15,13 @@ from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.kernels.loop_table import LinearRows, LoopTable, TableSplitter
 from linkwork.numerics.block_solver import Block, BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath
-from linkwork.numerics.continuation.local_parametrization import Led
+from linkwork.numerics.continuation.local_parametrization import Parametrization
 from linkwork.numerics.decomposition import block_form
 
-__all__ = ["LeadTable"]
+__all__ = ["ParametrizedTable"]
 
 
-class LeadTable:
+class ParametrizedTable:
     """A table along a path of inputs, solvable with any variable in the lead.
 
     Parameters
@@ -36,21 +36,21 @@ class LeadTable:
 
     def __init__(self, table: LoopTable, path: InputPath, parameter: int) -> None:
         self.parameter = table.unknowns + parameter
-        self.table = _locked(table, path, parameter)
+        self.table = _lock_inputs(table, path, parameter)
         self.scale = self.table.variable_scale
-        self.turns = self.table.turns
+        self.is_angle = self.table.is_angle
         self.repeats_after = self.table.repeats_after
         self._splitter = TableSplitter(self.table)
         self._pattern = self.table.pattern()
-        self._leads: dict[int, Led | None] = {}
+        self._leads: dict[int, Parametrization | None] = {}
 
-    def by(self, lead: int) -> Led | None:
+    def with_parameter(self, lead: int) -> Parametrization | None:
         """The equations with one variable known; ``None`` if it does not determine the others."""
         if lead not in self._leads:
-            self._leads[lead] = self._led_by(lead)
+            self._leads[lead] = self._parametrize(lead)
         return self._leads[lead]
 
-    def _led_by(self, lead: int) -> Led | None:
+    def _parametrize(self, lead: int) -> Parametrization | None:
         table = self.table
         others = [k for k in range(table.variables) if k != lead]
         place = {old: new for new, old in enumerate([*others, lead])}
@@ -75,7 +75,7 @@ class LeadTable:
             )
         order: IndexArray = np.array([*others, lead], dtype=np.intp)
         solver = BlockSolver(blocks, len(others), table.variables, table.variable_scale[order])
-        return Led(lead=lead, solver=solver, order=order)
+        return Parametrization(lead=lead, solver=solver, order=order)
 
     def jacobian(self, v: Array) -> Array:
         """The scaled Jacobian by all variables but the path's parameter, (B, m, m)."""
@@ -93,11 +93,11 @@ class LeadTable:
         left, _, right = np.linalg.svd(self.jacobian(v[None, :])[0])
         w = np.insert(right[-1], self.parameter, 0.0) * table.variable_scale
         both = np.stack([rates + w, rates - w])
-        change = 0.25 * np.subtract(*table.second(np.stack([v, v]), both))
+        change = 0.25 * np.subtract(*table.second_directional_derivative(np.stack([v, v]), both))
         return float(left[:, -1] @ (change / table.equation_scale))
 
 
-def _locked(table: LoopTable, path: InputPath, parameter: int) -> LoopTable:
+def _lock_inputs(table: LoopTable, path: InputPath, parameter: int) -> LoopTable:
     """The table with a linear row for every other input: u_j = origin_j + rate_j t."""
     n = table.unknowns
     others = [j for j in range(len(path.rate)) if j != parameter]

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.equations.locking import LockingForm, locking_form
+from linkwork.equations.dead_point_form import DeadPointForm, dead_point_form
 from linkwork.motion.drive import Drive
 from linkwork.motion.lock_step import lock_step
-from linkwork.numerics.homotopy.dead_point_family import locking_roots
+from linkwork.numerics.homotopy.dead_point_family import dead_point_roots
 from linkwork.numerics.homotopy.idle_component import RealPoints, keeps_complex_input, real_motion
 
 KITE = "e^(i*t) + 2*e^(i*p) = 1 + 2*e^(i*q)"
@@ -21,26 +21,26 @@ def _driven(text: str, variable: str, **guess: float) -> lw.Mechanism:
     return lw.loops(loops={"1": text}, guess=guess, inputs=driver)
 
 
-def _form(mechanism: lw.Mechanism, number: int) -> LockingForm:
+def _form(mechanism: lw.Mechanism, number: int) -> DeadPointForm:
     """Of a block, its inputs in lock-step."""
     model = mechanism.model
     lead, rate = lock_step(model.rows)
     drive = Drive.through(model, model.start_inputs, rate, lead)
-    form = locking_form(drive.leads, model.compiled.solver, drive.path, number)
+    form = dead_point_form(drive.leads, model.compiled.solver, drive.path, number)
     assert form is not None
     return form
 
 
-def _kite() -> LockingForm:
+def _kite() -> DeadPointForm:
     return _form(_driven(KITE, "t", t=60, p=30, q=80), 0)
 
 
-def _isosceles() -> LockingForm:
+def _isosceles() -> DeadPointForm:
     return _form(_driven(ISOSCELES, "s", s=1.0, p=70, q=-70), 0)
 
 
 @pytest.mark.parametrize("form", [_kite(), _isosceles(), _form(lw.example("three-rpr"), 0)])
-def test_slopes_of_the_input_are_its_differences(form: LockingForm) -> None:
+def test_slopes_of_the_input_are_its_differences(form: DeadPointForm) -> None:
     rng = np.random.default_rng(3)
     count = 2 * form.system.size + 2 * form.system.own
     x, d = rng.normal(size=(2, count)) + 1j * rng.normal(size=(2, count))
@@ -52,9 +52,9 @@ def test_slopes_of_the_input_are_its_differences(form: LockingForm) -> None:
 @pytest.mark.parametrize(
     ("form", "value"), [(_kite(), 1.0), (_isosceles(), 0.0)], ids=["kite", "slider"]
 )
-def test_equal_bars_that_lie_on_each_other_really_turn(form: LockingForm, value: float) -> None:
+def test_equal_bars_that_lie_on_each_other_really_turn(form: DeadPointForm, value: float) -> None:
     """The kite's crank on the ground, the slider at the crank's pivot: the input rests there."""
-    curves = locking_roots(form.system).curves
+    curves = dead_point_roots(form.system).curves
     assert len(curves) > 0
     for x in curves:
         assert not keeps_complex_input(form.system, x, form.lead)
@@ -85,7 +85,7 @@ def test_two_slides_in_line_really_move() -> None:
 def test_bars_that_fold_at_a_complex_input_only_never_turn() -> None:
     """The pantograph's tie and pen bar: the dead points of the arm before them are all complex."""
     form = _form(lw.example("pantograph"), 2)
-    curves = locking_roots(form.system).curves
+    curves = dead_point_roots(form.system).curves
     assert len(curves) > 0
     for x in curves:
         assert keeps_complex_input(form.system, x, form.lead)
@@ -96,11 +96,11 @@ def test_bars_that_fold_at_a_complex_input_only_never_turn() -> None:
 def test_a_dead_point_with_a_slide_is_a_real_position_but_no_motion() -> None:
     """The rod square to the slide, s free at first order: rates ω and σ are both at work."""
     form = _form(_driven("2*e^(i*t) + e^(i*p) = s", "t", t=30, p=-80, s=2.0), 0)
-    x = next(x for x in locking_roots(form.system).x if abs(abs(x[1]) - 1.0) < 1e-6)
+    x = next(x for x in dead_point_roots(form.system).x if abs(abs(x[1]) - 1.0) < 1e-6)
     real = RealPoints(form.system, form.lead)
-    y = real.corrected(real.near(x), None)
+    y = real.correct(real.near(x), None)
     assert y is not None
     m = 2 * form.system.size
-    np.testing.assert_allclose(real.placed(y)[:m], x[:m], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(real.place(y)[:m], x[:m], rtol=0, atol=1e-9)
     assert np.abs(y[m:]).min() > 0.1
     assert real_motion(form.system, x, form.lead) is None

@@ -32,10 +32,10 @@ from linkwork.numerics.continuation.path_proof import ProvenPath, prove_path
 from linkwork.numerics.proof.kantorovich import Bounds, bounds, radii
 from linkwork.numerics.proof.position_proof import (
     Proof,
-    links_hold,
     prove,
     reach,
     rounding_of_inputs,
+    steps_connected,
 )
 from tests.campaigns.certificates import judge
 from tests.campaigns.positions import library_positions, random_position
@@ -98,7 +98,7 @@ def table(
         functions=(),
         equation_scale=np.ones(2 * rows + len(linear.constant)),
         variable_scale=np.ones(len(turns)),
-        turns=np.array(turns),
+        is_angle=np.array(turns),
     )
 
 
@@ -170,8 +170,8 @@ def test_a_gear_of_linear_rows_alone_is_the_only_solution() -> None:
     v = np.array([[1 - 2 * 0.3, 3 * 0.3, 0.3]])
     proof = prove(blocks_of(gear), v, np.array([[1e-3]]))
     assert proof.holds[0]
-    assert math.isinf(proof.alone_within[0])
-    assert proof.each[0, :2] == pytest.approx([2e-3, 3e-3], rel=1e-9)
+    assert math.isinf(proof.least_uniqueness_radius[0])
+    assert proof.error_bound[0, :2] == pytest.approx([2e-3, 3e-3], rel=1e-9)
     motion = lw.loops(
         loops={"yoke": "r*e^(i*t) = x + i*y"},
         dimensions={"r": 2.0},
@@ -213,7 +213,7 @@ def test_radii_are_the_roots_of_their_quadratic() -> None:
         held += 1
         assert square > 0
         lower = 2 * big_y / (room + square.sqrt())
-        e, u = arb(float(claimed.exists[0])), float(claimed.unique[0])
+        e, u = arb(float(claimed.existence_radius[0])), float(claimed.uniqueness_radius[0])
         assert e >= lower
         assert not clear or e <= lower * (1 + arb(1e-5))
         if rho is not None:
@@ -229,8 +229,8 @@ def test_radii_are_the_roots_of_their_quadratic() -> None:
             bent = arb(float(omega[0, i])) + (rho or arb(0)) * arb(float(slope[0, i]))
             own = arb(float(y[0, i])) + arb(float(z[0, i])) * e + bent * e**2 / 2
             w = arb(float(weights[i]))
-            assert arb(float(claimed.each[0, i])) >= min(own, e) * w * (1 - arb(1e-15))
-            assert arb(float(claimed.each[0, i])) <= e * w * (1 + arb(1e-15))
+            assert arb(float(claimed.error_bound[0, i])) >= min(own, e) * w * (1 - arb(1e-15))
+            assert arb(float(claimed.error_bound[0, i])) <= e * w * (1 + arb(1e-15))
     assert held > 800
 
 
@@ -261,11 +261,11 @@ def test_errors_of_blocks_before_are_carried_to_those_behind(name: str) -> None:
                 assert proved
                 for i in range(n):
                     off = abs(root[i] - arb(float(v[k, i])))
-                    assert off <= arb(float(proof.each[k, i])), (name, i)
+                    assert off <= arb(float(proof.error_bound[k, i])), (name, i)
                 for number, block in enumerate(solver.blocks):
                     for i in block.unknowns:
                         off = abs(root[i] - arb(float(v[k, i]))) / balls.weights[i]
-                        assert off <= arb(float(proof.exists[k, number])), (name, i)
+                        assert off <= arb(float(proof.existence_radius[k, number])), (name, i)
 
 
 def test_rows_of_two_inputs_are_proved_at_the_inputs_asked_for() -> None:
@@ -350,10 +350,12 @@ def test_a_coarse_table_is_proved_by_halving_its_steps(step: int, side: int) -> 
     v = v[::step]
     spread = np.full((len(v), 1), math.radians(step))
     arrival = prove(solver, v, rounding_of_inputs(v, 2))
-    at_once = links_hold(v[:-1], v[1:], reach(solver, v[:-1], spread[:-1]), arrival.each[1:])
+    at_once = steps_connected(
+        v[:-1], v[1:], reach(solver, v[:-1], spread[:-1]), arrival.error_bound[1:]
+    )
     assert not at_once.any()
     found = prove_path(solver, PATH, beads_of(solver, v))
-    assert found.linked.all()
+    assert found.connected.all()
     assert found.pieces.max() > 1
     assert found.connected_to(2).all()
     wrong = v.copy()
@@ -362,16 +364,21 @@ def test_a_coarse_table_is_proved_by_halving_its_steps(step: int, side: int) -> 
     found = prove_path(solver, PATH, beads_of(solver, wrong))
     expected = np.ones(len(theta) - 1, dtype=bool)
     expected[1:3] = False
-    np.testing.assert_array_equal(found.linked, expected)
+    np.testing.assert_array_equal(found.connected, expected)
 
 
 def test_a_position_is_connected_through_proved_steps_only() -> None:
     holds = np.array([True, True, True, True, False, True, True])
     nothing = np.zeros((7, 1))
-    position = Proof(holds=holds, exists=nothing, unique=nothing, each=nothing)
-    linked = np.array([True, False, True, True, True, True])
+    position = Proof(
+        holds=holds, existence_radius=nothing, uniqueness_radius=nothing, error_bound=nothing
+    )
+    connected = np.array([True, False, True, True, True, True])
     path = ProvenPath(
-        position=position, linked=linked, pieces=np.ones(6, dtype=np.int64), given_up=~linked
+        position=position,
+        connected=connected,
+        pieces=np.ones(6, dtype=np.int64),
+        given_up=~connected,
     )
     for anchor, expected in (
         (0, [1, 1, 0, 0, 0, 0, 0]),
@@ -385,16 +392,16 @@ def test_a_position_is_connected_through_proved_steps_only() -> None:
 def test_the_first_step_without_a_proof_tells_why_there_is_none_beyond() -> None:
     position = Proof(
         holds=np.ones(8, dtype=bool),
-        exists=np.zeros((8, 1)),
-        unique=np.zeros((8, 1)),
-        each=np.zeros((8, 1)),
+        existence_radius=np.zeros((8, 1)),
+        uniqueness_radius=np.zeros((8, 1)),
+        error_bound=np.zeros((8, 1)),
     )
     #        0-1    1-2   2-3   3-4    4-5   5-6    6-7
-    linked = [False, True, True, False, True, False, True]
+    connected = [False, True, True, False, True, False, True]
     given_up = [True, False, False, False, False, True, False]
     path = ProvenPath(
         position=position,
-        linked=np.array(linked),
+        connected=np.array(connected),
         pieces=np.ones(7, dtype=np.int64),
         given_up=np.array(given_up),
     )
@@ -414,23 +421,23 @@ def test_a_proof_stops_at_its_allowance_and_begins_at_the_anchor(
     monkeypatch.setattr(path_proof, "_LANES", lanes)
     theta = np.radians(np.arange(0.0, 361.0, 60.0))
     solver, v = four_bar_at(ROCKER, theta, 1)
-    beads = beads_of(solver, v)
-    whole = prove_path(solver, PATH, beads, anchor=3)
-    assert whole.linked.all()
+    points = beads_of(solver, v)
+    whole = prove_path(solver, PATH, points, anchor=3)
+    assert whole.connected.all()
     assert not whole.given_up.any()
     spent = int((whole.pieces - 1).sum())
     assert spent > 12
-    exact = prove_path(solver, PATH, beads, anchor=3, most=spent)
-    assert exact.linked.all()
+    exact = prove_path(solver, PATH, points, anchor=3, most=spent)
+    assert exact.connected.all()
     for most in range(spent):
-        found = prove_path(solver, PATH, beads, anchor=3, most=most)
+        found = prove_path(solver, PATH, points, anchor=3, most=most)
         assert int((found.pieces - 1).sum()) == most
         assert found.given_up.any()
-        np.testing.assert_array_equal(found.linked, ~found.given_up)
+        np.testing.assert_array_equal(found.connected, ~found.given_up)
         if lanes == 1:  # one after the other, outwards
             away = np.abs(np.arange(6) + 0.5 - 3)
-            assert away[found.linked].max(initial=0.0) <= away[~found.linked].min()
-    assert not prove_path(solver, PATH, beads, anchor=3, most=0).linked.all()
+            assert away[found.connected].max(initial=0.0) <= away[~found.connected].min()
+    assert not prove_path(solver, PATH, points, anchor=3, most=0).connected.all()
 
 
 def test_steps_beyond_one_that_is_refused_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -438,11 +445,11 @@ def test_steps_beyond_one_that_is_refused_are_left_alone(monkeypatch: pytest.Mon
     theta = np.radians(np.arange(0.0, 361.0, 60.0))
     solver, v = four_bar_at(ROCKER, theta, 1)
     v[2] = four_bar_at(ROCKER, theta, -1)[1][2]
-    beads = beads_of(solver, v)
+    points = beads_of(solver, v)
     for anchor, beyond in ((4, slice(0, 1)), (0, slice(3, None))):
-        found = prove_path(solver, PATH, beads, anchor=anchor)
-        every = prove_path(solver, PATH, beads)
-        assert every.linked[beyond].all()
+        found = prove_path(solver, PATH, points, anchor=anchor)
+        every = prove_path(solver, PATH, points)
+        assert every.connected[beyond].all()
         np.testing.assert_array_equal(found.connected_to(anchor), every.connected_to(anchor))
         assert every.pieces[beyond].min() > 1
         assert (found.pieces[beyond] == 1).all()
@@ -452,13 +459,15 @@ def test_the_proofs_of_a_long_path_are_those_of_its_pieces() -> None:
     theta = np.linspace(0, 40, 2500)  # more than two pieces
     solver, v = four_bar_at(ROCKER, theta, 1)
     v[1700] = four_bar_at(ROCKER, theta, -1)[1][1700]
-    beads = beads_of(solver, v)
-    found = prove_path(solver, PATH, beads)
-    assert len(found.linked) == 2499
-    np.testing.assert_array_equal(np.flatnonzero(~found.linked), [1699, 1700])
-    whole = prove(solver, v, beads.spread)
+    points = beads_of(solver, v)
+    found = prove_path(solver, PATH, points)
+    assert len(found.connected) == 2499
+    np.testing.assert_array_equal(np.flatnonzero(~found.connected), [1699, 1700])
+    whole = prove(solver, v, points.input_radius)
     np.testing.assert_array_equal(found.position.holds, whole.holds)
-    np.testing.assert_allclose(found.position.exists, whole.exists, rtol=1e-6, atol=1e-15)
+    np.testing.assert_allclose(
+        found.position.existence_radius, whole.existence_radius, rtol=1e-6, atol=1e-15
+    )
 
 
 # ------------------------------------------------------------------ reasons
@@ -501,7 +510,7 @@ def test_every_reason_for_a_missing_certificate_is_reached(monkeypatch: pytest.M
     )
     proofs = prove_rows(solver, PATH, track, doctored, t[:, None])
     reasons = [Certification.of_code(int(code)) for code in proofs.code]
-    proved = np.isfinite(proofs.radius) & np.isfinite(proofs.unique)
+    proved = np.isfinite(proofs.radius) & np.isfinite(proofs.uniqueness_radius)
     np.testing.assert_array_equal(proved, [True, True, False, False])
 
     formula = lw.plain_equations(

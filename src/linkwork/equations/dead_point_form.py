@@ -14,28 +14,28 @@ from linkwork.equations.directions import (
     check_independent,
     direction_form,
 )
-from linkwork.equations.leading import LeadTable
+from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.kernels.loop_table import LoopTable, TableSplitter
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath
-from linkwork.numerics.homotopy.dead_point_system import LockingSystem, Slot
+from linkwork.numerics.homotopy.dead_point_system import DeadPointSystem, Slot
 from linkwork.numerics.joined_blocks import closure_of
 
-__all__ = ["LockingForm", "locking_form"]
+__all__ = ["DeadPointForm", "dead_point_form"]
 
 _DEPENDENT = 1e-9  # smallest singular value of the lengths' columns, relative to the largest
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class LockingForm:
+class DeadPointForm:
     """The dead points of one block as a system of polynomials.
 
     Parameters
     ----------
     form : DirectionForm
         Of the block and all it depends on; the leading input is the last unknown.
-    system : LockingSystem
+    system : DeadPointSystem
     variables : (n,) int
         The form's unknowns as variables of the whole.
     poles : tuple of float, optional
@@ -44,7 +44,7 @@ class LockingForm:
     """
 
     form: DirectionForm
-    system: LockingSystem
+    system: DeadPointSystem
     variables: IndexArray
     known: Array
     poles: tuple[float, ...] | None
@@ -83,9 +83,9 @@ class LockingForm:
         return value, slope
 
 
-def locking_form(
-    leads: LeadTable, solver: BlockSolver, path: InputPath, number: int
-) -> LockingForm | None:
+def dead_point_form(
+    leads: ParametrizedTable, solver: BlockSolver, path: InputPath, number: int
+) -> DeadPointForm | None:
     """The form of a block; ``None`` if the block cannot lock or the input does not move it.
 
     Raises
@@ -119,9 +119,9 @@ def locking_form(
     check_independent(left[0])
     place = {u: k for k, u in enumerate(unknowns)}
     mine = [place[int(u)] for u in own.unknowns]
-    return LockingForm(
+    return DeadPointForm(
         form=form,
-        system=LockingSystem(
+        system=DeadPointSystem(
             left=left[0],
             right=left[0].conj(),
             rows=form.rows,
