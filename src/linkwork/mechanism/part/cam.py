@@ -312,11 +312,7 @@ class Cam(NamedPart):
         shift = turn * ((self.cam == GROUND) - (follower_frame(linkage, self) == GROUND))
         if not shift or not self.segments:
             return same
-        degrees, start = linkage.angle.from_radians(shift), self.start
-        return replace(
-            same,
-            start=f"({start}) + ({degrees!r})" if isinstance(start, str) else start + degrees,
-        )
+        return replace(same, start=inversion.shifted(self.start, shift))
 
 
 def follower_frame(linkage: Bodies, cam: Cam) -> str:

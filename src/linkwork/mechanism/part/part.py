@@ -211,6 +211,11 @@ class Inversion:
         """What a link is called now."""
         return {self.ground: self.frame, self.link: self.ground}.get(link, link)
 
+    def shifted(self, number: Number, turn: float) -> Number:
+        """A number or formula and an angle [rad] more."""
+        more = self.linkage.angle.from_radians(turn)
+        return f"({number}) + ({more!r})" if isinstance(number, str) else number + more
+
     def free_name(self, name: str) -> str:
         """A name that nothing has yet, from now on taken."""
         return free_name(name, self.taken)

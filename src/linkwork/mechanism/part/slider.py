@@ -155,5 +155,4 @@ class Slider(GuidePart):
         angle = self.angle
         if angle is None or self.link != inversion.ground or not inversion.turn:
             return angle
-        turn = inversion.linkage.angle.from_radians(inversion.turn)
-        return f"({angle}) + ({turn!r})" if isinstance(angle, str) else angle + turn
+        return inversion.shifted(angle, inversion.turn)

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from typing import NoReturn
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.file_keys import Flag, Key, ListOf, Number, Tables, Text
+from linkwork.foundation.file_keys import Flag, Formula, Key, ListOf, Number, Tables, Text
 from linkwork.mechanism.part.index import PARTS
 from linkwork.viewer.live.events import PaletteField, PalettePart
 
@@ -57,6 +57,8 @@ def _field(key: Key) -> PaletteField:
             entry = "choice" if words else of or "text"
         case Number():
             entry = "number"
+        case Formula():
+            entry = "text"
         case Flag():
             entry = "flag"
         case ListOf(Text(), noun):
