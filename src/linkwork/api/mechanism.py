@@ -127,7 +127,7 @@ class Mechanism(SolvableMechanism):
         MissingPackageError
             If Matplotlib is not installed.
         """
-        colours = drawing.theme_named(theme)
+        colours = drawing.theme_named(theme, drawing.THEMES)
         scene = self.scene(
             at, configuration=configuration, vectors=vectors, traces=traces, options=options
         )

@@ -10,7 +10,8 @@ from linkwork import batch, equations as closure, motion, textfile
 from linkwork.foundation.deprecation import former_method
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.parts import Input, Number
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.driven_input import Input
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
@@ -138,7 +139,7 @@ class SolvableMechanism:
         Parameters
         ----------
         **what
-            Fields of :class:`~linkwork.mechanism.parts.Input`: ``link="rocker"``, ``start=0``, …
+            Fields of :class:`linkwork.Input`: ``link="rocker"``, ``start=0``, …
 
         Examples
         --------

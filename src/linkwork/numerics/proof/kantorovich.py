@@ -20,7 +20,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.numerics.system import System
 
-__all__ = ["Bounds", "Expansion", "Majorant", "Radii", "bounds", "expansion", "radii"]
+__all__ = ["Bounds", "Expansion", "Majorant", "Radii", "expansion", "radii"]
 
 _UNIT = np.finfo(float).eps / 2
 _SLACK = 1.0 + 1e-12  # rounding of the bounds' own arithmetic, sums of positive numbers
@@ -232,15 +232,6 @@ class Majorant:
             grown = _BENDING * self.quadratic(w) + _SHIFTING * self.linear(w)
             w = np.maximum(start, np.minimum(grown, _MOST * scale))
         return w
-
-
-def bounds(system: System, v: Array, jacobian: Array, matrix: Array, known: Array) -> Bounds:
-    """Constants of the proof in the system's own weights.
-
-    See :func:`expansion` and :class:`Majorant` for the parameters.
-    """
-    majorant = Majorant(expansion(system, v, jacobian, matrix), known)
-    return majorant.bounds(system.variable_scale[: system.unknowns])
 
 
 def _apply(matrix: Array, vector: Array) -> Array:
