@@ -191,28 +191,11 @@ def turning_links(linkage: Bodies) -> frozenset[str]:
 
 @dataclass(kw_only=True)
 class Inversion:
-    """An inversion of a kinematic chain: the chain with another link as ground.
+    """The linkage that is inverted, and the new ground while it is written.
 
-    Parameters
-    ----------
-    ground : str
-        The fixed link of this inversion.
-    type : str
-        The type of the mechanism; "" if it has no name.
-    like : str
-        The first link that, as ground, gives the same chain up to its lengths.
-    problem : str
-        Why ``mechanism.inversion`` cannot make it; "" if it can.
-
-    Examples
-    --------
-    >>> import linkwork as lw
-    >>> for inversion in lw.example("four-bar").inversions():
-    ...     print(inversion.ground, "->", inversion.type.partition(":")[0])
-    ground -> crank-rocker (GCRR)
-    crank -> double-crank (GCCC)
-    coupler -> crank-rocker
-    rocker -> double-rocker
+    ``link`` becomes ground and the old ground the link ``frame``, whose angle counts from the
+    direction ``turn`` [rad] of the old one. ``seen`` are places in the new ground's coordinates,
+    ``fixed`` its points, ``taken`` the names in use.
     """
 
     linkage: Bodies
