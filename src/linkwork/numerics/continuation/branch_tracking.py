@@ -14,13 +14,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array, CountArray, IndexArray, StatusArray
-from linkwork.foundation.status import Status
+from linkwork.foundation.status import CONVERGED, Status
 from linkwork.numerics.block_solver import BlockSolver, Rates
 from linkwork.numerics.newton import NewtonOptions
 
 __all__ = ["BOLD", "End", "InputPath", "Node", "Track", "TrackOptions", "follow", "rows_on_track"]
 
-_CONVERGED = Status.CONVERGED.code
 _FAST = 5.0  # rate of a variable, weighted, from which on a dead point may be ahead
 _APPROACH = 0.75  # of the estimated distance to a dead point: the largest step
 _NODE_TOLERANCE = 1e-7  # a correction this small leaves an error of its square
@@ -258,7 +257,7 @@ def _step(
     correction = float(found.first_step[0])
     factor = (opt.aim / correction) ** (1.0 / 3.0) if correction > 0 else 2.0
     if (
-        found.status[0] != _CONVERGED
+        found.status[0] != CONVERGED
         or correction > opt.largest_correction
         or found.contraction[0] > opt.contraction
     ):
@@ -333,9 +332,7 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
     weights = solver.variable_scale
     moved = np.abs((v - guess) / weights).max(axis=1)
     expected = np.stack([track.nodes[k].orientation for k in left])
-    doubtful = (
-        (status != _CONVERGED) | ~(moved <= 0.1) | (rates.orientation != expected).any(axis=1)
-    )
+    doubtful = (status != CONVERGED) | ~(moved <= 0.1) | (rates.orientation != expected).any(axis=1)
     residual, iterations = found.residual.copy(), found.iterations.copy()
     for row in np.flatnonzero(doubtful):
         node = _nearest(track, int(left[row]), float(t[row]))
@@ -345,7 +342,7 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
             status[row] = Status.LOST.code
             continue
         v[row] = arrived.v
-        status[row] = _CONVERGED
+        status[row] = CONVERGED
         residual[row] = solver.residual(arrived.v[None, :])[0]
     if doubtful.any():
         rates = solver.rates(v, path.rate)

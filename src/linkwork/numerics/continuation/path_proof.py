@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, CountArray, IndexArray
-from linkwork.foundation.status import Status
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.block_solver import BlockSolver, Rates
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Watch, node_at
 from linkwork.numerics.proof.kantorovich import Expansion
@@ -23,11 +24,9 @@ from linkwork.numerics.proof.position_proof import (
 
 __all__ = ["PathPoints", "ProvenPath", "follow_with_proof", "prove_path"]
 
-_CONVERGED = Status.CONVERGED.code
 _ROUNDS = 45  # halvings of one step before it counts as not proved
 _MOST = 30_000  # positions solved in between for the proof of one path
 _MOST_EACH = 8  # and so many more for each of its own positions
-_UNIT = np.finfo(float).eps / 2
 _PIECE = 1024  # positions proved together: arrays that fit the cache
 _LANES = 1024  # steps halved together
 
@@ -224,7 +223,7 @@ def _steps(
 
     The inputs are taken from the positions: those of a row may differ from the path's by rounding.
     """
-    input_radius = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
+    input_radius = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
     input_radius += start.input_radius + goal.input_radius
     return steps_connected(start.v, goal.v, reach(solver, start.v, input_radius, places), near)
 
@@ -360,7 +359,7 @@ def _between(
     points = PathPoints(
         t=t, v=done.v, first=rates.first, second=rates.second, input_radius=input_radius
     )
-    return points, done.status == _CONVERGED, expansions(solver, done.v, linear)
+    return points, done.status == CONVERGED, expansions(solver, done.v, linear)
 
 
 _FIRST_STEP = 0.01  # of the path's natural size
@@ -386,10 +385,12 @@ def follow_with_proof(
         guess = here.v + step * here.first + 0.5 * step * step * here.second
         guess[solver.unknowns :] = path.at(t)
         found = solver.solve(guess[None, :])
-        if found.status[0] == _CONVERGED:
+        if found.status[0] == CONVERGED:
             known = rounding_of_inputs(found.v, solver.unknowns)
             proof = prove(solver, found.v, known)
-            input_radius = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
+            input_radius = np.abs(found.v - here.v)[:, solver.unknowns :] * (
+                1.0 + 8.0 * UNIT_ROUNDOFF
+            )
             reached = reach(solver, here.v[None, :], input_radius + 2.0 * known)
             both = np.maximum(proof.error_bound, near.error_bound)
             if proof.holds[0] and steps_connected(here.v[None, :], found.v, reached, both)[0]:

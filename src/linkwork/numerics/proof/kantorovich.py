@@ -18,12 +18,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.products import matrix_vector
+from linkwork.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
 from linkwork.numerics.system import System
 
 __all__ = ["Bounds", "Expansion", "Majorant", "Radii", "bounds", "expansion", "radii"]
 
-_UNIT = np.finfo(float).eps / 2
-_SLACK = 1.0 + 1e-12  # rounding of the bounds' own arithmetic, sums of positive numbers
 _FITTINGS = 4  # rounds in which weights are fitted
 _BENDING, _SHIFTING = 2.5, 3.0  # c and d of fitted weights: 2 ω Y < (1 - Z)² with some room
 _LEAST = 1e-12  # of the largest weight: an unknown that does not move has this one
@@ -123,7 +123,8 @@ def expansion(
         f, rounding = (np.stack(part) for part in zip(*map(system.exact_residual, v), strict=True))
     lines = np.abs(matrix[:, :, rest] @ slope[:, rest])
     return Expansion(
-        residual=np.abs(_apply(matrix, f)) + _apply(size, rounding + (n + 2) * _UNIT * np.abs(f)),
+        residual=np.abs(matrix_vector(matrix, f))
+        + matrix_vector(size, rounding + (n + 2) * UNIT_ROUNDOFF * np.abs(f)),
         defect=np.abs(np.eye(n) - matrix @ jacobian[:, :, :n]) + loss[:, :, :n],
         slope=np.abs(matrix @ slope) + loss[:, :, n:],
         lines=lines + size[:, :, rest] @ bend.jacobian_rounding[:, rest, n:],
@@ -165,35 +166,35 @@ class Majorant:
         self.lengths = at.pair_length[mine]
         self.held, self.held_group = at.slide[:, :, given], at.pair_group[given]
         self.spread = known[:, at.pair_length[given] - n]
-        by_slope = _apply(at.slope, known) + 0.5 * _apply(at.phase, self.turned**2)
+        by_slope = matrix_vector(at.slope, known) + 0.5 * matrix_vector(at.phase, self.turned**2)
         # a law's phase is a second derivative, no bound of the change itself
         loops, bent = slice(None, at.loop_phases), slice(at.loop_phases, None)
-        as_a_whole = _apply(at.phase[:, :, loops], self.turned[:, loops])
-        as_a_whole += 0.5 * _apply(at.phase[:, :, bent], self.turned[:, bent] ** 2)
-        as_a_whole += _apply(at.lines, known)
+        as_a_whole = matrix_vector(at.phase[:, :, loops], self.turned[:, loops])
+        as_a_whole += 0.5 * matrix_vector(at.phase[:, :, bent], self.turned[:, bent] ** 2)
+        as_a_whole += matrix_vector(at.lines, known)
         if given.size:
-            by_slope += _apply(self.held, self.spread * self.turned[:, self.held_group])
-            as_a_whole += _apply(self.held, self.spread)
+            by_slope += matrix_vector(self.held, self.spread * self.turned[:, self.held_group])
+            as_a_whole += matrix_vector(self.held, self.spread)
         self.y = at.residual + np.minimum(by_slope, as_a_whole)
 
     def linear(self, x: Array) -> Array:
         """Z x, (B, n), for x (B or 1, n)."""
         own = x @ self.turning  # how far unknowns that move by x turn each phase
-        rows = _apply(self.defect, x) + _apply(self.phase, own * self.turned)
+        rows = matrix_vector(self.defect, x) + matrix_vector(self.phase, own * self.turned)
         if self.lengths.size:
-            rows += _apply(self.free, x[:, self.lengths] * self.turned[:, self.free_group])
+            rows += matrix_vector(self.free, x[:, self.lengths] * self.turned[:, self.free_group])
         if self.held_group.size:
-            rows += _apply(self.held, self.spread * own[:, self.held_group])
+            rows += matrix_vector(self.held, self.spread * own[:, self.held_group])
         return rows
 
     def quadratic(self, x: Array) -> Array:
         """M(x, x), (B, n), for x (B or 1, n)."""
         own = x @ self.turning
-        rows = _apply(self.phase, own**2)
+        rows = matrix_vector(self.phase, own**2)
         if self.lengths.size:
-            rows += _apply(self.free, 2.0 * x[:, self.lengths] * own[:, self.free_group])
+            rows += matrix_vector(self.free, 2.0 * x[:, self.lengths] * own[:, self.free_group])
         if self.held_group.size:
-            rows += _apply(self.held, self.spread * own[:, self.held_group] ** 2)
+            rows += matrix_vector(self.held, self.spread * own[:, self.held_group] ** 2)
         return rows
 
     def cubic(self, x: Array) -> Array:
@@ -201,16 +202,16 @@ class Majorant:
         if not self.lengths.size:
             return np.zeros_like(self.y)
         own = x @ self.turning
-        return _apply(self.free, x[:, self.lengths] * own[:, self.free_group] ** 2)
+        return matrix_vector(self.free, x[:, self.lengths] * own[:, self.free_group] ** 2)
 
     def bounds(self, weights: Array) -> Bounds:
         """The constants in weights (n,) or (B, n)."""
         w = np.atleast_2d(weights)
         return Bounds(
-            y=_SLACK * self.y / w,
-            z=_SLACK * self.linear(w) / w,
-            omega=_SLACK * self.quadratic(w) / w,
-            omega_slope=_SLACK * self.cubic(w) / w,
+            y=PROOF_SLACK * self.y / w,
+            z=PROOF_SLACK * self.linear(w) / w,
+            omega=PROOF_SLACK * self.quadratic(w) / w,
+            omega_slope=PROOF_SLACK * self.cubic(w) / w,
         )
 
     def fitted(self, scale: Array) -> Array:
@@ -243,11 +244,6 @@ def bounds(system: System, v: Array, jacobian: Array, matrix: Array, known: Arra
     return majorant.bounds(system.variable_scale[: system.unknowns])
 
 
-def _apply(matrix: Array, vector: Array) -> Array:
-    product: Array = (matrix @ vector[:, :, None])[:, :, 0]
-    return product
-
-
 def radii(b: Bounds, weights: Array) -> Radii:
     """Existence and uniqueness from the constants.
 
@@ -263,19 +259,21 @@ def radii(b: Bounds, weights: Array) -> Radii:
             2.0 * room / omega,
         )
         whole = omega + np.where(slope > 0.0, rho * slope, 0.0)
-        square = room**2 - 2.0 * whole * y * _SLACK
+        square = room**2 - 2.0 * whole * y * PROOF_SLACK
         holds = (room > 0.0) & (square > 0.0)
         root = np.sqrt(square)
         # r- without cancellation; a system without curvature has r- = Y/(1 - Z0) and r+ = ∞
-        existence_radius = np.where(holds, 2.0 * y / (room + root) * _SLACK, np.inf)
-        uniqueness_radius = np.where(holds, np.minimum((room + root) / whole, rho) / _SLACK, 0.0)
+        existence_radius = np.where(holds, 2.0 * y / (room + root) * PROOF_SLACK, np.inf)
+        uniqueness_radius = np.where(
+            holds, np.minimum((room + root) / whole, rho) / PROOF_SLACK, 0.0
+        )
     with np.errstate(all="ignore"):
         bent = b.omega + np.where(b.omega_slope > 0.0, rho[:, None] * b.omega_slope, 0.0)
         error_bound = (
             b.y + b.z * existence_radius[:, None] + 0.5 * bent * existence_radius[:, None] ** 2
         )
-    error_bound = np.minimum(error_bound * _SLACK, existence_radius[:, None]) * weights
-    isolation_radius = uniqueness_radius[:, None] * weights / _SLACK
+    error_bound = np.minimum(error_bound * PROOF_SLACK, existence_radius[:, None]) * weights
+    isolation_radius = uniqueness_radius[:, None] * weights / PROOF_SLACK
     return Radii(
         holds=holds,
         existence_radius=existence_radius,

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.numerics.block_solver import Block, BlockSolver, Linearised
 from linkwork.numerics.proof.kantorovich import Expansion, Majorant, Radii, expansion, radii
 
@@ -26,8 +27,6 @@ __all__ = [
     "rounding_of_inputs",
     "steps_connected",
 ]
-
-_UNIT = np.finfo(float).eps / 2
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -59,7 +58,7 @@ class Proof:
 
 def rounding_of_inputs(v: Array, unknowns: int) -> Array:
     """How far an input may be from the value it stands for, (B, p): conversion of units."""
-    input_radius: Array = 2.0 * _UNIT * np.abs(v[:, unknowns:])
+    input_radius: Array = 2.0 * UNIT_ROUNDOFF * np.abs(v[:, unknowns:])
     return input_radius
 
 
