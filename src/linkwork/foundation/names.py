@@ -9,8 +9,19 @@ from functools import lru_cache
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import as_told
 
-__all__ = ["GREEK", "as_name", "canonical", "find_spelling", "is_name", "latex_name", "pretty"]
+__all__ = [
+    "GREEK",
+    "GROUND",
+    "as_name",
+    "canonical",
+    "find_spelling",
+    "is_name",
+    "latex_name",
+    "pretty",
+]
 
+#: The name of the fixed link.
+GROUND = "ground"
 GREEK = {
     "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta",
     "η": "eta", "θ": "theta", "ι": "iota", "κ": "kappa", "λ": "lambda", "μ": "mu",

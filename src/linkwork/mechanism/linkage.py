@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.lanes import vector
-from linkwork.foundation.names import canonical
+from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.contacts import Belt, Cam, Curve, Gear, Rack, Rolling, Weld
 from linkwork.mechanism.description import Description, Problems
 from linkwork.mechanism.linkage_checks import check_linkage
@@ -24,7 +24,6 @@ from linkwork.mechanism.shape import Shapes
 
 __all__ = ["GROUND", "PART_KINDS", "Linkage"]
 
-GROUND = "ground"
 
 #: What a linkage is made of besides points and links: fields of the class, tables of a file.
 PART_KINDS = (

@@ -7,6 +7,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from linkwork.foundation.errors import choices
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.contact_checks import check_contacts
 from linkwork.mechanism.contacts import names_of
 from linkwork.mechanism.description import Problems, declared
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 __all__ = ["check_linkage"]
 
 Key = tuple[str | int, ...]
-GROUND = "ground"
 _LARGEST = 1e100  # so that squares and quotients of lengths stay numbers
 _SMALLEST = 1e-100
 

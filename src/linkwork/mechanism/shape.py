@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from linkwork.foundation.lanes import is_batched
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.link_shape import Distance, LinkShape, ShapeError, VertexAngle, place
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Measured", "Shapes"]
 
-GROUND = "ground"
 _AGREE = 1e-9  # relative; given dimensions that say the same thing must agree to this
 
 

@@ -196,7 +196,7 @@ def model_of(description: Description) -> Model:
             skeleton = Skeleton.of_linkage(description, equations.outlines)
         case Loops():
             equations = read_loops(description)
-            fixed = description.links.get("ground", equations.fixed)
+            fixed = description.links.get(GROUND, equations.fixed)
             driven = tuple(
                 _driven_part(description, equations, variable, description.falls(which))
                 for variable, which in zip(equations.inputs, description.inputs, strict=True)

@@ -170,7 +170,7 @@ class BlockProof:
         return [spread.constants(i) for i in range(self.count)]
 
     def _radii(self, rows: Sequence[Constants]) -> BlockRadii:
-        """Existence and uniqueness from the constants, as ``numerics.certificate.radii``."""
+        """Existence and uniqueness from the constants, as ``numerics.proof.kantorovich.radii``."""
         rec = self.rec
         y, z = rec.largest(row.y for row in rows), rec.largest(row.z for row in rows)
         omega = rec.largest(row.omega for row in rows)

@@ -2,13 +2,20 @@
 
 For F(x) = 0, A ≈ J(x0)⁻¹ and the weighted norm ‖x‖ = max |x_i|/w_i let
 
-    Y  ≥ ‖A F(x0)‖,   Z0 ≥ ‖I - A J(x0)‖,   ω ≥ Lipschitz constant of A J within ρ of x0.
+    Y ≥ ‖A F(x0)‖,   Z0 ≥ ‖I - A J(x0)‖,   ω ≥ Lipschitz constant of A J within ρ of x0.       (1)
 
-If (1 - Z0)² > 2 ω Y, there is exactly one solution within min(r+, ρ) of x0, it lies within r-, and
-r± = [(1 - Z0) ± √((1 - Z0)² - 2 ω Y)] / ω (Kantorovich 1948; Rump 2010,
-doi:10.1017/S096249291000005X). All constants include the rounding of their own computation. Known
-quantities (inputs, unknowns of blocks solved before) may be uncertain: the proof then holds for
-every value in their intervals.
+There is exactly one solution within min(r+, ρ) of x0, and it lies within r-, if
+
+    (1 - Z0)² > 2 ω Y,                                                                       (2)
+    r± = [(1 - Z0) ± √((1 - Z0)² - 2 ω Y)] / ω                                               (3)
+
+(Kantorovich 1948; Rump 2010, doi:10.1017/S096249291000005X). With ω = ω0 + ω1 ρ, ρ is chosen so
+that the uniqueness radius just fits in:
+
+    ρ (ω0 + ω1 ρ) = 2 (1 - Z0).                                                              (4)
+
+All constants include the rounding of their own computation. Known quantities (inputs, unknowns of
+blocks solved before) may be uncertain: the proof then holds for every value in their intervals.
 """
 
 from __future__ import annotations
@@ -22,7 +29,16 @@ from linkwork.foundation.products import matrix_vector
 from linkwork.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
 from linkwork.numerics.system import System
 
-__all__ = ["Bounds", "Expansion", "Majorant", "Radii", "bounds", "expansion", "radii"]
+__all__ = [
+    "Bounds",
+    "Expansion",
+    "Majorant",
+    "Radii",
+    "bounds",
+    "expansion",
+    "radii",
+    "weighted_radii",
+]
 
 _FITTINGS = 4  # rounds in which weights are fitted
 _BENDING, _SHIFTING = 2.5, 3.0  # c and d of fitted weights: 2 ω Y < (1 - Z)² with some room
@@ -244,40 +260,37 @@ def bounds(system: System, v: Array, jacobian: Array, matrix: Array, known: Arra
     return majorant.bounds(system.variable_scale[: system.unknowns])
 
 
-def radii(b: Bounds, weights: Array) -> Radii:
-    """Existence and uniqueness from the constants.
-
-    ρ is chosen so that the uniqueness radius just fits in: ρ (ω0 + ω1 ρ) = 2 (1 - Z0).
-    """
-    y, z = b.y.max(axis=1), b.z.max(axis=1)
-    omega, slope = b.omega.max(axis=1), b.omega_slope.max(axis=1)
+def radii(y: Array, z: Array, omega: Array, slope: Array) -> tuple[BoolArray, Array, Array, Array]:
+    """Whether the theorem holds, r-, the uniqueness radius and ρ, from Y, Z0, ω0 and ω1 (B,)."""
     room = 1.0 - z
     with np.errstate(all="ignore"):
-        rho = np.where(
+        rho = np.where(  # (4)
             slope > 0.0,
             4.0 * room / (omega + np.sqrt(omega**2 + 8.0 * slope * np.maximum(room, 0.0))),
             2.0 * room / omega,
         )
         whole = omega + np.where(slope > 0.0, rho * slope, 0.0)
         square = room**2 - 2.0 * whole * y * PROOF_SLACK
-        holds = (room > 0.0) & (square > 0.0)
+        holds = (room > 0.0) & (square > 0.0)  # (2)
         root = np.sqrt(square)
-        # r- without cancellation; a system without curvature has r- = Y/(1 - Z0) and r+ = ∞
-        existence_radius = np.where(holds, 2.0 * y / (room + root) * PROOF_SLACK, np.inf)
-        uniqueness_radius = np.where(
-            holds, np.minimum((room + root) / whole, rho) / PROOF_SLACK, 0.0
-        )
+        # (3): r- without cancellation; without curvature r- = Y/(1 - Z0) and r+ = ∞
+        existence = np.where(holds, 2.0 * y / (room + root) * PROOF_SLACK, np.inf)
+        uniqueness = np.where(holds, np.minimum((room + root) / whole, rho) / PROOF_SLACK, 0.0)
+    return holds, existence, uniqueness, rho
+
+
+def weighted_radii(b: Bounds, weights: Array) -> Radii:
+    """Existence and uniqueness from the constants, unknown by unknown."""
+    holds, existence, uniqueness, rho = radii(
+        b.y.max(axis=1), b.z.max(axis=1), b.omega.max(axis=1), b.omega_slope.max(axis=1)
+    )
     with np.errstate(all="ignore"):
         bent = b.omega + np.where(b.omega_slope > 0.0, rho[:, None] * b.omega_slope, 0.0)
-        error_bound = (
-            b.y + b.z * existence_radius[:, None] + 0.5 * bent * existence_radius[:, None] ** 2
-        )
-    error_bound = np.minimum(error_bound * PROOF_SLACK, existence_radius[:, None]) * weights
-    isolation_radius = uniqueness_radius[:, None] * weights / PROOF_SLACK
+        error_bound = b.y + b.z * existence[:, None] + 0.5 * bent * existence[:, None] ** 2
     return Radii(
         holds=holds,
-        existence_radius=existence_radius,
-        uniqueness_radius=uniqueness_radius,
-        error_bound=error_bound,
-        isolation_radius=isolation_radius,
+        existence_radius=existence,
+        uniqueness_radius=uniqueness,
+        error_bound=np.minimum(error_bound * PROOF_SLACK, existence[:, None]) * weights,
+        isolation_radius=uniqueness[:, None] * weights / PROOF_SLACK,
     )

@@ -15,7 +15,13 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.numerics.block_solver import Block, BlockSolver, Linearised
-from linkwork.numerics.proof.kantorovich import Expansion, Majorant, Radii, expansion, radii
+from linkwork.numerics.proof.kantorovich import (
+    Expansion,
+    Majorant,
+    Radii,
+    expansion,
+    weighted_radii,
+)
 
 __all__ = [
     "Proof",
@@ -172,7 +178,7 @@ def _radii(block: Block, place: Expansion, error_bound: Array, fitted: bool = Fa
         majorant = Majorant(place, error_bound[:, block.variables[n:]])
         if fitted:
             weights = majorant.fitted(weights)
-        return radii(majorant.bounds(weights), weights)
+        return weighted_radii(majorant.bounds(weights), weights)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
