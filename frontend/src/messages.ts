@@ -166,6 +166,12 @@ export interface Reload {
   id?: number;
 }
 
+export interface PaletteShown {
+  kind: "palette_shown";
+  answers: number | null;
+  parts: readonly (PalettePart)[];
+}
+
 export interface FileState {
   kind: "file_state";
   answers: number | null;
@@ -292,6 +298,22 @@ export interface Saved {
   file: string;
 }
 
+export interface PalettePart {
+  table: string;
+  title: string;
+  doc: string;
+  fields: readonly (PaletteField)[];
+}
+
+export interface PaletteField {
+  name: string;
+  doc: string;
+  entry: string;
+  required: boolean;
+  words: readonly (string)[];
+  named: readonly (string)[];
+}
+
 export interface ChangeableNumber {
   name: string;
   value: number;
@@ -405,6 +427,7 @@ export type LiveRequest =
   | Reload;
 
 export type LiveEvent =
+  | PaletteShown
   | FileState
   | MotionFound
   | PositionFound

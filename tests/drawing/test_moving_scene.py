@@ -59,7 +59,7 @@ def _differences(one: Scene, other: Scene) -> dict[str, float]:
     return worst
 
 
-@pytest.mark.parametrize("name", thinned(_DRAWN))
+@pytest.mark.parametrize("name", thinned(_DRAWN, 9))
 def test_moving_scene_agrees_with_the_scene_of_a_row(name: str) -> None:
     mechanism = lw.example(name)
     motion = mechanism.sweep(certify=False)

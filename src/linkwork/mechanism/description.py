@@ -24,11 +24,11 @@ from linkwork.foundation.errors import (
 )
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical, is_name
-from linkwork.mechanism.dimensions import Numbers
-from linkwork.mechanism.parts import Input, Number
+from linkwork.mechanism.dimensions import Number, Numbers
+from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.speed import speed_per_second
 
-__all__ = ["Description", "Problems", "declared"]
+__all__ = ["Description", "Key", "Problems", "declared"]
 
 Key = tuple[str | int, ...]
 

@@ -16,7 +16,7 @@ from linkwork.drawing.charts.matplotlib_panel import draw_panel
 from linkwork.drawing.charts.page import KEY, SMALL, TITLE
 from linkwork.drawing.charts.plotting import PlotKind, circuits_plot, motion_plot
 from linkwork.drawing.charts.theme import THEMES, ChartTheme
-from linkwork.drawing.matplotlib_writer import house_settings
+from linkwork.drawing.matplotlib_settings import house_settings
 from linkwork.drawing.theme import theme_named
 from linkwork.foundation.errors import InputError
 from linkwork.results.circuits import Circuits
