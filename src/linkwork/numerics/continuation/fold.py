@@ -14,27 +14,13 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import Array
+from linkwork.numerics.system import SmallSystem
 
 __all__ = ["Bending", "Fold", "FoldFamily", "locate_fold"]
 
 
-class Bending(Protocol):
-    """Equations as in :class:`~linkwork.numerics.system.System` that also know D²F[a, b]."""
-
-    @property
-    def unknowns(self) -> int:
-        """n, the first variables."""
-
-    @property
-    def equation_scale(self) -> Array:
-        """(n,) what residuals are divided by."""
-
-    @property
-    def variable_scale(self) -> Array:
-        """(N,) weights of the variables."""
-
-    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
-        """F, (B, n), and dF/dv, (B, n, N)."""
+class Bending(SmallSystem, Protocol):
+    """Equations that also know mixed second derivatives."""
 
     def mixed(self, v: Array, a: Array, b: Array) -> Array:
         """D²F[a, b], (B, m)."""
