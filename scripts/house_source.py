@@ -151,7 +151,7 @@ def imported(source: Source, package: str, modules: set[tuple[str, ...]]) -> set
             if root == package:
                 whole = tuple(parts)
                 found.add(whole if whole in modules else whole[:-1])
-    return found & modules
+    return found
 
 
 def circles(sources: list[Source], package: str) -> Count:

@@ -16,6 +16,7 @@ from linkwork.foundation.errors import InputError, MechanismError, UnknownNameEr
 from linkwork.mechanism import link_shape
 from linkwork.mechanism.quantities import Quantity, quantities
 from tests.batch.single_design import agree
+from tests.thinned import thinned
 
 FOUR_BAR = {
     "points": {"O2": (0, 0), "A": (20, 35), "B": (120, 70), "O4": ("d", 0), "P": (60, 90)},
@@ -70,7 +71,7 @@ def _varied(
     return found
 
 
-@pytest.mark.parametrize("name", lw.examples())
+@pytest.mark.parametrize("name", thinned(lw.examples()))
 def test_every_kind_of_number_of_every_library_mechanism_varies_as_by_itself(name: str) -> None:
     mechanism, rng = lw.example(name), np.random.default_rng(7)
     tables: dict[str, list[Quantity]] = {}

@@ -27,6 +27,7 @@ from tests.batch.rate_referee import assert_same_evidence, assert_same_limits, a
 from tests.described import described_as
 from tests.library_mechanisms import driven_examples
 from tests.oracles.balls import BallTable, exactly, newton
+from tests.thinned import thinned
 
 Array = npt.NDArray[np.float64]
 DRIVEN = driven_examples()
@@ -123,7 +124,7 @@ def _assert_same_names(family: Family, motion: FamilyMotion, k: int, alone: Moti
 # ------------------------------------------------------------------ the library
 
 
-@pytest.mark.parametrize("name", DRIVEN)
+@pytest.mark.parametrize("name", thinned(DRIVEN))
 def test_library_mechanisms_move_together_as_each_by_itself(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -24,6 +24,7 @@ from linkwork.drawing.charts.theme import DARK_CHART, LIGHT_CHART, THEMES, Chart
 from linkwork.foundation.errors import InputError, UnknownNameError
 from linkwork.foundation.presenting import presenter
 from tests.drawing.pages import assert_page_is_clear, left_title, svg_texts
+from tests.thinned import thinned
 
 
 @pytest.fixture(autouse=True)
@@ -68,7 +69,7 @@ PLOTS = [
 
 
 @pytest.mark.parametrize(("name", "options"), PLOTS)
-@pytest.mark.parametrize("theme", THEMES.values(), ids=THEMES)
+@pytest.mark.parametrize("theme", thinned(THEMES.values()), ids=THEMES)
 def test_texts_are_on_the_page_and_keep_clear_of_each_other(
     name: str, options: dict[str, Any], theme: ChartTheme
 ) -> None:

@@ -15,6 +15,7 @@ from linkwork.cli.main import linkwork
 from linkwork.motion.failure import failing
 from linkwork.motion.failure.elsewhere import Elsewhere
 from tests.failures.test_positions_that_do_not_exist import four_bar
+from tests.thinned import thinned
 
 EXACT = 1e-11  # relative: what closed form and fold differ by is rounding
 
@@ -32,7 +33,7 @@ def diagonal(crank: float, ground: float, theta: float) -> float:
     return float(abs(crank * np.exp(1j * theta) - ground))
 
 
-@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize("seed", thinned(range(25)))
 def test_every_length_that_would_close_a_four_bar_is_the_one_of_the_closed_form(seed: int) -> None:
     rng = np.random.default_rng(seed)
     while True:

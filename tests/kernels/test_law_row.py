@@ -14,7 +14,8 @@ from linkwork.equations.outline import Outline
 from linkwork.kernels.law_row import LawRow
 from linkwork.kernels.loop_table import LinearRows, LoopTable, TableSplitter
 from linkwork.kernels.phasor_rows import PhasorRows
-from linkwork.numerics.proof.kantorovich import bounds, weighted_radii
+from linkwork.numerics.proof.kantorovich import weighted_radii
+from tests.numerics.proof_bounds import bounds
 from tests.oracles.ball_laws import ball_jet
 from tests.oracles.balls import BallTable, certainly_above, exactly, newton
 

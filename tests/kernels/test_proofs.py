@@ -10,9 +10,10 @@ import numpy.typing as npt
 import pytest
 
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.proof.kantorovich import bounds, weighted_radii
+from linkwork.numerics.proof.kantorovich import weighted_radii
 from tests.campaigns.lanes import LaneClaims, claims, judge_lane_steps, judge_lanes
 from tests.campaigns.positions import closed, random_position
+from tests.numerics.proof_bounds import bounds
 
 Array = npt.NDArray[np.float64]
 LANES = 24

@@ -22,6 +22,7 @@ from linkwork.numerics.homotopy.solution_bound import (
     bound_by_sums,
 )
 from tests.numerics.bilinear_systems import angles_only
+from tests.thinned import thinned
 
 
 def products(turning: int, *along: int) -> Products:
@@ -98,7 +99,7 @@ def test_sums_have_to_hold_within_rounding() -> None:
     assert not sums_hold(columns, off, 0.0 * rounding)
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", thinned(range(30)))
 def test_systems_of_small_integers_have_no_more_solutions_than_their_bound(seed: int) -> None:
     """Parallel, equal and congruent links by the dozen; solutions from products of forms."""
     rng = np.random.default_rng(seed)

@@ -18,7 +18,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.foundation.status import Status
 from linkwork.kernels.march.dead_points import dead_points
-from linkwork.kernels.march.sweep_kernel import LaneRows, RowsOfOne, Steps
+from linkwork.kernels.march.sweep_kernel import LaneRows, Steps
 from linkwork.kernels.program.execution import Execution
 from linkwork.motion.by_kernels import are_served, kernel_of
 from linkwork.motion.drive import Drive
@@ -203,16 +203,6 @@ class March:
         settled = self._find_complete(t, reached[:, stopped], limits)
         done[stopped[settled]] = True
         return done, reached
-
-    def of_one(self, t: Array) -> RowsOfOne:
-        """The rows of a family of one design, to be computed again and again."""
-        return self.kernel.alone(
-            self.coefficients,
-            self.guess[:, 0],
-            float(self.start[0]),
-            t,
-            Steps().times(self.path.size),
-        )
 
     def _march(
         self,

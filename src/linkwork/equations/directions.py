@@ -167,7 +167,7 @@ def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
     if table.functions:
         cams = table.has_curvature_bound
         raise NoDirectionForm(
-            "contain a cam or a curve" if cams else "are plain equations, not loops"
+            "contain a law, as cams and curves do" if cams else "are plain equations, not loops"
         )
     n, loops = table.unknowns, table.loops
     turning = np.flatnonzero(table.is_angle[:n])

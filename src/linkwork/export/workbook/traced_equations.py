@@ -16,8 +16,8 @@ from linkwork.expression.tree import Name, Node, names_in
 from linkwork.foundation.lanes import NotElementwise
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Description
+from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.linkage import GROUND, Linkage
-from linkwork.mechanism.parts import Number
 from linkwork.mechanism.quantities import Quantity, quantities, with_numbers
 
 __all__ = ["Dimension", "TracedEquations", "forms_of", "traced"]

@@ -15,7 +15,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.rounding import CLOSER_TANGENT, REGULAR_CONDITION
 from linkwork.foundation.status import Status
-from linkwork.motion.circuit.branches import CurveBranch, TracedCurve, branches_of, trace_with_proof
+from linkwork.motion.curve_branches import CurveBranch, TracedCurve, branches_of, trace_with_proof
 from linkwork.numerics.continuation.change_point import ChangePoint, Crossing
 from linkwork.numerics.continuation.local_parametrization import (
     Parametrization,

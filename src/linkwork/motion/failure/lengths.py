@@ -10,9 +10,9 @@ from linkwork.expression.tree import Binary, Call, Name, Negative, Node, names_i
 from linkwork.foundation.errors import ExpressionError, InputError
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Description
+from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.linkage import GROUND, Linkage
 from linkwork.mechanism.loops import Loops
-from linkwork.mechanism.parts import Number
 from linkwork.motion.model import Model, model_of
 
 __all__ = ["ChangeableLength", "lengths_of", "model_with"]

@@ -34,7 +34,6 @@ __all__ = [
     "Expansion",
     "Majorant",
     "Radii",
-    "bounds",
     "expansion",
     "radii",
     "weighted_radii",
@@ -249,15 +248,6 @@ class Majorant:
             grown = _BENDING * self.quadratic(w) + _SHIFTING * self.linear(w)
             w = np.maximum(start, np.minimum(grown, _MOST * scale))
         return w
-
-
-def bounds(system: System, v: Array, jacobian: Array, matrix: Array, known: Array) -> Bounds:
-    """Constants of the proof in the system's own weights.
-
-    See :func:`expansion` and :class:`Majorant` for the parameters.
-    """
-    majorant = Majorant(expansion(system, v, jacobian, matrix), known)
-    return majorant.bounds(system.variable_scale[: system.unknowns])
 
 
 def radii(y: Array, z: Array, omega: Array, slope: Array) -> tuple[BoolArray, Array, Array, Array]:
