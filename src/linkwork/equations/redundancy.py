@@ -16,9 +16,8 @@ import numpy as np
 from linkwork.equations.frames import Frames
 from linkwork.equations.model import LawEquation, LinearEquation
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.names import canonical
+from linkwork.foundation.names import GROUND, canonical
 from linkwork.foundation.rounding import RANK_TOLERANCE
-from linkwork.mechanism.linkage import GROUND
 
 __all__ = ["Bar", "released_links"]
 

@@ -14,10 +14,10 @@ from linkwork.equations.from_loops import read_loops, read_plain_equations
 from linkwork.equations.model import LoopEquations, Variable
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import canonical
+from linkwork.foundation.names import GROUND, canonical
 from linkwork.foundation.plain_numbers import finite_number
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.skeleton import DrivenPart, Skeleton
 from linkwork.motion.lock_step import lock_step

@@ -29,15 +29,7 @@ from linkwork.foundation.products import matrix_vector
 from linkwork.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
 from linkwork.numerics.system import System
 
-__all__ = [
-    "Bounds",
-    "Expansion",
-    "Majorant",
-    "Radii",
-    "expansion",
-    "radii",
-    "weighted_radii",
-]
+__all__ = ["Bounds", "Expansion", "Majorant", "Radii", "expansion", "radii", "weighted_radii"]
 
 _FITTINGS = 4  # rounds in which weights are fitted
 _BENDING, _SHIFTING = 2.5, 3.0  # c and d of fitted weights: 2 ω Y < (1 - Z)² with some room
