@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from enum import Enum
-
-from linkwork.foundation.arrays import StatusArray
+from linkwork.foundation.coded_enum import CodedEnum
 
 __all__ = ["CONVERGED", "Status"]
 
 
-class Status(Enum):
+class Status(CodedEnum):
     """The exit of a solver is its status; it is never re-derived afterwards."""
 
     CONVERGED = "position found"
@@ -57,23 +55,6 @@ class Status(Enum):
         """Whether a position was found."""
         return self is Status.CONVERGED
 
-    @property
-    def code(self) -> int:
-        """A small whole number, for arrays of statuses."""
-        return _CODES[self]
 
-    @classmethod
-    def of_code(cls, code: int) -> Status:
-        """The status with this code."""
-        return _MEMBERS[code]
-
-    @classmethod
-    def of_codes(cls, codes: StatusArray) -> tuple[Status, ...]:
-        """Those with these codes (B,)."""
-        return tuple(map(_MEMBERS.__getitem__, codes.tolist()))
-
-
-_MEMBERS = tuple(Status)
-_CODES = {status: code for code, status in enumerate(_MEMBERS)}
 #: The code of a position that was found.
 CONVERGED = Status.CONVERGED.code

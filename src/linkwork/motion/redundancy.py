@@ -93,14 +93,14 @@ def check_redundancy(compiled: Compiled, where: str) -> None:
             for part, length in zip(equations.redundant, found, strict=True)
             if abs(length - part.length) > FITS * equations.length_scale
         )
-        raise _refused(surplus, f"as drawn it does not fit: {wanted}", where)
+        raise _refuse(surplus, f"as drawn it does not fit: {wanted}", where)
     if freedoms < inputs:
         how = f"{freedoms} degree{'s' if freedoms != 1 else ''} of freedom"
         driven = f"{inputs} input{'s' if inputs != 1 else ''}"
-        raise _refused(surplus, f"as assembled it has {how} for {driven}", where)
+        raise _refuse(surplus, f"as assembled it has {how} for {driven}", where)
 
 
-def _refused(surplus: Problem, why: str, where: str) -> MechanismError:
+def _refuse(surplus: Problem, why: str, where: str) -> MechanismError:
     return MechanismError(
         [Problem(key=surplus.key, message=f"{surplus.message} ({why})", line=surplus.line)], where
     )

@@ -109,7 +109,7 @@ def sweep_rows(model: Model, *, certify: bool = True) -> tuple[SolvedRows, tuple
     work = _begin_sweep(model, certify, options, policy, None, explained=False)
     if isinstance(work, Start):
         return _no_rows(model), ()
-    rows, added = work.tables[0].finished()
+    rows, added = work.tables[0].finish()
     asked = rows.take(np.flatnonzero(~added))
     return fitting(model, asked), work.branches[0].found.ends
 
@@ -340,7 +340,7 @@ class _Sweep:
 
     def motion(self) -> Motion:
         """Everything in one result."""
-        first, *further = (table.finished() for table in self.tables)
+        first, *further = (table.finish() for table in self.tables)
         added = [first[1], *(np.ones(len(rows), dtype=bool) for rows, _ in further)]
         rows = SolvedRows.concatenate([first[0], *(rows for rows, _ in further)])
         motion = replace(

@@ -113,7 +113,7 @@ def kernel_rows(
     kernel.shift(Execution(positions=len(rows)))
     nearest, begin = _nearest(track, rows)
     steps = Steps().times(path.size)
-    march = kernel.alone(coefficients, begin.v[:n], begin.t, rows, steps)
+    march = kernel.prepare_single(coefficients, begin.v[:n], begin.t, rows, steps)
     done = march.run()
     if done is None:
         return None
