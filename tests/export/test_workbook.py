@@ -168,14 +168,14 @@ def test_rows_beyond_a_dead_point_say_so_and_the_next_starts_anew(tmp_path: Path
     motion = mechanism.sweep(step=12, certify=False)
     sheet = written(tmp_path, mechanism, motion)
     found = motion.found[motion.asked]
-    said = sheet.column("Cycle", "Linkwork says")
+    said = sheet.column("Cycle", "Linkwork's status")
     values = sheet.column("Cycle", "s16")
     assert 0 < found.sum() < len(found)
     for there, text, shown in zip(found, said, values, strict=True):
         assert text.startswith("found") == there
         assert (shown is not None) == there
     first = int(np.flatnonzero(~found)[-1]) + 1
-    assert said[first] == "found, not asked; starts from an estimate of its own"
+    assert said[first] == "found, not asked; starts from a separate estimate"
     own = motion["s16"][motion.asked]
     near = [abs(v - o) for v, o in zip(values, own, strict=True) if v is not None]
     assert max(near) < _NEAR
@@ -207,8 +207,8 @@ def test_a_shape_without_a_formula_keeps_its_numbers(tmp_path: Path) -> None:
     check_rows(sheet, motion)
     told = mechanism.to_excel(tmp_path / "again.xlsx", motion)
     assert told == (
-        "A B, A P, A P B: the equations follow from these by more than a formula; "
-        "they keep the values of the file",
+        "A B, A P, A P B: no formula connects these with the equations; they keep the values of "
+        "the file",
     )
 
 

@@ -431,7 +431,9 @@ def test_solve_takes_a_configuration_by_name() -> None:
     stuck = looped({"l": "4*e^(i*q) + 2*e^(i*a) = 4 + 1.5*e^(i*b)"}, a=10, b=60)
     position = stuck.solve(90, configuration="open")
     assert position.status is lw.Status.CANNOT_CLOSE
-    gap = 'loop "l" cannot be closed at q = 90°: nearest to the guess a gap of 2.15685 mm remains'
+    gap = (
+        'loop "l" cannot be closed at q = 90°: near the guess a gap of at least 2.15685 mm remains'
+    )
     assert position.message.startswith(gap)
     assert position.message.endswith("; no configuration exists there")
     assert position.failure is not None

@@ -93,7 +93,7 @@ def test_a_bar_of_another_length_makes_dixons_mechanism_rigid() -> None:
         dixon(**{"A2 B2": 94.0})
     text = str(raised.value)
     assert text.startswith('1 problem in mechanism "Dixon I"\n  links  1 condition too many: ')
-    assert " (as drawn it does not fit: " in text
+    assert " (it does not fit the sketch: " in text
     assert " would have to be " in text
 
 
@@ -165,7 +165,7 @@ def test_a_parallelogram_in_line_has_two_freedoms_there_and_one_beside() -> None
 
 
 def test_at_a_change_point_no_way_is_taken_that_a_redundant_link_does_not_fit() -> None:
-    """Straight on all cranks stay parallel; turned off, the third one would have another length."""
+    """Straight on all cranks stay parallel; turned, the third would have another length."""
     mechanism = lw.example("parallel-cranks")
     straight = mechanism.sweep(start=0, stop=360, step=20, change_points="straight")
     assert straight.found.all()

@@ -1,4 +1,4 @@
-"""Numbers of many designs at once, for code that was written for one design.
+"""Numbers of many designs at once, for code written for one design.
 
 The code that builds a mechanism computes with floats and complex numbers. :class:`Lanes` stand for
 such a number in n designs; arithmetic goes lane by lane. Where the code asks *whether* something

@@ -1,4 +1,4 @@
-"""Straight lines that points of a mechanism given by loop equations run along."""
+"""Straight guides of points in a mechanism given by loop equations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The table of a sweep as it fills: rows asked for, and rows of limits in their places."""
+"""The table of a sweep: requested rows, and rows of limits in their places."""
 
 from __future__ import annotations
 

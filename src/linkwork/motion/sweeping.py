@@ -133,7 +133,7 @@ def _begin_sweep(
     asked = Asked(t=rows[:, lead], inputs=rows, in_file_units=model.rows_in_file_units)
     entry = _onto_path(drive, start, asked.t, certify)
     if entry is None:
-        message = "no row of the table could be reached from the guess's own input values"
+        message = "no row of the table can be reached from the input values of the guess"
         return replace(start, message=message)
     work = _Sweep(drive, certify, Report(progress, entry[0].t, *_span(asked.t)))
     work.message = start.message

@@ -1,4 +1,4 @@
-"""Short summaries of results: aligned text fit to be pasted into a question, rows of a table."""
+"""Short summaries of results as aligned text and as rows of a table."""
 
 from __future__ import annotations
 

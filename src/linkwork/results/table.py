@@ -24,10 +24,23 @@ _SHOWN = 6  # columns that ``repr`` names
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Table:
-    """Columns by name, all of one length, with the unit of each ("" for none).
+    """Named columns of equal length, with the unit of each column.
 
-    Numbers are float arrays; ``status``, ``branch``, ``limit`` arrays of text; ``certified`` of
-    bool.
+    Parameters
+    ----------
+    columns : Mapping[str, array (N,)]
+        Numbers as float arrays; ``status``, ``branch``, ``limit`` as text; ``certified`` as bool.
+    units : Mapping[str, str]
+        The unit of every column; "" for none.
+    index : str
+        The column of the leading input.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> table = lw.example("four-bar").sweep(start=0, stop=90, step=30).table()
+    >>> len(table), table.units["rocker"], round(float(table["rocker"][2]), 3)
+    (4, 'deg', 64.943)
     """
 
     columns: Mapping[str, Column]

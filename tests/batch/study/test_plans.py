@@ -48,7 +48,7 @@ x = 40
         """\
 8 problems in plan.toml
   line 3   sampling              must be "grid" or "random" or "latin-hypercube" or "table", got "latin"
-  line 4   count                 must be a whole number from 1 on, got 0
+  line 4   count                 must be a whole number of at least 1, got 0
   line 5   keeep                 is not a key of the file (keys: keep, format, name, mechanism, sampling, count, seed, table, … 8 more)
   line 7   dimensions."O2 A"     must be a number, a list of numbers, or a table such as { from = 36, to = 44 }, got "three"
   line 8   dimensions."A B".too  is not a key of [dimensions.A B] (keys: to, from, levels, likeliest, mean, deviation)

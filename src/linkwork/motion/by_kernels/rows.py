@@ -1,4 +1,4 @@
-"""Long tables of one mechanism by the compiled kernels.
+"""Long tables of one mechanism computed by the compiled kernels.
 
 A track has been followed to the ends of the table. The kernels compute the rows along it, which
 they predict from each other and prove from each other; the row next to every node of the track is
