@@ -54,8 +54,8 @@ Position found
   residual     0
   iterations   5
   condition    1.00
-  certificate  none: plain equations have no known bound of their curvature, so
-               nothing is proved
+  certificate  none: plain equations have no known bound on their curvature, so
+               there is no proof
 
 Newton-Raphson from the guess
 
@@ -106,10 +106,10 @@ crank from 0 to 360 deg by 30: 13 positions
   change point     crank = 360 deg, where loop "O2 A B O4" can close in two ways
                    (coupler and rocker in line)
   certified        5
-  not certified    3: too near to a singular position: rounding is larger than
-                   what the proof allows
-  not certified    5: the position is proved; at a change point before it
-                   nothing but the chosen way of going on decides the branch
+  not certified    3: too close to a singular position: rounding errors exceed
+                   the margin of the proof
+  not certified    5: the position is proved; at a change point before it, the
+                   chosen policy decides the branch
 """
 
 CHECKED = """\
@@ -444,8 +444,8 @@ def test_check_says_what_a_textbook_says(run: Run, folder: Path, name: str, line
 
 def test_check_of_a_loop_that_cannot_close_has_no_grashof_type(run: Run) -> None:
     assert (
-        "  type        no closed loop: crank is 100 mm longer than the other three\n"
-        "              together\n"
+        "  type        no closed loop: crank is 100 mm longer than the sum of the\n"
+        "              other three\n"
     ) in run("check", "open.toml").stdout
 
 

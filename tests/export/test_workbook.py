@@ -194,7 +194,7 @@ def test_a_cams_law_is_told_to_be_values_only(tmp_path: Path) -> None:
     told = mechanism.to_excel(tmp_path / "cam.xlsx", mechanism.sweep(step=30, certify=False))
     assert told[0] == (
         's: "rise" is a motion law or a curve, given piece by piece; '
-        "the column holds Linkwork's values"
+        "the column contains Linkwork's values"
     )
     about = openpyxl.load_workbook(tmp_path / "cam.xlsx")["About"]
     assert told[0] in [row[1].value for row in about.iter_rows()]
@@ -214,12 +214,14 @@ def test_a_shape_without_a_formula_keeps_its_numbers(tmp_path: Path) -> None:
 
 def test_another_mechanisms_motion_is_refused(tmp_path: Path) -> None:
     motion = lw.example("slider-crank").sweep(step=90, certify=False)
-    with pytest.raises(InputError, match='is of "Offset slider-crank", not of "Four-bar linkage'):
+    with pytest.raises(
+        InputError, match='belongs to "Offset slider-crank", not to "Four-bar linkage'
+    ):
         lw.example("four-bar").to_excel(tmp_path / "x.xlsx", motion)
 
 
 def test_another_kind_of_file_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"workbooks are written as \.xlsx"):
+    with pytest.raises(InputError, match=r"a workbook needs the suffix \.xlsx"):
         lw.example("four-bar").to_excel(tmp_path / "x.xls")
 
 

@@ -86,7 +86,7 @@ def test_without_a_root_there_is_no_reason_to_miss_it_and_the_least_value_is_tol
     assert (position.status, trouble(position)) == (Status.STEP_LIMIT, None)
     assert position.message == (
         "no position after the largest allowed number of iterations: start from a nearer guess "
-        'or allow more iterations; "f" stays at 1 at best nearby; '
+        'or allow more iterations; "f" has at least the residual 1 nearby; '
         "other guesses also lead to no position there"
     )
 

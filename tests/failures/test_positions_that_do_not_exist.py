@@ -265,7 +265,7 @@ def test_a_start_on_a_dead_point_says_so() -> None:
         ],
         inputs=lw.Input(slider="s", start=160, stop=80, step=-5),
     )
-    assert mechanism.solve().message.startswith("position found, at a dead point or change point")
+    assert mechanism.solve().message.startswith("position found at a dead point or change point")
     motion = mechanism.sweep()
     assert set(motion.status[1:]) == {lw.Status.START_SINGULAR}
 
