@@ -11,7 +11,7 @@ import numpy.typing as npt
 from flint import arb
 
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.proof.kantorovich import Bounds, Majorant, Radii, expansion, radii
+from linkwork.numerics.proof.kantorovich import Bounds, Majorant, Radii, expansion, weighted_radii
 from tests.campaigns.positions import Placed
 from tests.numerics.proof_bounds import bounds
 from tests.oracles.balls import BallTable, ball, certainly_above, exactly, newton
@@ -104,7 +104,7 @@ def _case(rng: np.random.Generator, placed: Placed, number: int) -> Case | None:
     if number % 3 == 2:  # in fitted weights, as a step is proved
         place = expansion(table, v[None, :], jacobian, matrix[None])
         weights = table.variable_scale.copy()
-        fitted = Majorant(place, known[None, :]).fitted(weights[:n])[0]
+        fitted = Majorant(place, known[None, :]).fit_weights(weights[:n])[0]
         weights[:n] = fitted / (fitted / weights[:n]).max()  # their ratios are what matters
         table = replace(table, variable_scale=weights)
         placed = replace(placed, table=table)
@@ -116,7 +116,7 @@ def _case(rng: np.random.Generator, placed: Placed, number: int) -> Case | None:
         matrix=matrix,
         known=known,
         bounds=claimed,
-        radii=radii(claimed, table.variable_scale[:n]),
+        radii=weighted_radii(claimed, table.variable_scale[:n]),
     )
 
 

@@ -29,7 +29,7 @@ def _examples(name: str, text: str) -> doctest.DocTest:
     return doctest.DocTestParser().get_doctest(text, {}, name, None, 0)
 
 
-@pytest.mark.parametrize("name", lw.__all__)
+@pytest.mark.parametrize("name", lw.__all__)  # type: ignore[attr-defined]  # by the loader
 def test_every_public_name_has_an_example_that_runs(name: str) -> None:
     assert _examples(name, getattr(lw, name).__doc__ or "").examples, f"{name} has no example"
     report: list[str] = []

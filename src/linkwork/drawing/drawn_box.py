@@ -13,8 +13,8 @@ from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.figures import Contour, Disc
-from linkwork.mechanism.linkage import GROUND
 from linkwork.results.motion import Motion
 
 __all__ = ["drawn_box", "reach_of"]

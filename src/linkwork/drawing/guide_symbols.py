@@ -14,8 +14,8 @@ from linkwork.drawing.link_symbols import Gap, uncovered
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose, travel_along
 from linkwork.drawing.scene import Polygon, Polyline, Primitive, Role, xy
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.figures import Guide
-from linkwork.mechanism.linkage import GROUND
 from linkwork.mechanism.skeleton import Rail
 
 __all__ = ["Track", "guide_symbols", "track_gaps", "tracks"]

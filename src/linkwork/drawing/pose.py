@@ -11,8 +11,8 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.errors import InputError, choices
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.figures import Contour, Disc, Guide
-from linkwork.mechanism.linkage import GROUND
 from linkwork.mechanism.part.cylinder import Strut
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.motion import Motion

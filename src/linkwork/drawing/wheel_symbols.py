@@ -18,8 +18,8 @@ from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Disc as Circle, Hatch, Polygon, Polyline, Primitive, Role, xy
 from linkwork.drawing.tooth_outline import ADDENDUM, DEDENDUM, tooth_outline, tooth_phases
 from linkwork.foundation.arrays import ComplexArray
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.figures import Disc
-from linkwork.mechanism.linkage import GROUND
 
 __all__ = ["addendum_of", "outer_radius", "wheel_symbols"]
 

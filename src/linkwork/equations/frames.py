@@ -22,9 +22,9 @@ from linkwork.foundation.lanes import (
     phase,
     remainder,
 )
-from linkwork.foundation.names import canonical
+from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.description import Problems
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 
 __all__ = ["Frames", "Place"]
 

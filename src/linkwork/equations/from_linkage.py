@@ -23,10 +23,10 @@ from linkwork.equations.structure import Node, Structure, StructureBlock
 from linkwork.expression.tree import Name
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.lanes import cis, hypot, largest, phase, row_of, smallest
-from linkwork.foundation.names import canonical, pretty
+from linkwork.foundation.names import GROUND, canonical, pretty
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.driven_input import Input
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.cylinder import Cylinder
 
 __all__ = ["write_loops"]

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from enum import Enum
-
-from linkwork.foundation.arrays import StatusArray
+from linkwork.foundation.coded_enum import CodedEnum
 
 __all__ = ["Certification"]
 
 
-class Certification(Enum):
+class Certification(CodedEnum):
     """Whether a position is proved, or why not; the value is a sentence.
 
     Examples
@@ -49,22 +47,3 @@ class Certification(Enum):
     def certified(self) -> bool:
         """Whether everything that belongs to the position is proved."""
         return self in (Certification.CERTIFIED, Certification.CONFIGURATION_CERTIFIED)
-
-    @property
-    def code(self) -> int:
-        """A small whole number, for arrays."""
-        return _CODES[self]
-
-    @classmethod
-    def of_code(cls, code: int) -> Certification:
-        """The member with this code."""
-        return _MEMBERS[code]
-
-    @classmethod
-    def of_codes(cls, codes: StatusArray) -> tuple[Certification, ...]:
-        """Those with these codes (B,)."""
-        return tuple(map(_MEMBERS.__getitem__, codes.tolist()))
-
-
-_MEMBERS = tuple(Certification)
-_CODES = {member: code for code, member in enumerate(_MEMBERS)}

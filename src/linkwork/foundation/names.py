@@ -11,6 +11,7 @@ from linkwork.foundation.plain_numbers import as_told
 
 __all__ = [
     "GREEK",
+    "GROUND",
     "as_name",
     "canonical",
     "find_spelling",
@@ -20,6 +21,8 @@ __all__ = [
     "pretty",
 ]
 
+#: The name of the fixed link.
+GROUND = "ground"
 GREEK = {
     "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta",
     "η": "eta", "θ": "theta", "ι": "iota", "κ": "kappa", "λ": "lambda", "μ": "mu",

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from enum import Enum
+from linkwork.foundation.coded_enum import CodedEnum
 
-from linkwork.foundation.arrays import StatusArray
-
-__all__ = ["Status"]
+__all__ = ["CONVERGED", "Status"]
 
 
-class Status(Enum):
+class Status(CodedEnum):
     """How a computation ended; the value is a sentence with a next step.
 
     Examples
@@ -65,21 +63,6 @@ class Status(Enum):
         """Whether a position was found."""
         return self is Status.CONVERGED
 
-    @property
-    def code(self) -> int:
-        """A small whole number, for arrays of statuses."""
-        return _CODES[self]
 
-    @classmethod
-    def of_code(cls, code: int) -> Status:
-        """The status with this code."""
-        return _MEMBERS[code]
-
-    @classmethod
-    def of_codes(cls, codes: StatusArray) -> tuple[Status, ...]:
-        """The statuses with these codes (B,)."""
-        return tuple(map(_MEMBERS.__getitem__, codes.tolist()))
-
-
-_MEMBERS = tuple(Status)
-_CODES = {status: code for code, status in enumerate(_MEMBERS)}
+#: The code of a position that was found.
+CONVERGED = Status.CONVERGED.code

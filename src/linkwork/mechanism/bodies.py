@@ -8,12 +8,12 @@ from typing import TypeVar
 
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.lanes import phase, vector
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
 
-__all__ = ["GROUND", "Bodies", "Measured", "Shapes"]
+__all__ = ["Bodies", "Measured", "Shapes"]
 
-GROUND = "ground"
 
 P = TypeVar("P")
 

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.joint import Joint, JointKind
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.weld import Weld
 
 __all__ = ["GROUND", "Chain"]

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from linkwork.foundation.names import canonical, free_name
+from linkwork.foundation.names import GROUND, canonical, free_name
 from linkwork.mechanism.dimensions import Number
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.slider import Slider
 
 __all__ = ["directed", "named_in"]

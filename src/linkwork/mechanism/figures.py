@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from linkwork.mechanism.bodies import GROUND
+from linkwork.foundation.names import GROUND
 
 __all__ = ["Contour", "Disc", "Figure", "Guide", "Mesh", "Outlines"]
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import canonical, free_name
+from linkwork.foundation.names import GROUND, canonical, free_name
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.directed import named_in
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.inverted_values import Frame, inverted_input, inverted_output
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.cylinder import Cylinder
 from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.part.part import Inversion, Part

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import names_in
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.names import canonical
+from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.driven_input import Input
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.cylinder import Cylinder
 
 __all__ = ["Frame", "inverted_input", "inverted_output"]

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from linkwork.foundation.lanes import is_batched
-from linkwork.mechanism.bodies import GROUND, Bodies, Measured, Shapes
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.bodies import Bodies, Measured, Shapes
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.link_shape import Distance, LinkShape, ShapeError, VertexAngle, place
 

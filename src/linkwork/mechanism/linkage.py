@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from linkwork.foundation.frozen import FrozenDict
-from linkwork.foundation.names import canonical
-from linkwork.mechanism.bodies import GROUND, Shapes
+from linkwork.foundation.names import GROUND, canonical
+from linkwork.mechanism.bodies import Shapes
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.link_shapes import link_shapes

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from itertools import combinations
 
 from linkwork.foundation.errors import choices
-from linkwork.mechanism.bodies import GROUND
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Key, Problems, declared
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.part.index import JoinedBodies

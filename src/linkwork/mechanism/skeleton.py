@@ -7,8 +7,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.figures import Disc, Figure, Guide, Mesh, Outlines
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.cylinder import Strut
 from linkwork.mechanism.part.weld import RigidJoint
 

@@ -14,6 +14,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import canonical
+from linkwork.foundation.rounding import REGULAR_CONDITION
 from linkwork.foundation.short_number import short_number
 from linkwork.foundation.status import Status
 from linkwork.motion import failure as why
@@ -37,7 +38,6 @@ from linkwork.results.motion import Motion
 __all__ = ["branch_start", "circuits", "is_branch_name"]
 
 _FINE = 8  # positions kept per step of a curve
-_REGULAR = 1e5  # condition up to which positions have rates
 
 
 def circuits(
@@ -240,7 +240,7 @@ class _Circuits:
         rows = SolvedRows.blank(inputs, solver.variables, Status.CONVERGED)
         rates = solver.rates(v, self.drive.path.rate)
         rows.v[:] = v
-        regular = rates.nearness < _REGULAR
+        regular = rates.nearness < REGULAR_CONDITION
         rows.first[regular], rows.second[regular] = rates.first[regular], rates.second[regular]
         rows.residual[:], rows.condition[:] = solver.residual(v), rates.condition
         begin = 0

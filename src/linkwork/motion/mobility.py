@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.rounding import RANK_TOLERANCE
 from linkwork.foundation.status import Status
 from linkwork.mechanism.linkage import Linkage
 from linkwork.motion.model import Model
@@ -15,7 +16,6 @@ from linkwork.motion.redundancy import FITS, misfit, mobility_by_rank
 __all__ = ["Mobility", "grubler_count", "mobility_of", "pins"]
 
 _LARGEST = 100  # unknowns up to which a singular mechanism is looked at as one matrix
-_RANK_TOLERANCE = 1e-9  # relative to the largest singular value of the scaled Jacobian
 _BESIDE = 1e-3  # how far beside a position its neighbour is sought, in weighted variables
 _TRIES = 6
 
@@ -118,4 +118,4 @@ def _by_rank(model: Model, v: Array) -> int | None:
 def _rank_of(scaled: Array) -> int:
     if not scaled.size:
         return 0
-    return int(np.linalg.matrix_rank(scaled, tol=_RANK_TOLERANCE * np.linalg.norm(scaled, 2)))
+    return int(np.linalg.matrix_rank(scaled, tol=RANK_TOLERANCE * np.linalg.norm(scaled, 2)))

@@ -41,7 +41,7 @@ _ENTRIES = (
 )
 _MOST_CROSSINGS = 64
 _ROUNDING = 1e-14  # of whole turns, which are no floats
-_SAME = 1e-6  # of the leading input: extremes nearer to each other are one
+_SAME_EXTREME = 1e-6  # of the leading input: extremes nearer to each other are one
 
 
 def sweep(
@@ -109,7 +109,7 @@ def sweep_rows(model: Model, *, certify: bool = True) -> tuple[SolvedRows, tuple
     work = _begin_sweep(model, certify, options, policy, None, explained=False)
     if isinstance(work, Start):
         return _no_rows(model), ()
-    rows, added = work.tables[0].finished()
+    rows, added = work.tables[0].finish()
     asked = rows.take(np.flatnonzero(~added))
     return fitting(model, asked), work.branches[0].found.ends
 
@@ -307,7 +307,7 @@ class _Sweep:
                     here
                     for here in table.places_of(t)
                     if table.is_among(here, branch.own)
-                    and not any(abs(here - other) < _SAME for other in places)
+                    and not any(abs(here - other) < _SAME_EXTREME for other in places)
                 ]
                 for here in mine:
                     row = self._branch_row(branch, t, here)
@@ -340,7 +340,7 @@ class _Sweep:
 
     def motion(self) -> Motion:
         """Everything in one result."""
-        first, *further = (table.finished() for table in self.tables)
+        first, *further = (table.finish() for table in self.tables)
         added = [first[1], *(np.ones(len(rows), dtype=bool) for rows, _ in further)]
         rows = SolvedRows.concatenate([first[0], *(rows for rows, _ in further)])
         motion = replace(

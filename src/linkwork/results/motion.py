@@ -23,8 +23,7 @@ from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
 from linkwork.results.limit import Limit, LimitKind, OutputLimit
 from linkwork.results.quantity import Quantity, Rate, Units
-from linkwork.results.summary import motion_summary
-from linkwork.results.table import Table, table_of
+from linkwork.results.table import Table
 
 __all__ = ["Limit", "LimitKind", "Motion", "OutputLimit", "Series"]
 
@@ -236,8 +235,8 @@ class Motion:
         return float(found.max()) if len(found) else float("nan")
 
     def table(self) -> Table:
-        """All columns with units; see :func:`linkwork.results.table.table_of`."""
-        return table_of(self)
+        """All columns with units; see :func:`linkwork.results.motion_table.table_of`."""
+        return presenter(Motion.table)(self)
 
     def to_pandas(self) -> Any:
         """A pandas DataFrame with the input as index."""
@@ -348,7 +347,7 @@ class Motion:
         return presenter(Motion.widget)(self)
 
     def __repr__(self) -> str:
-        return str(motion_summary(self))
+        return presenter(Motion.__repr__)(self)
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""

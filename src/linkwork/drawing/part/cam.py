@@ -13,7 +13,7 @@ from linkwork.drawing.link_symbols import tones
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Polygon, Polyline, Primitive, Role, xy
-from linkwork.mechanism.bodies import GROUND
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.part.cam import CamOutline, Follower
 
 __all__ = ["symbols"]

@@ -13,7 +13,7 @@ from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Hatch, Polygon, Polyline, Primitive, Role, xy
 from linkwork.foundation.arrays import ComplexArray
-from linkwork.mechanism.bodies import GROUND
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.figures import Contour
 from linkwork.mechanism.part.curve import CurvedSlot
 

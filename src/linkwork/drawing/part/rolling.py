@@ -11,7 +11,7 @@ from linkwork.drawing.link_symbols import tones
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose, travel_along
 from linkwork.drawing.scene import Polyline, Primitive, Role, xy
-from linkwork.mechanism.bodies import GROUND
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.part.rolling import RollingLine
 
 __all__ = ["symbols"]

@@ -33,6 +33,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import IndexArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.march.closure import (
     BlockPart,
@@ -52,7 +53,6 @@ __all__ = ["NODES", "WEIGHTS", "MarchPrograms", "march_programs"]
 NODES = ROLES - 1  # that a prediction can use
 #: Registers of the weights of nodes' values and derivatives in a prediction.
 WEIGHTS = tuple(f"{name}{role}" for role in range(1, ROLES) for name in "ab")
-_UNIT = float(np.finfo(float).eps) / 2.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -126,11 +126,11 @@ class _MarchWriter:
         """By how much an input changes with t."""
         return rec.constant(1.0) if self.alone else rec.input(f"u{j}.rate")
 
-    def _moved(self, rec: Recorder, k: int) -> Value:
+    def _rate_of_known(self, rec: Recorder, k: int) -> Value:
         """The rate of a variable that a block takes as known."""
         return rec.input(f"d{k}.0") if k < self.n else self._rate(rec, k - self.n)
 
-    def _weighted(self, rec: Recorder, k: int, change: Value) -> Value:
+    def _weigh(self, rec: Recorder, k: int, change: Value) -> Value:
         """|change| of a variable in its weight."""
         return rec.divide(rec.absolute(change), self._scale(rec, k))
 
@@ -188,7 +188,7 @@ class _MarchWriter:
             factor = rec.smallest([1.0, rec.input("most_turn") / rec.largest(turns)])
             change = [factor * d for d in change]
         size = rec.largest(
-            self._weighted(rec, k, d) for d, k in zip(change, part.unknowns, strict=True)
+            self._weigh(rec, k, d) for d, k in zip(change, part.unknowns, strict=True)
         )
 
         def put(name: str, value: Value) -> None:
@@ -218,7 +218,7 @@ class _MarchWriter:
     ) -> list[Value]:
         """Rates after the correction, from those before it: the Jacobian is not solved again."""
         rec, unknowns = closure.rec, closure.part.unknowns
-        rates = {k: self._moved(rec, k) for k in closure.known()}
+        rates = {k: self._rate_of_known(rec, k) for k in closure.known()}
         rates |= {k: -r for k, r in zip(unknowns, moved, strict=True)}
         correction = {k: -d for k, d in zip(unknowns, change, strict=True)}
         (more,) = solve_linear(rec, matrix, [closure.bending(correction, rates)]).columns
@@ -227,7 +227,7 @@ class _MarchWriter:
     def _drives(self, closure: Closure, rec: Recorder) -> list[Value]:
         """F_k times the rates of the known variables."""
         known = closure.known()
-        rates = [self._moved(rec, k) for k in known]
+        rates = [self._rate_of_known(rec, k) for k in known]
         return [
             rec.total([rec.multiply(x, rate) for x, rate in zip(row, rates, strict=True)])
             for row in closure.jacobian(known)
@@ -241,14 +241,16 @@ class _MarchWriter:
         proof = BlockProof(closure, {k: self._scale(rec, k) for k in used})
         near: dict[int, Value] = {}
         far: dict[int, Value] = {}
-        step = abs(rec.input("t.0") - rec.input("t.1")) * (1.0 + 16.0 * _UNIT)
+        step = abs(rec.input("t.0") - rec.input("t.1")) * (1.0 + 16.0 * UNIT_ROUNDOFF)
         for k in proof.known:
             if k < self.n:
                 near[k], far[k] = rec.input(f"e{k}.0"), rec.input(f"y{k}.0")
             else:
-                near[k] = abs(closure.v[k]) * (4.0 * _UNIT) + rec.input(f"u{k - self.n}.spread")
+                near[k] = abs(closure.v[k]) * (4.0 * UNIT_ROUNDOFF) + rec.input(
+                    f"u{k - self.n}.spread"
+                )
                 far[k] = step * abs(self._rate(rec, k - self.n)) + 2.0 * near[k]
-        for k, rate in zip(part.unknowns, proof.rates(self._moved), strict=True):
+        for k, rate in zip(part.unknowns, proof.rates(self._rate_of_known), strict=True):
             rec.write(f"d{k}.0", rate)
         here, there = proof.within(near), proof.within(far)
         masks = [here.holds, there.holds]
@@ -259,7 +261,7 @@ class _MarchWriter:
             rec.write(f"y{k}.0", reach)
             away = abs(closure.v[k] - rec.input(f"x{k}.1"))
             away = away + rec.largest([error, rec.input(f"e{k}.1")])
-            masks.append(rec.at_most(away, alone * (1.0 - 4.0 * _UNIT)))
+            masks.append(rec.at_most(away, alone * (1.0 - 4.0 * UNIT_ROUNDOFF)))
         rec.write(f"ok{number}.0", rec.all_of(masks))
         rec.write(f"radius{number}.0", here.radius)
         return rec
@@ -286,7 +288,7 @@ class _MarchWriter:
             masks.append(rec.at_most(0.0, product))
         h = rec.input("t.0") - rec.input("t.1")
         drifts = [
-            self._weighted(rec, k, (rec.input(f"d{k}.0") - rec.input(f"d{k}.1")) * h)
+            self._weigh(rec, k, (rec.input(f"d{k}.0") - rec.input(f"d{k}.1")) * h)
             for k in range(self.n)
         ]
         masks.append(rec.at_most(rec.largest(drifts), rec.input("most_drift")))

@@ -9,7 +9,8 @@ from typing import Any, ClassVar, Self
 
 from linkwork.foundation.errors import choices
 from linkwork.foundation.file_keys import Key, Number as NumberKey, Tables, Text
-from linkwork.mechanism.bodies import GROUND, Bodies
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Contour, Disc, Figure, Outlines
 from linkwork.mechanism.joint import JointKind

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 from linkwork.foundation.file_keys import Flag, Key, ListOf, Number as NumberKey, Text
-from linkwork.mechanism.bodies import GROUND, Bodies
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Contour, Figure, Outlines
 from linkwork.mechanism.joint import JointKind

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from linkwork.foundation.file_keys import Flag, Key, Number as NumberKey, Text
-from linkwork.mechanism.bodies import GROUND, Bodies
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Disc, Figure, Outlines
 from linkwork.mechanism.joint import JointKind

@@ -9,7 +9,8 @@ from typing import Self
 
 from linkwork.foundation.file_keys import Key, ListOf, Number as NumberKey, Text
 from linkwork.foundation.lanes import choose, phase
-from linkwork.mechanism.bodies import GROUND, Bodies
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Figure, Guide, Outlines
 from linkwork.mechanism.joint import JointKind

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 from linkwork.foundation.file_keys import Key, ListOf, Number as NumberKey, Text
-from linkwork.mechanism.bodies import GROUND, Bodies
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Figure, Outlines
 from linkwork.mechanism.part.part import Inversion, Part, PartChecks, turning_links

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from linkwork.equations.model import LinkAngle
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.chain import Chain
 from linkwork.mechanism.joint import Joint, JointKind
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.guide import GuidePart
 from linkwork.mechanism.part.slider import Slider
 

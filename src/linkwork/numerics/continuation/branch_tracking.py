@@ -14,14 +14,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array, CountArray, IndexArray, StatusArray
-from linkwork.foundation.status import Status
+from linkwork.foundation.status import CONVERGED, Status
 from linkwork.marching.loop import Attempt, StepBounds, march
 from linkwork.marching.step_size import by_error
 from linkwork.numerics.block_solver import BlockSolver, Rates
 
 __all__ = ["BOLD", "End", "InputPath", "Node", "Track", "TrackOptions", "follow", "rows_on_track"]
 
-_CONVERGED = Status.CONVERGED.code
 _FAST = 5.0  # rate of a variable, weighted, from which on a dead point may be ahead
 _APPROACH = 0.75  # of the estimated distance to a dead point: the largest step
 _NODE_TOLERANCE = 1e-7  # a correction this small leaves an error of its square
@@ -226,7 +225,7 @@ class _Trial:
         found = solver.solve(guess[None, :], self.quick)
         correction = float(found.first_step[0])
         factor = by_error(correction, opt.aim, 3)
-        if found.status[0] != _CONVERGED or found.contraction[0] > opt.contraction:
+        if found.status[0] != CONVERGED or found.contraction[0] > opt.contraction:
             too_far = correction > opt.largest_correction
             return Attempt(None, factor if too_far else None)
         if correction > opt.largest_correction:
@@ -300,9 +299,7 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
     weights = solver.variable_scale
     moved = np.abs((v - guess) / weights).max(axis=1)
     expected = np.stack([track.nodes[k].orientation for k in left])
-    doubtful = (
-        (status != _CONVERGED) | ~(moved <= 0.1) | (rates.orientation != expected).any(axis=1)
-    )
+    doubtful = (status != CONVERGED) | ~(moved <= 0.1) | (rates.orientation != expected).any(axis=1)
     residual, iterations = found.residual.copy(), found.iterations.copy()
     for row in np.flatnonzero(doubtful):
         node = _nearest(track, int(left[row]), float(t[row]))
@@ -312,7 +309,7 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
             status[row] = Status.LOST.code
             continue
         v[row] = arrived.v
-        status[row] = _CONVERGED
+        status[row] = CONVERGED
         residual[row] = solver.residual(arrived.v[None, :])[0]
     if doubtful.any():
         rates = solver.rates(v, path.rate)

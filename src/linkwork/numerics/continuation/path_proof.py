@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, CountArray, IndexArray
-from linkwork.foundation.status import Status
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.foundation.status import CONVERGED
 from linkwork.marching.loop import Attempt, StepBounds, march
 from linkwork.numerics.block_solver import BlockSolver, Rates
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Watch, node_at, predict
@@ -25,11 +26,9 @@ from linkwork.numerics.proof.position_proof import (
 
 __all__ = ["PathPoints", "ProvenPath", "follow_with_proof", "prove_path"]
 
-_CONVERGED = Status.CONVERGED.code
 _ROUNDS = 45  # halvings of one step before it counts as not proved
 _MOST = 30_000  # positions solved in between for the proof of one path
 _MOST_EACH = 8  # and so many more for each of its own positions
-_UNIT = np.finfo(float).eps / 2
 _PIECE = 1024  # positions proved together: arrays that fit the cache
 _LANES = 1024  # steps halved together
 
@@ -226,7 +225,7 @@ def _steps(
 
     The inputs are taken from the positions: those of a row may differ from the path's by rounding.
     """
-    input_radius = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
+    input_radius = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
     input_radius += start.input_radius + goal.input_radius
     return steps_connected(start.v, goal.v, reach(solver, start.v, input_radius, places), near)
 
@@ -362,7 +361,7 @@ def _between(
     points = PathPoints(
         t=t, v=done.v, first=rates.first, second=rates.second, input_radius=input_radius
     )
-    return points, done.status == _CONVERGED, expansions(solver, done.v, linear)
+    return points, done.status == CONVERGED, expansions(solver, done.v, linear)
 
 
 _PROVED_GROWTH = 1.5  # of steps that are proved one by one
@@ -401,12 +400,12 @@ class _ProvedTrial:
         guess = predict(here, t)
         guess[solver.unknowns :] = self.path.at(t)
         found = solver.solve(guess[None, :])
-        if found.status[0] != _CONVERGED:
+        if found.status[0] != CONVERGED:
             return Attempt(None)
         known = rounding_of_inputs(found.v, solver.unknowns)
         proof = self._proof(found.v)
-        spread = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
-        reached = reach(solver, here.v[None, :], spread + 2.0 * known)
+        input_radius = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
+        reached = reach(solver, here.v[None, :], input_radius + 2.0 * known)
         both = np.maximum(proof.error_bound, self.here.error_bound)
         if not (proof.holds[0] and steps_connected(here.v[None, :], found.v, reached, both)[0]):
             return Attempt(None)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from functools import singledispatch
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import canonical, find_spelling
+from linkwork.foundation.names import GROUND, canonical, find_spelling
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.quantities import Quantity, quantity_named
 from linkwork.textfile.text_edits import TextEdits

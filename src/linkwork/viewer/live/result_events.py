@@ -8,8 +8,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from linkwork.equations.notation import PlainText
 from linkwork.equations.writing import EquationSheet
 from linkwork.foundation.errors import MechanismError, key_text
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
 from linkwork.mechanism.quantities import Quantity, quantities
 from linkwork.results.configurations import Configurations
