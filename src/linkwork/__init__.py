@@ -39,23 +39,18 @@ if TYPE_CHECKING:
     )
     from linkwork.foundation.newton_trouble import NewtonTrouble as NewtonTrouble
     from linkwork.foundation.status import Status as Status
-    from linkwork.mechanism.contacts import (
-        Belt as Belt,
-        Cam as Cam,
-        Curve as Curve,
-        Gear as Gear,
-        Rack as Rack,
-        Rolling as Rolling,
-        Segment as Segment,
-        Weld as Weld,
-    )
-    from linkwork.mechanism.parts import (
-        Cylinder as Cylinder,
-        Input as Input,
-        Slider as Slider,
-        Slot as Slot,
-        Spring as Spring,
-    )
+    from linkwork.mechanism.driven_input import Input as Input
+    from linkwork.mechanism.part.belt import Belt as Belt
+    from linkwork.mechanism.part.cam import Cam as Cam, Segment as Segment
+    from linkwork.mechanism.part.curve import Curve as Curve
+    from linkwork.mechanism.part.cylinder import Cylinder as Cylinder
+    from linkwork.mechanism.part.gear import Gear as Gear
+    from linkwork.mechanism.part.rack import Rack as Rack
+    from linkwork.mechanism.part.rolling import Rolling as Rolling
+    from linkwork.mechanism.part.slider import Slider as Slider
+    from linkwork.mechanism.part.slot import Slot as Slot
+    from linkwork.mechanism.part.spring import Spring as Spring
+    from linkwork.mechanism.part.weld import Weld as Weld
     from linkwork.numerics.newton import NewtonOptions as NewtonOptions
     from linkwork.results.check import CheckReport as CheckReport
     from linkwork.results.circuits import (

@@ -11,8 +11,9 @@ import numpy.typing as npt
 from flint import arb
 
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.proof.kantorovich import Bounds, Majorant, Radii, bounds, expansion, radii
+from linkwork.numerics.proof.kantorovich import Bounds, Majorant, Radii, expansion, weighted_radii
 from tests.campaigns.positions import Placed
+from tests.numerics.proof_bounds import bounds
 from tests.oracles.balls import BallTable, ball, certainly_above, exactly, newton
 
 __all__ = ["Case", "Verdict", "judge", "judge_case"]
@@ -115,7 +116,7 @@ def _case(rng: np.random.Generator, placed: Placed, number: int) -> Case | None:
         matrix=matrix,
         known=known,
         bounds=claimed,
-        radii=radii(claimed, table.variable_scale[:n]),
+        radii=weighted_radii(claimed, table.variable_scale[:n]),
     )
 
 

@@ -12,6 +12,7 @@ from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, Scene, Text
 from linkwork.drawing.shape_corners import corners
 from linkwork.mechanism.linkage import Linkage
 from tests.described import described_as
+from tests.drawing.shared_area import shared_area
 from tests.library_mechanisms import read_example
 from tests.thinned import thinned
 
@@ -115,7 +116,7 @@ def test_names_of_a_moving_scene_seldom_meet() -> None:
     meeting = 0
     for row in range(0, 360, 3):
         boxes = [text.box for text in moving.at(row).select(Text)]
-        meeting += sum(a.overlap(b) > 0 for k, a in enumerate(boxes) for b in boxes[:k])
+        meeting += sum(shared_area(a, b) > 0 for k, a in enumerate(boxes) for b in boxes[:k])
     assert meeting <= 0.05 * 120
 
 

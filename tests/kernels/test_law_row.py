@@ -14,7 +14,8 @@ from linkwork.equations.outline import Outline
 from linkwork.kernels.law_row import LawRow
 from linkwork.kernels.loop_table import LinearRows, LoopTable, TableSplitter
 from linkwork.kernels.phasor_rows import PhasorRows
-from linkwork.numerics.proof.kantorovich import bounds, radii
+from linkwork.numerics.proof.kantorovich import weighted_radii
+from tests.numerics.proof_bounds import bounds
 from tests.oracles.ball_laws import ball_jet
 from tests.oracles.balls import BallTable, certainly_above, exactly, newton
 
@@ -245,7 +246,7 @@ def test_a_radius_with_laws_holds_a_root() -> None:
         jacobian = table.jacobian(v)
         matrix = np.asarray(np.linalg.inv(jacobian[:, :, :4]), dtype=float)
         shift = arb(float(v[0, 4])) - root[4]
-        found = radii(
+        found = weighted_radii(
             bounds(table, v, jacobian, matrix, np.abs([[float(shift)]])), table.variable_scale[:4]
         )
         if not found.holds[0]:

@@ -10,9 +10,10 @@ import numpy.typing as npt
 import pytest
 
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.proof.kantorovich import bounds, radii
+from linkwork.numerics.proof.kantorovich import weighted_radii
 from tests.campaigns.lanes import LaneClaims, claims, judge_lane_steps, judge_lanes
 from tests.campaigns.positions import closed, random_position
+from tests.numerics.proof_bounds import bounds
 
 Array = npt.NDArray[np.float64]
 LANES = 24
@@ -70,7 +71,7 @@ def test_constants_and_radii_are_those_of_the_scalar_proof(seed: int) -> None:
             assert (own <= other * (1 + 1e-10) + room).all(), name
             if not sharper:
                 assert (own >= other * (1 - 1e-10) - 0.1 * room).all(), name
-        one = radii(scalar, weights[:n])
+        one = weighted_radii(scalar, weights[:n])
         assert lanes.radii.holds[k] == one.holds[0] or sharper
         if sharper or not one.holds[0]:
             continue

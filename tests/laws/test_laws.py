@@ -11,7 +11,8 @@ import pytest
 
 import linkwork as lw
 from linkwork.foundation.angles import AngleUnit
-from linkwork.mechanism.linkage import PART_KINDS, Linkage
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.index import PARTS
 from linkwork.results.quantity import Kind
 from linkwork.results.table import table_of
 from tests.laws.agreement import CLOSE, agree, angles_of, internal, series_of
@@ -63,7 +64,7 @@ def test_the_mirrored_mechanism_has_the_mirrored_motion(name: str) -> None:
 UNTURNED = frozenset(
     name
     for name in NAMES
-    if any(getattr(mechanism_of(name).description, kind, ()) for kind in PART_KINDS[3:])
+    if any(getattr(mechanism_of(name).description, kind, ()) for kind in list(PARTS)[3:])
 )
 #: The third derivative of a spline jumps; Dixon's bars change too fast for these steps.
 UNEVEN = frozenset({"curved-slot", "dixon-one", "dixon-two", "eccentric-cam", "garage-door"})

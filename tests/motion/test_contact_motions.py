@@ -126,14 +126,20 @@ NOT_LISTED = "not proved: these equations have no list of configurations; the eq
         (
             "cam by its outline, sliding knife",
             0,
-            NOT_LISTED.format("s, law, law_x, law_y", "contain a cam or a curve"),
+            NOT_LISTED.format("s, law, law_x, law_y", "contain a law, as cams and curves do"),
         ),
         (
             "cam by its outline, sliding flat",
             0,
-            NOT_LISTED.format("law, law_dx, law_dy, law_speed", "contain a cam or a curve"),
+            NOT_LISTED.format(
+                "law, law_dx, law_dy, law_speed", "contain a law, as cams and curves do"
+            ),
         ),
-        ("curve open", 0, NOT_LISTED.format("rod, u, u_x, u_y", "contain a cam or a curve")),
+        (
+            "curve open",
+            0,
+            NOT_LISTED.format("rod, u, u_x, u_y", "contain a law, as cams and curves do"),
+        ),
     ],
 )
 def test_configurations_are_listed_or_a_reason_is_given(kind: str, count: int, reason: str) -> None:

@@ -11,8 +11,9 @@ from typing import Any
 import linkwork as lw
 from linkwork.equations.frames import Frames
 from linkwork.equations.model import LoopEquations, Term
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Problems
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 
 __all__ = ["as_loops"]
 

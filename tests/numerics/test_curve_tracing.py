@@ -13,7 +13,7 @@ from flint import arb, ctx
 import linkwork as lw
 from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.circuit_end import CircuitEnd
-from linkwork.motion.circuit.branches import TracedCurve, branches_of, trace_with_proof
+from linkwork.motion.curve_branches import TracedCurve, branches_of, trace_with_proof
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.start import first_position
 from linkwork.numerics.continuation.branch_tracking import InputPath

@@ -29,7 +29,7 @@ from linkwork.numerics.continuation.branch_tracking import (
     rows_on_track,
 )
 from linkwork.numerics.continuation.path_proof import ProvenPath, prove_path
-from linkwork.numerics.proof.kantorovich import Bounds, bounds, radii
+from linkwork.numerics.proof.kantorovich import Bounds, weighted_radii
 from linkwork.numerics.proof.position_proof import (
     Proof,
     prove,
@@ -40,6 +40,7 @@ from linkwork.numerics.proof.position_proof import (
 from tests.campaigns.certificates import judge
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.steps import beads_of, judge_steps
+from tests.numerics.proof_bounds import bounds
 from tests.numerics.systems import blocks_of, four_bar_table
 from tests.oracles.balls import BallTable, certainly_above, exactly, newton
 from tests.oracles.four_bar import FourBar
@@ -192,7 +193,7 @@ def test_radii_are_the_roots_of_their_quadratic() -> None:
         if number % 5 == 0 and omega.max() > 0 and slope.max() == 0:  # just so, or just not
             y[:] = (1 - z.max()) ** 2 / (2 * omega.max()) * (1 + rng.choice([-1, 1]) * 1e-9)
         weights = 10 ** rng.uniform(-1, 2, n)
-        claimed = radii(Bounds(y=y, z=z, omega=omega, omega_slope=slope), weights)
+        claimed = weighted_radii(Bounds(y=y, z=z, omega=omega, omega_slope=slope), weights)
         big_y, big_z, o, s = (arb(float(part.max())) for part in (y, z, omega, slope))
         room = 1 - big_z
         if not room > 0:

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from linkwork.foundation.errors import MechanismError, Problem
+from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.parts import Input
 from linkwork.textfile import read_text
 from tests.textfile.samples import SAMPLES
 

@@ -8,10 +8,11 @@ import pytest
 import linkwork as lw
 from linkwork.drawing.captions import printed_formula
 from linkwork.viewer.loop_arrows import loop_arrows
-from linkwork.viewer.packing import unpacked, unpressed
+from linkwork.viewer.packing import unpressed
 from linkwork.viewer.page_data import VectorData
 from tests.library_mechanisms import read_example
 from tests.thinned import thinned
+from tests.viewer.unpacking import unpacked
 
 LOOPED = [
     name

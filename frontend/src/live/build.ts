@@ -1,7 +1,6 @@
 // A palette of what a mechanism is made of, the input, and the text of the file.
 
-import type { DrivenInput, FileState, LiveEdit } from "../messages";
-import { PALETTE } from "../palette";
+import type { DrivenInput, FileState, LiveEdit, PalettePart } from "../messages";
 import { toggle } from "../controls";
 import { html } from "../svg";
 import type { Desk } from "./asking";
@@ -21,7 +20,7 @@ export interface Field {
 export type Entry = string | readonly string[];
 type Entries = Readonly<Record<string, Entry>>;
 
-interface Piece {
+export interface Piece {
   readonly title: string;
   readonly doc?: string;
   readonly fields: readonly Field[];
@@ -31,7 +30,7 @@ interface Piece {
 const number = (text: Entry): number => Number(String(text).replace("\u2212", "-").replace(",", "."));
 const one = (name: string, entry: string, required = true): Field => ({ name, entry, required });
 
-export const PIECES: readonly Piece[] = [
+const PLAIN: readonly Piece[] = [
   {
     title: "Point",
     doc: "x and y are its coordinates in the sketch of the file, from which the mechanism is first assembled",
@@ -54,8 +53,15 @@ export const PIECES: readonly Piece[] = [
     fields: [one("link", "link"), one("point", "point")],
     edit: (v) => ({ kind: "add_joint", link: String(v.link), point: String(v.point) }),
   },
-  ...PALETTE.map(({ table, title, doc, fields }) => ({ title, doc, fields, edit: (v: Entries): LiveEdit => partOf(table, v) })),
 ];
+
+/** Points, links and joints, and the parts that files can hold. */
+export function piecesOf(parts: readonly PalettePart[]): readonly Piece[] {
+  return [
+    ...PLAIN,
+    ...parts.map(({ table, title, doc, fields }) => ({ title, doc, fields, edit: (v: Entries): LiveEdit => partOf(table, v) })),
+  ];
+}
 
 /** Fields that may be left empty, but seldom are. */
 const USUAL = new Set(["on link", "radii", "teeth"]);
@@ -76,6 +82,7 @@ export class Build {
   private readonly collect: HTMLInputElement;
   private readonly waiting: HTMLElement;
   private collected: LiveEdit[] = [];
+  private offered: readonly Piece[] = PLAIN;
 
   constructor(private readonly desk: Desk) {
     this.input = this.group("Input", true);
@@ -92,6 +99,10 @@ export class Build {
     this.text = html("textarea", { rows: 18, spellcheck: "false", "aria-label": "Text of the file" }, box);
     const apply = html("button", { type: "button" }, box, "Use this text");
     apply.addEventListener("click", () => desk.ask({ kind: "set_text", text: this.text.value }));
+  }
+
+  offer(parts: readonly PalettePart[]): void {
+    this.offered = piecesOf(parts);
   }
 
   show(file: FileState): void {
@@ -200,7 +211,7 @@ export class Build {
     this.palette.querySelectorAll("details, p").forEach((old) => old.remove());
     const sketched = file.form === "points-and-links";
     if (!sketched) html("p", { class: "lw-empty" }, this.palette, "To add equations, edit the text of the file.");
-    for (const piece of sketched ? [...PIECES].reverse() : []) {
+    for (const piece of sketched ? [...this.offered].reverse() : []) {
       const box = html("details", { class: "lw-piece" });
       this.palette.querySelector("summary")!.after(box);
       html("summary", {}, box, piece.title);

@@ -83,6 +83,9 @@ export class LivePage {
 
   private told(event: LiveEvent): void {
     switch (event.kind) {
+      case "palette_shown":
+        this.build.offer(event.parts);
+        break;
       case "file_state":
         this.state(event);
         break;

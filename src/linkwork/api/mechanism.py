@@ -85,7 +85,7 @@ class Mechanism(SolvableMechanism):
         theme : str
             Colours of the page: ``light`` or ``dark``.
         """
-        colours = drawing.theme_named(theme)
+        colours = drawing.theme_named(theme, drawing.THEMES)
         scene = self.scene(
             at, configuration=configuration, vectors=vectors, traces=traces, options=options
         )

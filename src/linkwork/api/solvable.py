@@ -10,7 +10,8 @@ from linkwork import batch, equations as closure, motion, textfile
 from linkwork.foundation.deprecation import former_method
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.parts import Input, Number
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.driven_input import Input
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
@@ -105,7 +106,7 @@ class SolvableMechanism:
         return motion.inversions(self.model)
 
     def driven_by(self, **what: Any) -> Self:
-        """A copy with another input; arguments as :class:`~linkwork.mechanism.parts.Input`."""
+        """A copy with another input; arguments as of ``lw.Input``."""
         return type(self)(motion.driven_otherwise(self.model, Input(**what)))
 
     def check(self) -> CheckReport:

@@ -15,9 +15,10 @@ from linkwork.batch.single_sweep import sweep_single
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.foundation.status import Status
 from linkwork.kernels.march.dead_points import dead_points
-from linkwork.kernels.march.sweep_kernel import LaneRows, RowsOfOne, Steps
+from linkwork.kernels.march.sweep_kernel import LaneRows, Steps
 from linkwork.kernels.program.execution import Execution
 from linkwork.motion.by_kernels import are_served, kernel_of
 from linkwork.motion.drive import Drive
@@ -30,7 +31,6 @@ __all__ = ["March", "Path", "design_rows"]
 
 _ON_PATH = 1e-12
 _FINEST = 1e-8  # step, of a radian or a length, where a row lies right in front of a dead point
-_UNIT = float(np.finfo(float).eps) / 2.0
 
 
 def design_rows(
@@ -94,7 +94,7 @@ class Path:
         farthest = max(np.abs(t).max(), np.abs(start[np.isfinite(start)]).max(initial=0.0))
         rounds = (self.origin != 0.0) & (self.rate != 0.0)
         size = np.abs(self.origin) + np.abs(self.rate) * farthest
-        input_radius: Array = gap + np.where(rounds, 4.0 * _UNIT * size, 0.0)
+        input_radius: Array = gap + np.where(rounds, 4.0 * UNIT_ROUNDOFF * size, 0.0)
         return input_radius
 
     def fill(
@@ -204,16 +204,6 @@ class March:
         done[stopped[settled]] = True
         return done, reached
 
-    def of_one(self, t: Array) -> RowsOfOne:
-        """The rows of a family of one design, to be computed again and again."""
-        return self.kernel.alone(
-            self.coefficients,
-            self.guess[:, 0],
-            float(self.start[0]),
-            t,
-            Steps().times(self.path.size),
-        )
-
     def _march(
         self,
         t: Array,
@@ -281,7 +271,11 @@ class March:
         mine = stopped[those]
         own, radii = np.empty((len(v), len(t), len(mine))), np.empty((len(radius), len(mine)))
         # neither 2π nor the sum is exact
-        apart = 4.0 * _UNIT * (float(np.abs(t).max()) + abs(turns) * FULL_TURN) if turns else 0.0
+        apart = (
+            4.0 * UNIT_ROUNDOFF * (float(np.abs(t).max()) + abs(turns) * FULL_TURN)
+            if turns
+            else 0.0
+        )
         further = self._march(moved, own, radii, mine, apart, smallest)
         row, column = np.nonzero(further.reached & ~reached[:, mine])
         v[:, row, mine[column]] = own[:, row, column]

@@ -8,11 +8,11 @@ import numpy as np
 
 from linkwork.batch.designs import Designs
 from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.march.sweep_kernel import LaneRows, Steps, SweepKernel
 
 __all__ = ["lead_to_rows"]
 
-_UNIT = float(np.finfo(float).eps) / 2.0
 _CHUNK = 1 << 22  # distances held at a time
 
 
@@ -49,7 +49,7 @@ def lead_to_rows(
     given = {name: values[which] for name, values in coefficients.items()}
     for j in range(own.shape[1]):
         given[f"u{j}.origin"], given[f"u{j}.rate"] = own[:, j].copy(), rate[:, j].copy()
-        given[f"u{j}.spread"] = 4.0 * _UNIT * (np.abs(own[:, j]) + np.abs(rate[:, j]))
+        given[f"u{j}.spread"] = 4.0 * UNIT_ROUNDOFF * (np.abs(own[:, j]) + np.abs(rate[:, j]))
     v, radius = np.empty((n, 2, count)), np.empty((2 if kernel.certified else 0, count))
     found = LaneRows.over(v, radius, kernel)
     ends = np.array([0.0, 1.0])

@@ -13,7 +13,7 @@ from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.status import Status
-from linkwork.mechanism.parts import Input
+from linkwork.mechanism.driven_input import Input
 from linkwork.motion import sweep
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.model import Model

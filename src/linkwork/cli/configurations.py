@@ -32,10 +32,9 @@ from linkwork.cli.terminal import (
 from linkwork.cli.text_table import Column, short, table_lines
 from linkwork.drawing.sheet import configuration_sheet
 from linkwork.foundation.certification import Certification
-from linkwork.results.configurations import Configurations, PathCount
+from linkwork.results.configurations import Configurations, PathCount, solution_counts
 from linkwork.results.position import Certificate
 from linkwork.results.quantity import Kind
-from linkwork.results.summary import solution_counts
 
 __all__ = ["configurations", "configurations_lines"]
 

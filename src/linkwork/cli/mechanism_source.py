@@ -9,7 +9,7 @@ from linkwork.api import Mechanism, examples
 from linkwork.cli.options import number_or_formula
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.foundation.names import canonical
-from linkwork.mechanism.parts import Number
+from linkwork.mechanism.dimensions import Number
 from linkwork.textfile.reader import ReadFile, read_bytes, read_file
 
 __all__ = ["read_mechanism"]

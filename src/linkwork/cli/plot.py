@@ -27,7 +27,8 @@ from linkwork.drawing.charts.plotting import (
     circuits_plot,
     motion_plot,
 )
-from linkwork.drawing.charts.theme import THEMES, chart_theme
+from linkwork.drawing.charts.theme import THEMES
+from linkwork.drawing.theme import theme_named
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.results.circuits import Circuits
@@ -100,7 +101,7 @@ def plot(
     picture.check_picture(output)
     check_outputs(file, output)
     mechanism = read_mechanism(file, changes)
-    colours = chart_theme(theme)
+    colours = theme_named(theme, THEMES)
     if kind in [which.value for which in CIRCUIT_KINDS]:
         found = _circuits(mechanism, kind, {"against": against, "wrapped": wrapped, **sweeping})
         picture.write(circuits_plot(found, names, kind=kind), output, theme=colours)

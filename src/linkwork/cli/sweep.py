@@ -29,7 +29,7 @@ from linkwork.drawing.charts.plotting import motion_plot
 from linkwork.drawing.scene import Scene
 from linkwork.export import csv_lines, workbook_of
 from linkwork.foundation.errors import InputError
-from linkwork.mechanism.parts import Number
+from linkwork.mechanism.dimensions import Number
 from linkwork.results.motion import Motion
 from linkwork.results.table import table_of
 

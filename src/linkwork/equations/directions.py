@@ -13,12 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.numerics.homotopy.bilinear import BilinearSystem
 
 __all__ = ["DirectionForm", "NoDirectionForm", "check_independent", "direction_form"]
 
-_UNIT = np.finfo(float).eps / 2
 _MOST_LOOPS = 6  # C(12, 6) = 924 paths to a random system
 _DEPENDENT = 1e-12  # smallest singular value of a closure matrix, relative to the largest
 _WHOLE = 1e-12  # how far a weight may be from a whole number
@@ -95,7 +95,7 @@ class DirectionForm:
         np.add.at(weights, (loops.phase_variable, loops.phase_term), loops.phase_weight)
         phase = v @ weights
         turned = np.abs(v) @ np.abs(weights)
-        slack = off @ np.abs(weights) + _UNIT * (4.0 * turned + 16.0 + len(loops.row))
+        slack = off @ np.abs(weights) + UNIT_ROUNDOFF * (4.0 * turned + 16.0 + len(loops.row))
         length = np.ones(phase.shape)
         length_off = np.zeros(phase.shape)
         for t, j in enumerate(loops.length):
@@ -167,7 +167,7 @@ def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
     if table.functions:
         cams = table.has_curvature_bound
         raise NoDirectionForm(
-            "contain a cam or a curve" if cams else "are plain equations, not loops"
+            "contain a law, as cams and curves do" if cams else "are plain equations, not loops"
         )
     n, loops = table.unknowns, table.loops
     turning = np.flatnonzero(table.is_angle[:n])

@@ -22,11 +22,9 @@ from linkwork.foundation.lanes import (
     phase,
     remainder,
 )
-from linkwork.foundation.names import canonical
-from linkwork.mechanism.contacts import Weld
+from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.description import Problems
-from linkwork.mechanism.linkage import GROUND, Linkage
-from linkwork.mechanism.parts import Cylinder, Slider
+from linkwork.mechanism.linkage import Linkage
 
 __all__ = ["Frames", "Place"]
 
@@ -67,17 +65,9 @@ class Frames:
             frames.angle[body] = groups.angle_of(body)
         for body in frames.bodies:
             if frames.angle[body].variable == body:
-                frames.start[body] = groups.sketched_angle(body)
+                frames.start[body] = linkage.sketched_angle(body)
             local = linkage.shapes.local[body]
             frames.places[body] = {p: Place(z, base=p) for p, z in local.items()}
-        for slot in linkage.slots:
-            frames.add_guide((slot.name, slot.on, slot.line), slot.point)
-        for slider in linkage.sliders:
-            offset, name = linkage.numbers(slider.offset), f"{slider.name}_offset"
-            guide = (slider.name, slider.on, slider.line)
-            frames.add_guide(guide, slider.points[0], offset, name)
-        for cylinder in linkage.cylinders:
-            frames.add_rod(cylinder.name, cylinder.between)
         return frames
 
     def add_guide(
@@ -105,10 +95,12 @@ class Frames:
         a, b, p = (linkage.sketched(q) for q in (*line, point))
         self.start[own] = ((p - a) * (b - a).conjugate()).real / abs(b - a)
 
-    def add_rod(self, name: str, between: tuple[str, str], length: float | None = None) -> None:
+    def add_rod(
+        self, name: str, between: tuple[str, str], length: float | None = None, angle: str = ""
+    ) -> None:
         """A body between two points: of that length, or of a variable one that has its name."""
         a, b = between
-        turning = name if length is not None else Cylinder(name=name, between=between).angle_name
+        turning = angle or name
         self.bodies.append(name)
         self.angle[name] = LinkAngle(variable=turning, constant=0.0)
         span = self.linkage.sketched(b) - self.linkage.sketched(a)
@@ -191,22 +183,14 @@ class _Orientation:
     def __init__(self, linkage: Linkage, problems: Problems) -> None:
         self.linkage = linkage
         self._parent: dict[str, tuple[str, float]] = {b: (b, 0.0) for b in linkage.links}
-        for k, slider in enumerate(linkage.sliders):
-            gap = self._join(slider.link, slider.on, self._constant(slider))
-            if gap:
+        for key, part in linkage.keyed_parts():
+            kept = part.kept_angle(linkage)
+            gap = 0.0 if kept is None else self._join(*kept)
+            if kept is not None and gap:
                 problems.add(
-                    ("sliders", k),
-                    f'"{slider.link}" cannot keep its angle relative to "{slider.on}": '
-                    f"other sliders turn it by {degrees(gap):.6g}° from there",
-                )
-        for k, weld in enumerate(linkage.welds):
-            first, second = weld.links
-            gap = self._join(second, first, self._welded(weld))
-            if gap:
-                problems.add(
-                    ("welds", k),
-                    f'"{second}" cannot keep its angle relative to "{first}": '
-                    f"other joints turn it by {degrees(gap):.6g}° from there",
+                    key,
+                    f'"{kept[0]}" cannot keep its angle relative to "{kept[1]}": '
+                    f"other {part.holders} turn it by {degrees(gap):.6g}° from there",
                 )
         driven = {w.link for w in linkage.inputs if w.link}
         self._name: dict[str, str] = {}
@@ -246,31 +230,6 @@ class _Orientation:
         self._parent[a] = (b, constant + offset_b - offset_a)
         return 0.0
 
-    def _welded(self, weld: Weld) -> float:
-        """The second link's angle minus the first one's."""
-        if weld.angle is not None:
-            return self.linkage.numbers(weld.angle) * self.linkage.angle.radians
-        first, second = (self.sketched_angle(link) for link in weld.links)
-        return second - first
-
-    def _constant(self, slider: Slider) -> float:
-        """The link's angle minus the carrier's, from the line and the sliding points."""
-        linkage = self.linkage
-        s, t = (linkage.shapes.local[slider.on][p] for p in slider.line)
-        line = phase(t - s)
-        local = linkage.shapes.local[slider.link]
-        if len(slider.points) == 2:
-            own = phase(local[slider.points[1]] - local[slider.points[0]])
-            d, e, a, b = (linkage.sketched(p) for p in (*slider.points, *slider.line))
-            along = ((e - d) * (b - a).conjugate()).real >= 0
-            return line - own + choose(along, 0.0, math.pi)
-        if slider.angle is not None:
-            return line + linkage.numbers(slider.angle) * linkage.angle.radians
-        if slider.link != GROUND and len(linkage.links[slider.link]) < 2:
-            return line
-        a, b = (linkage.sketched(p) for p in slider.line)
-        return line + self.sketched_angle(slider.link) - phase(b - a)
-
     def angle_of(self, body: str) -> LinkAngle:
         """The body's angle: its group's variable plus a constant; ground stands at zero."""
         root, offset = self._find(body)
@@ -278,13 +237,6 @@ class _Orientation:
             return LinkAngle(variable=None, constant=_tidy(offset - self._find(GROUND)[1]))
         name = self._name[root]
         return LinkAngle(variable=name, constant=_tidy(offset - self._find(name)[1]))
-
-    def sketched_angle(self, body: str) -> float:
-        """The direction of a link in the sketch [rad]; 0 for ground and wheels of one point."""
-        if body == GROUND or len(self.linkage.links[body]) < 2:
-            return 0.0
-        first, second = self.linkage.links[body][:2]
-        return phase(self.linkage.sketched(second) - self.linkage.sketched(first))
 
 
 def _tidy(angle: float) -> float:

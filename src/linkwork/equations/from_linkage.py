@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from linkwork.equations.contacts import Contacts
 from linkwork.equations.frames import Frames
 from linkwork.equations.model import (
     LawEquation,
@@ -18,15 +17,17 @@ from linkwork.equations.model import (
     Variable,
 )
 from linkwork.equations.outputs import read_outputs
+from linkwork.equations.part.index import rows_of_parts
 from linkwork.equations.redundancy import Bar, released_links
 from linkwork.equations.structure import Node, Structure, StructureBlock
 from linkwork.expression.tree import Name
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.lanes import cis, hypot, largest, phase, row_of, smallest
-from linkwork.foundation.names import canonical, pretty
+from linkwork.foundation.names import GROUND, canonical, pretty
 from linkwork.mechanism.description import Problems
-from linkwork.mechanism.linkage import GROUND, Linkage
-from linkwork.mechanism.parts import Input
+from linkwork.mechanism.driven_input import Input
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.cylinder import Cylinder
 
 __all__ = ["write_loops"]
 
@@ -64,7 +65,7 @@ class _LoopWriter:
         for bar in self.released:
             frames.release(*bar)
         self.problems.raise_any(where)
-        self.contacts = contacts = Contacts.of(frames, self.problems)
+        self.contacts = contacts = rows_of_parts(frames, self.problems)
         self.problems.raise_any(where)
         self.linear = list(contacts.linear)
         self.rank = {body: k for k, body in enumerate(frames.bodies)}
@@ -115,7 +116,7 @@ class _LoopWriter:
 
     def _angle_of(self, body: str) -> str:
         """The angle variable a body would name itself."""
-        cylinder = {c.name: c.angle_name for c in self.linkage.cylinders}
+        cylinder = {c.name: c.angle_name for c in self.linkage.of(Cylinder)}
         return cylinder.get(body, body)
 
     def _variables(self, angles: Sequence[str | None]) -> list[tuple[str, str]]:

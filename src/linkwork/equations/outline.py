@@ -10,7 +10,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.kernels.piecewise import Piecewise
 
-__all__ = ["Outline"]
+__all__ = ["Outline", "spline"]
 
 _SAMPLES = 16  # of every piece, among which the nearest place is sought
 _FINE = 64  # of every piece, among which the least rounded place is sought
@@ -39,7 +39,7 @@ class Outline:
         if closed:
             u = u * (2.0 * np.pi / u[-1])
             u[-1] = 2.0 * np.pi
-        return cls(x=_spline(u, z.real, closed), y=_spline(u, z.imag, closed))
+        return cls(x=spline(u, z.real, closed), y=spline(u, z.imag, closed))
 
     def at(self, u: Array) -> ComplexArray:
         """Points x + iy."""
@@ -74,7 +74,7 @@ class Outline:
         return float(u[np.abs(self.at(u) - point).argmin()])
 
 
-def _spline(u: Array, values: Array, closed: bool) -> Piecewise:
+def spline(u: Array, values: Array, closed: bool) -> Piecewise:
     """The cubic spline with two continuous derivatives (de Boor, A Practical Guide to Splines)."""
     h = np.diff(u)
     chords = np.diff(values) / h

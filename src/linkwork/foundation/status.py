@@ -6,7 +6,7 @@ from enum import Enum
 
 from linkwork.foundation.arrays import StatusArray
 
-__all__ = ["Status"]
+__all__ = ["CONVERGED", "Status"]
 
 
 class Status(Enum):
@@ -75,3 +75,5 @@ class Status(Enum):
 
 _MEMBERS = tuple(Status)
 _CODES = {status: code for code, status in enumerate(_MEMBERS)}
+#: The code of a position that was found.
+CONVERGED = Status.CONVERGED.code

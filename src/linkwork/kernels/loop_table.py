@@ -13,6 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.curvature import Curvature, PhaseGroups
 from linkwork.kernels.exact_rows import exact_line, exact_rows
 from linkwork.kernels.law_row import TURN_ROUNDING, LawRow
@@ -39,9 +40,6 @@ class FunctionRow(Protocol):
 
     def repeats_after(self, turns: Array) -> bool:
         """Whether ``variables`` (k,) moved by so many whole turns are known to satisfy the same."""
-
-
-_UNIT = np.finfo(float).eps / 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,7 +140,7 @@ class LoopTable:
             row.rounding(v[None, :])[0][0] if isinstance(row, LawRow) else np.inf
             for row in self.functions
         ]
-        return np.append(found, rows), np.append(_UNIT * np.abs(found), errors)
+        return np.append(found, rows), np.append(UNIT_ROUNDOFF * np.abs(found), errors)
 
     def jacobian(self, v: Array) -> Array:
         """dF/dv, (B, m, N): the Jacobian by the unknowns, then the derivative by the inputs."""
@@ -216,9 +214,9 @@ class LoopTable:
         error, slopes = groups.rounding(v, self.equations)
         a = np.abs(self._linear_matrix)
         line_error = (np.abs(v) @ a.T + np.abs(self.linear.constant)) * (
-            _UNIT * (self.variables + 2)
+            UNIT_ROUNDOFF * (self.variables + 2)
         )
-        lines = np.broadcast_to(_UNIT * (self.equations + 4) * a, (len(v), *a.shape))
+        lines = np.broadcast_to(UNIT_ROUNDOFF * (self.equations + 4) * a, (len(v), *a.shape))
         lengths, group, _ = groups.pairs
         found = Curvature(
             loop_rows=2 * count,
@@ -247,7 +245,7 @@ class LoopTable:
             errors.append(error)
             whole = np.zeros((len(v), self.variables))
             gradient = np.abs(row.value_and_gradient(v)[1])
-            whole[:, variables] = slope + _UNIT * (self.equations + 4) * gradient
+            whole[:, variables] = slope + UNIT_ROUNDOFF * (self.equations + 4) * gradient
             slopes.append(whole)
         return replace(
             found,

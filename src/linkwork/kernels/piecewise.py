@@ -15,10 +15,10 @@ from math import comb
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 
 __all__ = ["Piecewise"]
 
-_UNIT = np.finfo(float).eps / 2
 _PARTS = 32  # of each piece, in which its bend is bounded
 
 
@@ -165,8 +165,10 @@ class Piecewise:
         moved = 2.0 * (np.abs(x) + self.period + np.abs(self.breaks).max())
         factor = 2.0 * self.powers.shape[1] + 8.0
         slope_error = factor * slope_powers.sum(axis=1) + a * w * phase + self.bend * moved
-        steepest = np.abs(self.jet(x)[1]) + _UNIT * slope_error
+        steepest = np.abs(self.jet(x)[1]) + UNIT_ROUNDOFF * slope_error
         value_error = factor * (c * powers).sum(axis=1) + a * phase + steepest * moved
         value_error += (factor * steepest + slope_error) * np.abs(beyond)
         apart, steeper = self.gaps
-        return apart + _UNIT * value_error + steeper * np.abs(beyond), steeper + _UNIT * slope_error
+        return apart + UNIT_ROUNDOFF * value_error + steeper * np.abs(
+            beyond
+        ), steeper + UNIT_ROUNDOFF * slope_error

@@ -24,11 +24,11 @@ from linkwork.foundation.errors import (
 )
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical, is_name
-from linkwork.mechanism.dimensions import Numbers
-from linkwork.mechanism.parts import Input, Number
+from linkwork.mechanism.dimensions import Number, Numbers
+from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.speed import speed_per_second
 
-__all__ = ["Description", "Problems", "declared"]
+__all__ = ["Description", "Key", "Problems", "declared"]
 
 Key = tuple[str | int, ...]
 
@@ -154,10 +154,6 @@ class Description:
             step=old.step if step is None else step,
         )
         return replace(self, inputs=(changed,))
-
-    def unit_of_input(self, which: Input) -> str:
-        """``deg``, ``rad`` or the length unit."""
-        return self.length if which.drives[0] in ("slider", "cylinder") else self.angle.value
 
     def speed(self, which: Input) -> float | None:
         """The speed of an input in its own unit per second, if it has one."""

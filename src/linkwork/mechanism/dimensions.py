@@ -15,8 +15,9 @@ from linkwork.foundation.lanes import finite, is_batched
 from linkwork.foundation.names import canonical
 from linkwork.foundation.plain_numbers import as_told, plain_number
 
-__all__ = ["Numbers"]
+__all__ = ["Number", "Numbers"]
 
+#: Wherever a number is expected, a formula of the named dimensions may stand.
 Number = float | int | str
 _LONGEST_CHAIN = 200
 Report = Callable[[Iterable[str | int], str], None]

@@ -9,7 +9,7 @@ from linkwork.foundation.errors import choices
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Description, Problems, declared
-from linkwork.mechanism.parts import Number
+from linkwork.mechanism.dimensions import Number
 
 __all__ = ["Loops", "PlainEquations"]
 

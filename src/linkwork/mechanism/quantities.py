@@ -9,9 +9,9 @@ from typing import Any
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Description
+from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.parts import Number
 
 __all__ = ["Quantity", "quantities", "quantity_named", "with_numbers"]
 

@@ -7,13 +7,8 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
-    from linkwork.motion.assembly.configurations import (
-        configurations as configurations,
-        solve_configuration as solve_configuration,
-        start_in_configuration as start_in_configuration,
-    )
     from linkwork.motion.checking import check as check
-    from linkwork.motion.circuit.circuits import (
+    from linkwork.motion.circuit_list import (
         branch_start as branch_start,
         circuits as circuits,
     )
@@ -21,6 +16,11 @@ if TYPE_CHECKING:
         driven_otherwise as driven_otherwise,
         inversion as inversion,
         inversions as inversions,
+    )
+    from linkwork.motion.configuration_list import (
+        configurations as configurations,
+        solve_configuration as solve_configuration,
+        start_in_configuration as start_in_configuration,
     )
     from linkwork.motion.described import as_described as as_described
     from linkwork.motion.extremes import check_quantities as check_quantities

@@ -19,8 +19,6 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["check"]
 
-_JOINTS = ("sliders", "rolling", "slots", "gears", "belts", "racks", "cams", "curves")
-
 
 def check(model: Model) -> CheckReport:
     """Report what was understood of a mechanism and try its start position."""
@@ -39,8 +37,9 @@ def check(model: Model) -> CheckReport:
     else:
         form = "loops" if isinstance(description, Loops) else "equations"
     if linkage is not None:
-        links = len(linkage.links) + len(linkage.cylinders)
-        joints = pins(linkage) + sum(len(getattr(linkage, k)) for k in _JOINTS)
+        bodies = [part for part in linkage.parts if part.body]
+        links = len(linkage.links) + len(bodies)
+        joints = pins(linkage) + sum(part.kind is not None for part in linkage.parts) - len(bodies)
     units = model.units
     return CheckReport(
         mechanism=description.name,

@@ -12,7 +12,7 @@ from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.motion.branch_rows import Asked, BranchRows, Report, rows_of_branch
-from linkwork.motion.circuit.branches import CurveBranch, TracedCurve, branches_of, trace_with_proof
+from linkwork.motion.curve_branches import CurveBranch, TracedCurve, branches_of, trace_with_proof
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd, end_at_dead_point
 from linkwork.motion.model import Model

@@ -14,6 +14,7 @@ import numpy as np
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.rounding import EPSILON, LARGEST_POLISH
 from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
@@ -26,9 +27,6 @@ from linkwork.numerics.continuation.turning_point import TurnAhead
 from linkwork.numerics.proof.position_proof import Proof, prove
 
 __all__ = ["fill_last_rows", "fill_passed_rows"]
-
-_UNIT = np.finfo(float).eps
-_SAME = 1e-6  # weighted: a position moves no further when its input is made exact
 
 
 def fill_last_rows(
@@ -104,7 +102,7 @@ def _enter(drive: Drive, v: Array, row: int, rows: SolvedRows) -> Proof | None:
     bounded = all(block.system.has_curvature_bound for block in solver.blocks)
     why = Certification.POSITION_NOT_PROVED if bounded else Certification.NO_BOUND
     rows.certification[row] = why.code
-    rounding = 4.0 * _UNIT * np.abs(here[:, solver.unknowns :])
+    rounding = 4.0 * EPSILON * np.abs(here[:, solver.unknowns :])
     return prove(solver, here, rounding) if bounded else None
 
 
@@ -140,7 +138,7 @@ def _position(drive: Drive, ahead: TurnAhead, t: float) -> Array | None:
         v[drive.solver.unknowns :] = drive.path.at(t)
         found = drive.solver.solve(v[None, :])
         moved = np.abs((found.v[0] - v) / drive.solver.variable_scale).max()
-        if found.status[0] == Status.CONVERGED.code and moved < _SAME:
+        if found.status[0] == Status.CONVERGED.code and moved < LARGEST_POLISH:
             after = drive.solver.rates(found.v, drive.path.rate).orientation
             if np.array_equal(side, after):
                 return np.asarray(found.v[0])

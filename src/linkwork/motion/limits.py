@@ -11,6 +11,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
 from linkwork.motion.lined_up import links_in_line
@@ -37,7 +38,6 @@ __all__ = [
     "ends_of",
 ]
 
-_UNIT = float(np.finfo(float).eps)
 _MOVES = 1e-7  # weighted: a direction along which the input moves at all
 _SOUND = 1e4  # condition up to which a node is as good as any
 _TOUCHING = 1e-12  # residual at a located crossing, where Newton-Raphson must not take a step
@@ -76,7 +76,7 @@ class BranchEnd:
         """The end with its limit at the input value of its row in a table, whole turns away."""
         low, high = self.limit.bracket
         shift = value - self.limit.input
-        rounding = _UNIT * (abs(value) + abs(shift))  # whole turns in radians are no floats
+        rounding = EPSILON * (abs(value) + abs(shift))  # whole turns in radians are no floats
         bracket = (low + shift - rounding, high + shift + rounding)
         limit = replace(self.limit, input=value, bracket=bracket)
         return replace(self, limit=limit) if shift else self

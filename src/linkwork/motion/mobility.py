@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.rounding import RANK_TOLERANCE
 from linkwork.foundation.status import Status
 from linkwork.mechanism.linkage import Linkage
 from linkwork.motion.model import Model
@@ -14,9 +15,7 @@ from linkwork.motion.redundancy import FITS, misfit, mobility_by_rank
 
 __all__ = ["Mobility", "grubler_count", "mobility_of", "pins"]
 
-_TWO_FREEDOMS = ("slots", "gears", "belts", "racks", "cams", "curves")
 _LARGEST = 100  # unknowns up to which a singular mechanism is looked at as one matrix
-_RANK_TOLERANCE = 1e-9  # relative to the largest singular value of the scaled Jacobian
 _BESIDE = 1e-3  # how far beside a position its neighbour is sought, in weighted variables
 _TRIES = 6
 
@@ -52,10 +51,8 @@ def grubler_count(linkage: Linkage) -> int:
     as teeth do. A wheel that rolls without slipping has one freedom; a weld has none, of its two
     links' pin.
     """
-    bodies = len(linkage.links) + len(linkage.cylinders)
-    one = pins(linkage) + len(linkage.sliders) + len(linkage.rolling)
-    two = sum(len(getattr(linkage, kind)) for kind in _TWO_FREEDOMS)
-    return 3 * (bodies - 1) - 2 * one - two - len(linkage.welds) + len(linkage.cylinders)
+    rigid = 3 * (len(linkage.links) - 1) - 2 * pins(linkage)
+    return rigid + sum(part.mobility for part in linkage.parts)
 
 
 def _why(model: Model, v: Array, count: int, rank: int) -> str:
@@ -121,4 +118,4 @@ def _by_rank(model: Model, v: Array) -> int | None:
 def _rank_of(scaled: Array) -> int:
     if not scaled.size:
         return 0
-    return int(np.linalg.matrix_rank(scaled, tol=_RANK_TOLERANCE * np.linalg.norm(scaled, 2)))
+    return int(np.linalg.matrix_rank(scaled, tol=RANK_TOLERANCE * np.linalg.norm(scaled, 2)))

@@ -14,10 +14,10 @@ from linkwork.equations.from_loops import read_loops, read_plain_equations
 from linkwork.equations.model import LoopEquations, Variable
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import canonical
+from linkwork.foundation.names import GROUND, canonical
 from linkwork.foundation.plain_numbers import finite_number
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.skeleton import DrivenPart, Skeleton
 from linkwork.motion.lock_step import lock_step
@@ -196,7 +196,7 @@ def model_of(description: Description) -> Model:
             skeleton = Skeleton.of_linkage(description, equations.outlines)
         case Loops():
             equations = read_loops(description)
-            fixed = description.links.get("ground", equations.fixed)
+            fixed = description.links.get(GROUND, equations.fixed)
             driven = tuple(
                 _driven_part(description, equations, variable, description.falls(which))
                 for variable, which in zip(equations.inputs, description.inputs, strict=True)

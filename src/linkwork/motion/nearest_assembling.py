@@ -7,7 +7,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.linkage import Linkage
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import Named, name_series
 from linkwork.motion.positions import target_values

@@ -9,6 +9,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray, StatusArray
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Track, TrackRows
@@ -18,7 +19,6 @@ from linkwork.numerics.proof.position_proof import rounding_of_inputs
 __all__ = ["RowProofs", "inputs_apart", "prove_rows", "unproved", "way_is_proved"]
 
 _FAR_FROM_SINGULAR = 1e5  # condition up to which a track's nodes must be proved
-_UNIT = np.finfo(float).eps / 2
 _TURN = 1e-9  # rad: an input this near to whole turns away from what was asked is the same one
 
 
@@ -147,7 +147,9 @@ def inputs_apart(inputs: Array, asked: Array) -> Array:
     """
     gap = np.abs(inputs - asked)
     turns = np.round(gap / (2.0 * np.pi))
-    rest = np.abs(gap - turns * (2.0 * np.pi)) + _UNIT * 2.0 * (np.abs(inputs) + np.abs(asked))
+    rest = np.abs(gap - turns * (2.0 * np.pi)) + UNIT_ROUNDOFF * 2.0 * (
+        np.abs(inputs) + np.abs(asked)
+    )
     turned = (turns > 0) & (rest < _TURN)
     apart: Array = rounding_of_inputs(inputs, 0) + np.where(turned, rest, gap)
     return apart

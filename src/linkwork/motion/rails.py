@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
 
 from linkwork.equations.model import LoopEquations, Term
-from linkwork.mechanism.linkage import GROUND
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.skeleton import Rail
 
 __all__ = ["rails_of"]

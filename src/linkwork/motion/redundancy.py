@@ -14,6 +14,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.names import canonical
+from linkwork.foundation.rounding import RANK_TOLERANCE
 from linkwork.foundation.status import Status
 from linkwork.numerics.newton import NewtonOptions
 
@@ -29,7 +30,6 @@ __all__ = [
 
 #: Relative to the longest link: a redundant link this near to its length fits.
 FITS = 1e-9
-_RANK_TOLERANCE = 1e-9  # relative to the largest singular value of the scaled Jacobian
 
 
 def misfit(equations: LoopEquations, v: Array) -> Array:
@@ -114,5 +114,5 @@ def mobility_by_rank(compiled: Compiled, v: Array) -> int:
     scaled = np.delete(scaled, columns, axis=1)
     if not scaled.size:
         return int(scaled.shape[1])
-    tolerance = _RANK_TOLERANCE * np.linalg.norm(scaled, 2)
+    tolerance = RANK_TOLERANCE * np.linalg.norm(scaled, 2)
     return int(scaled.shape[1] - np.linalg.matrix_rank(scaled, tol=tolerance))

@@ -10,6 +10,7 @@ import numpy as np
 
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.short_number import short_number
 from linkwork.foundation.status import Status
 from linkwork.motion.branch_rows import Asked, BranchRows
@@ -20,7 +21,6 @@ from linkwork.motion.rows import SolvedRows
 __all__ = ["NamedEnd", "SweepTable"]
 
 _SAME_PLACE = 1e-11  # relative: values of the path so near to each other are one place
-_UNIT = np.finfo(float).eps
 
 
 class _PlaceOfEnd(NamedTuple):
@@ -73,7 +73,7 @@ class SweepTable:
         """Rows beyond the end of a branch that are not there, or only whole turns around."""
         missing = self.rows.status != Status.CONVERGED.code
         missing |= self._placed != self.asked.t
-        slack = end.slack + 4.0 * _UNIT * abs(end.t)
+        slack = end.slack + 4.0 * EPSILON * abs(end.t)
         return np.flatnonzero(missing & (end.side * (self.asked.t - end.t) > slack))
 
     def take(self, found: BranchRows, where: IndexArray) -> BoolArray:
@@ -174,7 +174,7 @@ class SweepTable:
     def _put_at(self, end: BranchEnd, branch: str, here: float) -> bool:
         if end.v is None or end.first is None:
             return True
-        slack = end.slack + 4.0 * _UNIT * abs(here)
+        slack = end.slack + 4.0 * EPSILON * abs(here)
         return self.put(self._row_of(end, end.v, end.first, branch, here), here, slack)
 
     def _row_of(

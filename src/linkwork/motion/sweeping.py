@@ -41,7 +41,7 @@ _ENTRIES = (
 )
 _MOST_CROSSINGS = 64
 _ROUNDING = 1e-14  # of whole turns, which are no floats
-_SAME = 1e-6  # of the leading input: extremes nearer to each other are one
+_SAME_EXTREME = 1e-6  # of the leading input: extremes nearer to each other are one
 
 
 def sweep(
@@ -307,7 +307,7 @@ class _Sweep:
                     here
                     for here in table.places_of(t)
                     if table.is_among(here, branch.own)
-                    and not any(abs(here - other) < _SAME for other in places)
+                    and not any(abs(here - other) < _SAME_EXTREME for other in places)
                 ]
                 for here in mine:
                     row = self._branch_row(branch, t, here)

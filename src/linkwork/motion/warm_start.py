@@ -27,7 +27,7 @@ _STEPS = 8  # of Newton-Raphson; a neighbour needs three or four
 _NEAR = 0.2  # rad, or of the longest link: what a row may move by from one design to the next
 _NEAR_FOLD = 0.6  # the same from a parabola, beside a dead point
 _GROWTH = 12  # rows by which a dead point may recede from one design to the next
-_SAME = 1e-9  # rad: a table over a whole turn ends where it begins
+_SAME_DIRECTION = 1e-9  # rad: a table over a whole turn ends where it begins
 
 
 def warm_started(model: Model, before: Motion) -> Motion | None:
@@ -179,7 +179,7 @@ class _Renewal:
     def _around(self) -> bool:
         """Whether the table leads once around, to where it began."""
         span = abs(float(np.ptp(self.model.rows[:, 0])))
-        return abs(span - FULL_TURN) < _SAME and turns_freely(self.model)
+        return abs(span - FULL_TURN) < _SAME_DIRECTION and turns_freely(self.model)
 
     def _row_of_start(self) -> int | None:
         """The row nearest to the start's own input; ``None`` if the table does not lead by it."""

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, CountArray, StatusArray
-from linkwork.foundation.status import Status
+from linkwork.foundation.status import CONVERGED, Status
 from linkwork.numerics.system import System
 
 __all__ = ["NewtonOptions", "NewtonResult", "corrections", "newton"]
 
-_CONVERGED = Status.CONVERGED.code
 _FAR = 1e9  # weighted size of a correction beyond which the iteration has run away
 
 
@@ -101,7 +100,7 @@ class _Iteration:
         count, n = len(start), system.unknowns
         self.system, self.options, self.watch = system, options, watch
         self.v = start.copy()
-        self.status = np.full(count, _CONVERGED, dtype=np.int8)
+        self.status = np.full(count, CONVERGED, dtype=np.int8)
         self.iterations = np.zeros(count, dtype=np.int64)
         self.residual = np.full(count, np.inf)
         self.first = np.zeros(count)

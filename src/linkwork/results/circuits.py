@@ -16,9 +16,9 @@ from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.presenting import presenter
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit, Motion
-from linkwork.results.summary import circuits_summary
+from linkwork.results.summary import Summary
 
-__all__ = ["Branch", "Circuit", "Circuits"]
+__all__ = ["Branch", "Circuit", "Circuits", "circuits_summary"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -243,3 +243,15 @@ def _circuit_data(circuit: Circuit) -> dict[str, Any]:
         "smallest_singular_value": circuit.smallest_singular_value,
         "weakest": circuit.weakest,
     }
+
+
+def circuits_summary(circuits: Circuits) -> Summary:
+    """One line per branch."""
+    unit = circuits.input_unit
+    head = f"{len(circuits)} circuit{'' if len(circuits) == 1 else 's'} of {circuits.mechanism}"
+    rows = []
+    for circuit in circuits:
+        for branch in circuit.branches:
+            low, high = branch.input_range
+            rows.append((branch.name, f"{circuits.input} {low:.10g} to {high:.10g} {unit}"))
+    return Summary(head, tuple(rows))

@@ -11,9 +11,9 @@ from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.presenting import presenter
 from linkwork.results.position import Position
-from linkwork.results.summary import configurations_summary
+from linkwork.results.summary import Summary, driven_text
 
-__all__ = ["Configurations", "PathCount"]
+__all__ = ["Configurations", "PathCount", "configurations_summary", "solution_counts"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,3 +139,23 @@ class Configurations:
             "paths": [{**asdict(count), "unknowns": list(count.unknowns)} for count in self.paths],
             "seed": self.seed,
         }
+
+
+def configurations_summary(found: Configurations) -> Summary:
+    """One row per configuration, then completeness and what became of the paths."""
+    at = driven_text(found.input, found.input_units)
+    head = f"Configurations of {found.mechanism}" + (f" at {at}" if at else "")
+    rows = []
+    for position in found:
+        values = ", ".join(f"{name} = {value:.8g}" for name, value in position.unknowns.items())
+        certified = "certified" if position.certificate.certified else "not certified"
+        rows.append((position.configuration, f"{values}  {certified}"))
+    rows.append(("completeness", found.message))
+    rows.append(("paths", "; ".join(map(solution_counts, found.paths))))
+    return Summary(head, tuple(rows))
+
+
+def solution_counts(count: PathCount) -> str:
+    """``6 complex solutions, 4 of them real``."""
+    finite = count.finite + count.multiple
+    return f"{finite} complex solution{'' if finite == 1 else 's'}, {count.real} of them real"

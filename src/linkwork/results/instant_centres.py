@@ -18,7 +18,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError
-from linkwork.mechanism.linkage import GROUND
+from linkwork.foundation.names import GROUND
 from linkwork.results.link_motion import LinkMotion, link_motion, link_motions
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position

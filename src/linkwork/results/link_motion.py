@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.mechanism.linkage import GROUND
+from linkwork.foundation.names import GROUND
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 

@@ -18,9 +18,9 @@ from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
 from linkwork.results.quantity import Units
-from linkwork.results.summary import position_summary
+from linkwork.results.summary import Summary, driven_text
 
-__all__ = ["Certificate", "NewtonStep", "NewtonTrail", "Position"]
+__all__ = ["Certificate", "NewtonStep", "NewtonTrail", "Position", "position_summary"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -225,3 +225,21 @@ def _trail(trail: NewtonTrail) -> dict[str, Any]:
             for step in trail.steps
         ],
     }
+
+
+def position_summary(position: Position) -> Summary:
+    """Status, unknowns, evidence."""
+    at = driven_text(position.input, position.input_units)
+    head = f"Position of {position.mechanism}" + (f" at {at}" if at else "")
+    if not position.status.ok:
+        return Summary(head, ((position.status.name, position.message),))
+    values = {**position.unknowns, **position.outputs}
+    units = position.value_units
+    rows = [(n, f"{value:.10g} {units.get(n, '')}".rstrip()) for n, value in values.items()]
+    rows += [
+        ("residual", f"{position.residual:.1e} of the longest link"),
+        ("condition", f"{position.condition:.3g}"),
+        ("iterations", str(position.iterations)),
+        ("certified", "yes" if position.certificate.certified else "no"),
+    ]
+    return Summary(head, tuple(rows))

@@ -6,11 +6,9 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from linkwork.textfile.keys import (
-    FORMS,
+from linkwork.foundation.file_keys import (
     Constant,
     Flag,
-    Form,
     Formula,
     Key,
     Kind,
@@ -25,6 +23,7 @@ from linkwork.textfile.keys import (
     Text,
     Whole,
 )
+from linkwork.textfile.keys import FORMS, Form
 
 __all__ = ["json_schema", "schema_of", "schema_text"]
 

@@ -8,12 +8,9 @@ from difflib import get_close_matches
 from typing import Any
 
 from linkwork.foundation.errors import Problem, choices
-from linkwork.foundation.names import canonical
-from linkwork.textfile.keys import (
-    FORMS,
+from linkwork.foundation.file_keys import (
     Constant,
     Flag,
-    Form,
     Formula,
     Key,
     Kind,
@@ -28,6 +25,8 @@ from linkwork.textfile.keys import (
     Text,
     Whole,
 )
+from linkwork.foundation.names import canonical
+from linkwork.textfile.keys import FORMS, Form
 from linkwork.textfile.lines import Path
 
 __all__ = ["Structure"]

@@ -24,17 +24,11 @@ from linkwork.drawing.scene import Scene
 from linkwork.drawing.scene_options import SceneOptions
 from linkwork.drawing.sheet import configuration_sheet
 from linkwork.drawing.theme import DARK, LIGHT
-from linkwork.results.circuits import Circuits
-from linkwork.results.configurations import Configurations
+from linkwork.results.circuits import Circuits, circuits_summary
+from linkwork.results.configurations import Configurations, configurations_summary
 from linkwork.results.motion import Motion
-from linkwork.results.position import Position
-from linkwork.results.summary import (
-    Summary,
-    circuits_summary,
-    configurations_summary,
-    motion_summary,
-    position_summary,
-)
+from linkwork.results.position import Position, position_summary
+from linkwork.results.summary import Summary, motion_summary
 
 __all__ = [
     "circuits_html",

@@ -121,7 +121,6 @@ def drawn_page(
         title=first.mechanism,
         length_unit=first.units.length,
         derivative_unit=first.derivative_unit,
-        input_name=printed_name(lead),
         input_unit=first.input_units[lead],
         view=(view.left, view.bottom, view.right, view.top),
         stroke=measures.stroke,

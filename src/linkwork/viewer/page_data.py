@@ -228,7 +228,6 @@ class PageData:
     title: str
     length_unit: str
     derivative_unit: str
-    input_name: str
     input_unit: str
     view: tuple[float, ...]
     stroke: float

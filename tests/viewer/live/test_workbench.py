@@ -15,10 +15,15 @@ from linkwork.mechanism.linkage import Linkage
 from linkwork.viewer.live import events as tell, requests as ask
 from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.workbench import Workbench
-from linkwork.viewer.packing import unpacked
 from tests.described import described_as
 from tests.thinned import thinned
 from tests.viewer.live.conftest import FOUR_BAR
+from tests.viewer.unpacking import unpacked
+
+TITLES = [
+    "Pin in slot", "Slider", "Cylinder", "Weld", "Gear pair", "Belt or chain", "Rack and pinion",
+    "Rolling wheel", "Cam", "Curve", "Spring",
+]  # fmt: skip
 
 
 def only(events: list[tell.Event], kind: type) -> Any:
@@ -53,7 +58,9 @@ def told(motion: tell.MotionFound, name: str) -> np.ndarray:
 
 
 def test_a_page_begins_with_the_file_and_its_cycle(bench: Workbench) -> None:
-    state, motion = bench.opened()
+    palette, state, motion = bench.opened()
+    assert isinstance(palette, tell.PaletteShown)
+    assert [part.title for part in palette.parts] == TITLES
     assert isinstance(state, tell.FileState)
     assert isinstance(motion, tell.MotionFound)
     assert (state.title, state.form, state.unsaved) == ("Four-bar", "points-and-links", False)
@@ -262,7 +269,7 @@ def test_given_lengths_follow_a_point_on_request_but_for_formulas(bench: Workben
     assert "A B" in moved.followed
     # measured to where the neighbour really is, not to where it was sketched
     wanted = math.dist((30, 30), start.points["B"])
-    state = only([bench.opened()[0]], tell.FileState)
+    state = only(bench.opened(), tell.FileState)
     assert number(state, "A B").value == pytest.approx(wanted, rel=1e-9)
     assert wanted != pytest.approx(120, rel=1e-3)
 
@@ -532,7 +539,7 @@ def test_every_mechanism_of_the_library_opens_and_is_edited(name: str, tmp_path:
     file = tmp_path / f"{name}.toml"
     file.write_text(lw.example_text(name), encoding="utf-8")
     bench = Workbench(MechanismFile(file), lw.loads)
-    state = bench.opened()[0]
+    state = bench.opened()[1]
     assert isinstance(state, tell.FileState)
     assert state.equations
     plain = [n for n in state.numbers if not n.formula and n.table not in ("points", "guess")]

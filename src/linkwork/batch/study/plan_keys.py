@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from linkwork.textfile.keys import (
-    FORMAT,
+from linkwork.foundation.file_keys import (
     Constant,
     Flag,
-    Form,
     Key,
     ListOf,
     Named,
@@ -17,6 +15,7 @@ from linkwork.textfile.keys import (
     Text,
     Whole,
 )
+from linkwork.textfile.keys import FORMAT, Form
 
 __all__ = ["PLAN", "SAMPLINGS"]
 

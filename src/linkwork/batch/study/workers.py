@@ -1,4 +1,16 @@
-"""Who computes the parts of a study on this machine: this process, or some of its own."""
+"""Processes of this machine compute the parts of a study.
+
+``concurrent.futures.ProcessPoolExecutor`` cannot serve here, nor can what is built on
+multiprocessing, such as Dask's ``LocalCluster``:
+
+* Its processes run the caller's main module once more, so a study in a script without
+  ``if __name__ == "__main__"`` ends in an error.
+* The death of one process breaks the pool and fails all parts under way; which part a process died
+  over is not known, so designs that always kill their worker would be computed for ever.
+* Its processes hold both ends of their pipes, so they outlive a run that was killed.
+
+A process with a pipe of its own, asked by one thread, has none of this.
+"""
 
 from __future__ import annotations
 

@@ -15,8 +15,9 @@ from linkwork.drawing.charts.matplotlib_page import draw_page, legend_entries
 from linkwork.drawing.charts.matplotlib_panel import draw_panel
 from linkwork.drawing.charts.page import KEY, SMALL, TITLE
 from linkwork.drawing.charts.plotting import PlotKind, circuits_plot, motion_plot
-from linkwork.drawing.charts.theme import ChartTheme, chart_theme
-from linkwork.drawing.matplotlib_writer import house_settings
+from linkwork.drawing.charts.theme import THEMES, ChartTheme
+from linkwork.drawing.matplotlib_settings import house_settings
+from linkwork.drawing.theme import theme_named
 from linkwork.foundation.errors import InputError
 from linkwork.results.circuits import Circuits
 from linkwork.results.motion import Motion
@@ -77,7 +78,7 @@ def plot_chart(
     MissingPackageError
         If Matplotlib is not installed.
     """
-    colours = chart_theme(theme)
+    colours = theme_named(theme, THEMES)
     if title is not None:
         chart = replace(chart, title=title, caption=chart.caption if title else "")
     if ax is None:

@@ -17,10 +17,12 @@ from linkwork.equations.reading.poses import Poses
 from linkwork.equations.reading.walk import phase_of, walks
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import MechanismError
-from linkwork.mechanism.directed import free_name
+from linkwork.foundation.names import free_name
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
-from linkwork.mechanism.parts import Input, Number, Slider
+from linkwork.mechanism.part.slider import Slider
 
 __all__ = ["ReadLinkage", "read_linkage"]
 

@@ -14,10 +14,10 @@ from linkwork.export.workbook.traced_number import Trace, TracedNumber
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, Node, names_in
 from linkwork.foundation.lanes import NotElementwise
-from linkwork.foundation.names import canonical
+from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import GROUND, Linkage
-from linkwork.mechanism.parts import Number
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.quantities import Quantity, quantities, with_numbers
 
 __all__ = ["Dimension", "TracedEquations", "forms_of", "traced"]

@@ -21,8 +21,7 @@ from __future__ import annotations
 from collections.abc import Set
 from dataclasses import dataclass
 
-import numpy as np
-
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.march.closure import BlockPart, Closure, solve_linear
 from linkwork.kernels.march.proof_program import BlockProof
@@ -32,7 +31,6 @@ from linkwork.kernels.program.recorder import Recorder, Value
 
 __all__ = ["FoldPrograms", "fold_programs"]
 
-_UNIT = float(np.finfo(float).eps) / 2.0
 _CLEARLY = 32.0  # half of it: how many errors of t the two places beside a dead point are off
 _LEAST = 1e-9  # weighted: the nearest of them
 _FARTHEST = 0.3  # weighted: how far λ may go in one step
@@ -121,9 +119,9 @@ class _FoldWriter:
         used = (*self.part.unknowns, *closure.known())
         proof = BlockProof(closure, {k: self._scale(rec, k) for k in used})
         here, node = closure.v[self.lead], rec.input(f"w{self.lead}")
-        near = rec.absolute(here) * (4.0 * _UNIT)
+        near = rec.absolute(here) * (4.0 * UNIT_ROUNDOFF)
         # a node's own λ is known as well as its position
-        away = rec.absolute(here - node) * (1.0 + 16.0 * _UNIT)
+        away = rec.absolute(here - node) * (1.0 + 16.0 * UNIT_ROUNDOFF)
         far = away + 2.0 * near + rec.input(f"x{self.lead}")
         place = proof.within(dict.fromkeys(proof.known, near))
         arc = proof.within(dict.fromkeys(proof.known, far))
@@ -135,7 +133,7 @@ class _FoldWriter:
             rec.write(f"e{k}", error)
             off = rec.absolute(closure.v[k] - rec.input(f"w{k}"))
             known = rec.largest([error, rec.input(f"x{k}")])
-            masks.append(rec.at_most(off + known, alone * (1.0 - 4.0 * _UNIT)))
+            masks.append(rec.at_most(off + known, alone * (1.0 - 4.0 * UNIT_ROUNDOFF)))
         rec.write("good", rec.all_of(masks))
         return rec
 

@@ -9,13 +9,11 @@ nodes moved instead.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.kernels.march.march_programs import NODES
-from linkwork.kernels.march.step_control import GROWTH
+from linkwork.kernels.march.step_control import aim, grow, is_lost, stride
 from linkwork.kernels.march.step_trial import (
     GOOD,
     RADIUS,
@@ -37,6 +35,7 @@ from linkwork.kernels.march.work_arrays import (
 from linkwork.kernels.program.compiling import compiled_for, njit_no_refcount, types
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.program import ROLES
+from linkwork.marching.step_size import HALF
 
 __all__ = ["march"]
 
@@ -137,9 +136,8 @@ def march(
             if task[i] < 0:
                 continue
             goal = rows[row[i]]
-            away = goal - w[t1, i]
-            step = away if abs(away) <= h[i] else math.copysign(h[i], away)
-            w[t0, i] = goal if abs(away) <= h[i] else w[t1, i] + step
+            step = stride(goal, w[t1, i], h[i])
+            w[t0, i] = aim(goal, w[t1, i], h[i])
             for role in range(1, ROLES):
                 times[role - 1] = w[nodes[(role - turn) % ROLES, size - 1], i]
             update_weights(w, i, weights, times, step, known[i], spacing[i])
@@ -151,17 +149,15 @@ def march(
                 continue
             m = tasks.member[task[i]]
             moved = abs(w[t0, i] - w[t1, i])
-            lost = moved == 0.0 and w[t0, i] != rows[row[i]]  # a step lost in rounding
-            taken = w[good, i] > 0.5 and not lost
+            taken = w[good, i] > 0.5 and not is_lost(w[t0, i], w[t1, i], rows[row[i]])
             if taken:
                 if w[t0, i] == rows[row[i]]:
                     _store_row(w, i, topology, turn, row[i], m, table.unknowns, found)
                     row[i] += 2 * way[i] - 1
-                if moved >= 0.5 * h[i]:
-                    h[i] = min(GROWTH * h[i], steps[1])
+                h[i] = grow(h[i], moved, steps[1])
                 known[i] = min(known[i] + 1, NODES)
             else:
-                h[i] = 0.5 * moved
+                h[i] = HALF * moved
                 if h[i] < steps[2]:
                     _stop_design(w, i, topology, turn, way[i], m, found)
                     row[i] = len(rows) if way[i] == 1 else -1

@@ -33,6 +33,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import IndexArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.march.closure import (
     BlockPart,
@@ -52,7 +53,6 @@ __all__ = ["NODES", "WEIGHTS", "MarchPrograms", "march_programs"]
 NODES = ROLES - 1  # that a prediction can use
 #: Registers of the weights of nodes' values and derivatives in a prediction.
 WEIGHTS = tuple(f"{name}{role}" for role in range(1, ROLES) for name in "ab")
-_UNIT = float(np.finfo(float).eps) / 2.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -241,12 +241,14 @@ class _MarchWriter:
         proof = BlockProof(closure, {k: self._scale(rec, k) for k in used})
         near: dict[int, Value] = {}
         far: dict[int, Value] = {}
-        step = abs(rec.input("t.0") - rec.input("t.1")) * (1.0 + 16.0 * _UNIT)
+        step = abs(rec.input("t.0") - rec.input("t.1")) * (1.0 + 16.0 * UNIT_ROUNDOFF)
         for k in proof.known:
             if k < self.n:
                 near[k], far[k] = rec.input(f"e{k}.0"), rec.input(f"y{k}.0")
             else:
-                near[k] = abs(closure.v[k]) * (4.0 * _UNIT) + rec.input(f"u{k - self.n}.spread")
+                near[k] = abs(closure.v[k]) * (4.0 * UNIT_ROUNDOFF) + rec.input(
+                    f"u{k - self.n}.spread"
+                )
                 far[k] = step * abs(self._rate(rec, k - self.n)) + 2.0 * near[k]
         for k, rate in zip(part.unknowns, proof.rates(self._moved), strict=True):
             rec.write(f"d{k}.0", rate)
@@ -259,7 +261,7 @@ class _MarchWriter:
             rec.write(f"y{k}.0", reach)
             away = abs(closure.v[k] - rec.input(f"x{k}.1"))
             away = away + rec.largest([error, rec.input(f"e{k}.1")])
-            masks.append(rec.at_most(away, alone * (1.0 - 4.0 * _UNIT)))
+            masks.append(rec.at_most(away, alone * (1.0 - 4.0 * UNIT_ROUNDOFF)))
         rec.write(f"ok{number}.0", rec.all_of(masks))
         rec.write(f"radius{number}.0", here.radius)
         return rec

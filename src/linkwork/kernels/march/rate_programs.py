@@ -21,8 +21,7 @@ import math
 from collections.abc import Sequence, Set
 from dataclasses import dataclass
 
-import numpy as np
-
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.march.closure import BlockPart, Closure, solve_linear
 from linkwork.kernels.march.proof_program import BlockProof
@@ -32,7 +31,6 @@ from linkwork.kernels.program.recorder import Recorder, Value
 
 __all__ = ["PlaceProgram", "evidence_program", "rate_program", "row_program"]
 
-_UNIT = float(np.finfo(float).eps) / 2.0
 
 Number = Value | float
 
@@ -155,7 +153,8 @@ class _RateWriter:
         """That there is one position near, for all values the inputs may stand for."""
         rec = self.rec
         near: dict[int, Value] = {
-            k: rec.absolute(rec.input(f"v{k}")) * (4.0 * _UNIT) + rec.input(f"u{k - self.n}.spread")
+            k: rec.absolute(rec.input(f"v{k}")) * (4.0 * UNIT_ROUNDOFF)
+            + rec.input(f"u{k - self.n}.spread")
             for k in range(self.n, self.table.variables)
         }
         proofs = []

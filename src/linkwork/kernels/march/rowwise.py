@@ -9,13 +9,11 @@ left to :mod:`linkwork.kernels.march.independent`.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from linkwork.foundation.arrays import AnyArray, Array, CountArray
 from linkwork.kernels.march.march_programs import NODES
-from linkwork.kernels.march.step_control import GROWTH, SAME
+from linkwork.kernels.march.step_control import aim, grow, stride
 from linkwork.kernels.march.step_trial import (
     GOOD,
     RADIUS,
@@ -30,6 +28,8 @@ from linkwork.kernels.march.work_arrays import INPUT_TABLE, MARCH_RESULT, InputT
 from linkwork.kernels.program.compiling import compiled, compiled_for, njit_no_refcount, types
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.program import ROLES
+from linkwork.marching.prediction import SAME
+from linkwork.marching.step_size import HALF
 
 __all__ = ["DONE", "LEFT", "NOT_NEAR", "by_rows"]
 
@@ -104,16 +104,15 @@ def _march_to(
     while known < enough and w[nodes[(1 - turn) % ROLES, last], 0] != end:
         for role in range(1, ROLES):
             times[role - 1] = w[nodes[(role - turn) % ROLES, last], 0]
-        away = end - times[0]
-        step = math.copysign(min(abs(away), h), away)
-        w[nodes[-turn % ROLES, last], 0] = end if step == away else times[0] + step
+        step = stride(end, times[0], h)
+        w[nodes[-turn % ROLES, last], 0] = aim(end, times[0], h)
         update_weights(w, 0, topology.weights, times, step, known, spacing)
         correct_and_judge(topology, turn, w, alone, False, 1)
         if w[topology.noted[GOOD], 0] > 0.5:
-            known, h = known + 1, min(GROWTH * h, steps[1])
+            known, h = known + 1, grow(h, abs(step), steps[1])
             turn = (turn + 1) % ROLES
         else:
-            h = 0.5 * abs(step)
+            h = HALF * abs(step)
             if h < steps[2]:
                 return turn, 0
     return turn, known

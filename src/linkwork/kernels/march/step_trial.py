@@ -12,7 +12,14 @@ from typing import NamedTuple
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.kernels.march.step_control import SAME, START_STEPS, STEPS, hermite, trusted
+from linkwork.kernels.march.step_control import (
+    START_STEPS,
+    STEPS,
+    hermite_weights,
+    is_same_spacing,
+    keep_spacing,
+    trusted_nodes,
+)
 from linkwork.kernels.program.compiling import (
     call_at,
     compiled,
@@ -311,11 +318,11 @@ def extrapolate(
     times : (4,) of the last nodes
     known : how many of them there are; fewer are trusted far ahead
     """
-    used = trusted(t, times, known)
+    used = trusted_nodes(t, times, known)
     for j in range(len(weights)):
         w[weights[j], lane] = 0.0
     for i in range(used):
-        a, b = hermite(t, times, i, used)
+        a, b = hermite_weights(t, times, i, used)
         w[weights[2 * i], lane], w[weights[2 * i + 1], lane] = a, b
 
 
@@ -333,14 +340,8 @@ def update_weights(
     known : how many of them there are
     spacing : (4,) for which the weights are at hand, changed
     """
-    near = SAME * abs(step)
-    same = abs(step - spacing[0]) <= near
-    for k in range(1, len(times)):
-        same &= abs(times[k - 1] - times[k] - spacing[k]) <= near
-    if same:
+    if is_same_spacing(step, times, spacing):
         return False
-    spacing[0] = step
-    for k in range(1, len(times)):
-        spacing[k] = times[k - 1] - times[k]
+    keep_spacing(step, times, spacing)
     extrapolate(w, lane, weights, times[0] + step, times, known)
     return True

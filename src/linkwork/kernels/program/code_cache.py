@@ -19,17 +19,19 @@ __all__ = ["is_cached", "load_compiled"]
 
 #: A folder that takes the place of the user's cache.
 FOLDER = "LINKWORK_CACHE"
-#: Modules of this package that written ones are compiled with.
+#: Modules that written ones are compiled with.
 _WITH = (
-    "gpu/compiling.py",
-    "gpu/march.py",
-    "march/step_control.py",
-    "march/step_trial.py",
-    "march/work_arrays.py",
-    "program/compiling.py",
-    "program/sine.py",
+    "kernels/gpu/compiling.py",
+    "kernels/gpu/march.py",
+    "kernels/march/step_control.py",
+    "kernels/march/step_trial.py",
+    "kernels/march/work_arrays.py",
+    "kernels/program/compiling.py",
+    "kernels/program/sine.py",
+    "marching/prediction.py",
+    "marching/step_size.py",
 )
-_KERNELS = Path(__file__).parents[1]
+_LINKWORK = Path(__file__).parents[2]
 _ONE_AT_A_TIME = RLock()  # a module is among the known ones before it is whole
 
 
@@ -70,7 +72,7 @@ def _name(source: str) -> str:
     """By the text and all that it is compiled with."""
     digest = hashlib.sha256(source.encode())
     for module in _WITH:
-        digest.update((_KERNELS / module).read_bytes())
+        digest.update((_LINKWORK / module).read_bytes())
     return f"linkwork_kernel_{digest.hexdigest()[:24]}"
 
 

@@ -20,6 +20,7 @@ from linkwork.foundation.arrays import (
     IndexArray,
 )
 from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.rounding import ALMOST_DOUBLE, ALMOST_REAL
 from linkwork.foundation.status import Status
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.motion.assembly.configuration_names import combined_name, order_configurations
@@ -40,11 +41,9 @@ from linkwork.results.configurations import PathCount
 __all__ = ["Assemblies", "positions_at"]
 
 _LARGEST = 4096  # configurations of the whole that are listed
-_ALMOST_REAL = 1e-6  # an unproved root this near to its mirror image is tried as a real one,
-_ALMOST_DOUBLE = 1e-3  # and a multiple one
 _MOVED = 1e-5  # weighted: how far Newton's method may carry a root to its position,
 _MOVED_DOUBLE = 1e-2  # and a multiple one
-_SAME = 1e-10  # weighted: two positions of a block are one
+_SAME_POSITION = 1e-10  # weighted: two positions of a block are one
 _CLOSED = 1e-12  # scaled residual at which a multiple root is a position
 
 
@@ -289,7 +288,7 @@ def _find_distinct(model: Model, v: Array, rows: IndexArray) -> BoolArray:
     fresh = np.ones(len(v), dtype=bool)
     for k, begin in enumerate(np.searchsorted(rows, rows)):
         gap = within_half_a_turn(v[begin:k] - v[k], turns)
-        fresh[k] = not ((np.abs(gap) <= _SAME * size).all(axis=1) & fresh[begin:k]).any()
+        fresh[k] = not ((np.abs(gap) <= _SAME_POSITION * size).all(axis=1) & fresh[begin:k]).any()
     return fresh
 
 
@@ -322,10 +321,10 @@ def _solve_block(form: DirectionForm, left: ComplexArray, off: Array) -> _BlockR
         bound = family.bound_of(system, off, len(roots.x))
     proofs = prove_roots(system, roots.x, off)
     m = system.size
-    real = proofs.real | (~proofs.holds & (_mirror_gap(roots.x, m) < _ALMOST_REAL))
+    real = proofs.real | (~proofs.holds & (_mirror_gap(roots.x, m) < ALMOST_REAL))
     undecided = not (proofs.holds & (proofs.real | proofs.unreal)).all()
     unproved = real & ~proofs.holds
-    doubles = roots.multiple[_mirror_gap(roots.multiple, m) < _ALMOST_DOUBLE]
+    doubles = roots.multiple[_mirror_gap(roots.multiple, m) < ALMOST_DOUBLE]
     if roots.continuum:
         grade = Completeness.CONTINUUM
     elif (

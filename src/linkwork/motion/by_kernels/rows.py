@@ -27,7 +27,7 @@ __all__ = ["KernelRows", "kernel_rows"]
 
 _FINE = 32  # rows: a track with steps as short as that comes near to its end
 _TWICE = 1e-6  # of the distance from row to row: a row as near to another one stands twice
-_SAME = 1e-9  # weighted: positions nearer to each other are one
+_SAME_POSITION = 1e-9  # weighted: positions nearer to each other are one
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -66,7 +66,7 @@ class KernelRows:
         mine = np.flatnonzero(np.isin(self.where, self.checked))
         place = there[self.where[mine]]
         away = (np.abs(found.v[place] - self.v[:, mine].T) / weights).max(axis=1)
-        same = (found.status[place] == Status.CONVERGED.code) & (away <= _SAME)
+        same = (found.status[place] == Status.CONVERGED.code) & (away <= _SAME_POSITION)
         if certify:
             same &= found.certification[place] == Certification.CERTIFIED.code
             same &= away + self.radius[mine] < found.uniqueness_radius[place]

@@ -13,8 +13,9 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.foundation.rounding import CLOSER_TANGENT, REGULAR_CONDITION
 from linkwork.foundation.status import Status
-from linkwork.motion.circuit.branches import CurveBranch, TracedCurve, branches_of, trace_with_proof
+from linkwork.motion.curve_branches import CurveBranch, TracedCurve, branches_of, trace_with_proof
 from linkwork.numerics.continuation.change_point import ChangePoint, Crossing
 from linkwork.numerics.continuation.local_parametrization import (
     Parametrization,
@@ -28,8 +29,6 @@ from linkwork.numerics.continuation.local_parametrization import (
 __all__ = ["Arc", "Explorer", "positions_near"]
 
 _STRIDES = (1e-2, 3e-3, 1e-3, 1e-4)  # weighted, tried in this order
-_CLOSER = 0.1  # a position belongs to a tangent it is so many times nearer to than to the other
-_REGULAR = 1e5
 _NEAR = 0.3  # weighted: positions further from a branch do not lie on it
 _STILL = 1e-5  # weighted change of the parameter along an arc on which it rests, up to a crossing
 
@@ -204,7 +203,7 @@ def _beyond(leads: Parametrizations, v: Array, direction: Array, other: Array) -
         found = led.whole(done.v[0])
         moving = speed > 0.0
         off = float(np.abs((found - guess) / leads.scale)[moving].max())
-        if off <= _CLOSER * stride * gap and led.node(found).nearness < _REGULAR:
+        if off <= CLOSER_TANGENT * stride * gap and led.node(found).nearness < REGULAR_CONDITION:
             return found
     return None
 

@@ -12,6 +12,7 @@ from linkwork.equations.directions import NoDirectionForm
 from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.rounding import ALMOST_DOUBLE, ALMOST_REAL
 from linkwork.motion.model import Model
 from linkwork.numerics.continuation.branch_tracking import InputPath
 from linkwork.numerics.continuation.change_point import crossing_near
@@ -23,10 +24,8 @@ from linkwork.numerics.homotopy.polynomial_system import Roots
 __all__ = ["DeadPointCount", "DeadPointInputs", "dead_point_inputs"]
 
 _MOST_PATHS = 300  # from products of linear forms: three loops at most, or a dyad behind three
-_ALMOST_REAL = 1e-6  # a solution this near to its mirror image is a real one,
-_ALMOST_DOUBLE = 1e-3  # and a multiple one, whose path ends less precisely
-_SAME = 1e-9  # weighted: two inputs are one,
-_SAME_MULTIPLE = 1e-5  # and that of a multiple solution another one's
+_SAME_INPUT = 1e-9  # weighted: two inputs are one,
+_SAME_MULTIPLE_INPUT = 1e-5  # and that of a multiple solution another one's
 _MOVES = 1e-6  # part of the largest change that is one
 _COMPLEX_CURVES = (
     "not proved: dead points at complex values form a continuum, and whether real ones are among "
@@ -171,8 +170,8 @@ class _Search:
             self.grade = self.grade.and_then(Completeness.NOT_PROVED)
         if roots.continuum:
             self._tell_of_curves(form, roots.curves)
-        real = _real(form, roots.x, _ALMOST_REAL)
-        double = _real(form, _sharpen_roots(form, roots.multiple), _ALMOST_DOUBLE)
+        real = _real(form, roots.x, ALMOST_REAL)
+        double = _real(form, _sharpen_roots(form, roots.multiple), ALMOST_DOUBLE)
         start = self.model.equations.start
         self.values += self._wrap_angle(form.positions(real, start)[:, -1].tolist())
         self.doubles += self._wrap_angle(
@@ -226,8 +225,8 @@ class _Search:
         turns = bool(self.leads.is_angle[self.leads.parameter])
         kept: list[tuple[float, bool]] = []
         for values, multiple, same in (
-            (self.doubles, True, _SAME_MULTIPLE),
-            (self.values, False, _SAME),
+            (self.doubles, True, _SAME_MULTIPLE_INPUT),
+            (self.values, False, _SAME_INPUT),
         ):
             for value in values:
                 gaps = np.abs([value - old for old, many in kept if many == multiple])

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.rounding import REGULAR_CONDITION
 from linkwork.motion.assembly.assembling import Assemblies, positions_at
 from linkwork.motion.circuit.arcs import Explorer
 from linkwork.motion.circuit.dead_inputs import DeadPointInputs, dead_point_inputs
@@ -19,7 +20,6 @@ from linkwork.numerics.newton import NewtonOptions
 __all__ = ["Seeding"]
 
 _LOOKED_AT = 24  # input values at which all configurations are listed if dead points may be missing
-_REGULAR = 1e5  # condition up to which a configuration can begin a curve
 
 
 class Seeding:
@@ -90,7 +90,7 @@ class Seeding:
     def _regular(self, v: Array, most: float | None = None) -> bool:
         """Whether the input can lead at a position: not at dead points and change points."""
         own = self.drive.leads.with_parameter(self.drive.leads.parameter)
-        largest = _REGULAR if most is None else most
+        largest = REGULAR_CONDITION if most is None else most
         return own is not None and own.node(v).nearness < largest
 
     def _further_inputs(self, start: float) -> list[float]:

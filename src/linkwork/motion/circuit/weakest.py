@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array
-from linkwork.motion.circuit.branches import CurveBranch
+from linkwork.motion.curve_branches import CurveBranch
 from linkwork.numerics.continuation.branch_tracking import Node
 from linkwork.numerics.continuation.local_parametrization import coincide, fastest_leader
 from linkwork.numerics.continuation.step_division import sign_change

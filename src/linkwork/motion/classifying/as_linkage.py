@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from linkwork.equations.reading.joints import NotRead
 from linkwork.equations.reading.linkage_of_loops import read_linkage
 from linkwork.foundation.errors import MechanismError
-from linkwork.mechanism.chain import cylinder_ends
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
 from linkwork.motion.model import Model, model_of
@@ -57,7 +56,7 @@ def as_linkage(model: Model) -> Seen | NotSeen:
             for link, angle in equations.links.items()
         }
         for cylinder in description.cylinders:
-            turning |= dict.fromkeys(cylinder_ends(cylinder.name), (cylinder.angle_name,))
+            turning |= dict.fromkeys(cylinder.ends, (cylinder.angle_name,))
         return Seen(model=model, linkage=description, turning=turning)
     if not isinstance(description, Loops):
         return NotSeen("plain equations tell nothing of links and joints")

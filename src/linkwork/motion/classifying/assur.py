@@ -17,9 +17,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from linkwork.mechanism.chain import Chain, Joint, JointKind
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.chain import Chain
 from linkwork.mechanism.chain_graph import contours
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.joint import Joint, JointKind
+from linkwork.mechanism.linkage import Linkage
 from linkwork.motion.classifying.four_link_loop import driven_joints
 from linkwork.numerics.decomposition import block_form
 from linkwork.results.classification import AssurGroup

@@ -5,14 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.chain import Chain
 from linkwork.mechanism.chain_graph import orbits
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.directed import directed
+from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.inversion import inverted, settled
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.parts import Input
 from linkwork.motion.classifying.as_linkage import NotSeen, Seen, as_linkage
 from linkwork.motion.classifying.classify import classify
 from linkwork.motion.model import Model, model_of

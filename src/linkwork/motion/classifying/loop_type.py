@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from linkwork.equations.model import LinkAngle
-from linkwork.mechanism.chain import JointKind
+from linkwork.mechanism.joint import JointKind
 from linkwork.mechanism.linkage import Linkage
 from linkwork.motion.classifying.four_link_loop import FourLinkLoop
 from linkwork.results.classification import LoopType

@@ -24,7 +24,7 @@ _STARTS = 192  # per block that is no dyad
 _MOST_BLOCKS = 8
 _MOST_LOOPS = 4  # coupled, whose configurations are listed: more take seconds
 _MOST = 64  # positions; a chain of dyads has 2^blocks
-_SAME = 1e-6  # weighted
+_SAME_POSITION = 1e-6  # weighted
 _REACH = 2.0  # lengths are looked for within so many times the longest link around the guess
 
 
@@ -95,7 +95,7 @@ def block_positions(block: Block, v: Array) -> tuple[Array, bool]:
     found, _ = _solve_starts(block, v, start[None, :n] if linear else _starts(block, start[:n]))
     distinct: list[Array] = []
     for x in found:
-        if all(distance(block, x, other) > _SAME for other in distinct):
+        if all(distance(block, x, other) > _SAME_POSITION for other in distinct):
             distinct.append(x)
     return np.array(distinct).reshape(-1, n), linear and len(distinct) == 1
 

@@ -10,7 +10,7 @@ import numpy as np
 from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
-from linkwork.motion.circuit.branches import TracedCurve
+from linkwork.motion.curve_branches import TracedCurve
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.continuation.branch_tracking import BOLD, InputPath, TrackOptions, follow

@@ -8,6 +8,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import Status
 from linkwork.motion import failure as why
 from linkwork.motion.drive import Drive
@@ -29,8 +30,6 @@ from linkwork.results.motion import Limit
 from linkwork.results.position import Certificate
 
 __all__ = ["OutOfReach", "follow_to_value"]
-
-_UNIT = np.finfo(float).eps
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,7 +91,7 @@ def follow_to_value(
             break
         ends = ends_of(drive, track, certify)
         for end in ends:
-            if end.is_at(t, 4.0 * _UNIT * max(abs(goal), abs(t))):
+            if end.is_at(t, 4.0 * EPSILON * max(abs(goal), abs(t))):
                 return _at_end(model, end, place, laps, certify)
         met = [end.limit for end in ends]
         limits += tuple(limit for limit in met if limit.input not in [old.input for old in limits])

@@ -19,6 +19,7 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.rounding import EPSILON
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node
 from linkwork.numerics.joined_blocks import JoinedBlocks, closure_of
@@ -35,7 +36,6 @@ __all__ = [
     "tangents_behind_kink",
 ]
 
-_UNIT = np.finfo(float).eps
 _STEPS = 12
 _SHARES = 17  # in which rates are led around a kink
 _FAR = 1e-3  # ratio of a block's singular values from which on it is far from a singular position
@@ -234,7 +234,7 @@ def _place_point(
     weights = solver.variable_scale[mine]
     both = (found.onward, found.other)
     onward, other = (_place_in_whole(solver, mine, _rate(z) * weights) for z in both)
-    reach = found.error + 4.0 * _UNIT * max(1.0, abs(found.t))
+    reach = found.error + 4.0 * EPSILON * max(1.0, abs(found.t))
     return ChangePoint(
         t=found.t,
         bracket=(found.t - reach, found.t + reach),
@@ -421,7 +421,7 @@ class _Crossing:
             beta += float(change[n + 1])
             w = w + change[n + 2 :]
             last, error = error, abs(float(change[n]))
-            if error <= 2.0 * _UNIT * max(1.0, abs(t)) or (error >= last and last < 1e-10):
+            if error <= 2.0 * EPSILON * max(1.0, abs(t)) or (error >= last and last < 1e-10):
                 break
         return x, t, w, beta, error
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.numerics.continuation.curve_tracing import Curve, Leg
 from linkwork.numerics.continuation.local_parametrization import (
     Parametrization,
@@ -19,7 +20,6 @@ from linkwork.numerics.proof.position_proof import prove, reach
 
 __all__ = ["ProvenCurve", "leg_is_proved", "prove_curve", "same_solution"]
 
-_UNIT = np.finfo(float).eps / 2
 _MOST_STEPS = 20_000  # of a proof: a length on its way to infinity takes steps without end
 
 
@@ -118,7 +118,7 @@ def _meets(leads: Parametrizations, own: Parametrization, start: Array, end: Arr
         return False
     gap = apart(leads, start, end)
     # whole turns are no floats: what is left of them, and their rounding, may be off
-    left = np.abs(gap) + 8.0 * _UNIT * np.maximum(np.abs(end), np.abs(start))
+    left = np.abs(gap) + 8.0 * UNIT_ROUNDOFF * np.maximum(np.abs(end), np.abs(start))
     left = left[own.order]
     first = reach(own.solver, start[own.order][None, :], left[None, -1:])
     last = prove(own.solver, end[own.order][None, :], left[None, -1:])

@@ -16,7 +16,8 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
-from linkwork.foundation.status import Status
+from linkwork.foundation.rounding import EPSILON, LARGEST_POLISH
+from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.continuation.branch_tracking import BOLD, Node, TrackOptions, follow
 from linkwork.numerics.continuation.change_point import ChangePoint, locate_change_point
 from linkwork.numerics.continuation.local_parametrization import (
@@ -29,10 +30,7 @@ from linkwork.numerics.continuation.step_division import node_between, one_way, 
 
 __all__ = ["Curve", "CurveOptions", "Leg", "trace"]
 
-_CONVERGED = Status.CONVERGED.code
-_SAME = 1e-6  # weighted: a position is moved no further when its parameter is made exact
 _ON_PLANE = 1e-11  # a value of the parameter this near, relative, is reached
-_UNIT = np.finfo(float).eps
 _LEG = 8.0  # natural sizes of the leader, after which a leg ends if nothing else ends it
 
 
@@ -294,7 +292,7 @@ class _Tracer:
             gap = abs(float(here.v[place]) - value)
             if gap <= off:
                 best, off = here, gap
-            if gap <= 2.0 * _UNIT * max(1.0, abs(value)):
+            if gap <= 2.0 * EPSILON * max(1.0, abs(value)):
                 break
             if (here.v[place] < value) == (low.v[place] < value):
                 low = here
@@ -312,9 +310,9 @@ class _Tracer:
         near[self.leads.parameter] = value
         found = own.solver.solve(near[own.order][None, :])
         v = own.whole(found.v[0])
-        same = np.abs((v - near) / self.leads.scale).max() < _SAME
+        same = np.abs((v - near) / self.leads.scale).max() < LARGEST_POLISH
         same = same and np.array_equal(own.node(v).orientation, side)
-        return led.node(v) if found.status[0] == _CONVERGED and same else here
+        return led.node(v) if found.status[0] == CONVERGED and same else here
 
     def _ending(self) -> CircuitEnd | None:
         v, scale = self.here, self.leads.scale

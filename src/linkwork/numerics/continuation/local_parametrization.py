@@ -9,6 +9,7 @@ import numpy as np
 
 from linkwork.foundation.angles import FULL_TURN, within_half_a_turn
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.rounding import EPSILON
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node, node_at
 from linkwork.numerics.proof.position_proof import prove, reach
@@ -23,7 +24,6 @@ __all__ = [
     "whole_turns",
 ]
 
-_UNIT = np.finfo(float).eps
 _COINCIDE = 1e-6  # weighted: rounding of places that are ill-conditioned
 _NEAR = 1e-3  # weighted: positions further apart are not looked at
 _ON_VALUE = 1e-9  # of the parameter, weighted: positions at different values are different
@@ -123,15 +123,15 @@ def same_position(leads: Parametrizations, a: Array, b: Array) -> bool:
     turns, p = whole_turns(leads, a, b), leads.parameter
     near = np.stack([a, b - FULL_TURN * turns])
     gap = np.abs(near[1] - near[0]) / leads.scale
-    rounding = 8.0 * _UNIT * max(1.0, abs(float(a[p])), abs(float(b[p])))
+    rounding = 8.0 * EPSILON * max(1.0, abs(float(a[p])), abs(float(b[p])))
     own = leads.with_parameter(p)
     if own is None or gap.max() > _NEAR or gap[p] > _ON_VALUE or not leads.repeats_after(turns):
         return False
     size = 1.0 + np.abs(near / leads.scale).max()
-    if gap.max() <= _ROUNDINGS * _UNIT * size:
+    if gap.max() <= _ROUNDINGS * EPSILON * size:
         return True
     near[:, p] = a[p]
-    sharp = replace(own.solver.options, equation_tolerance=_UNIT)
+    sharp = replace(own.solver.options, equation_tolerance=EPSILON)
     found = own.solver.solve(near[:, own.order], sharp).v
     off = np.abs(found[1] - found[0])
     if own.provable:
@@ -143,7 +143,7 @@ def same_position(leads: Parametrizations, a: Array, b: Array) -> bool:
         if first.holds[0] and second.holds[0]:
             return bool((off[:-1] + second.error_bound[0, :-1] < first.isolation_radius[0]).all())
     rates = own.solver.rates(found, own.path.rate)
-    allowed = min(_COINCIDE, _ROUNDINGS * _UNIT * float(rates.condition.max()) * size)
+    allowed = min(_COINCIDE, _ROUNDINGS * EPSILON * float(rates.condition.max()) * size)
     close = (off / own.solver.variable_scale).max() <= allowed
     # two roots that a dead point joins have opposite signs of det J
     return bool(close and np.array_equal(rates.orientation[0], rates.orientation[1]))

@@ -17,7 +17,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.foundation.status import Status
+from linkwork.foundation.rounding import CLOSER_TANGENT
+from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.block_solver import Block, BlockSolver, linearise_block
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node, follow, node_at
 from linkwork.numerics.continuation.change_point import (
@@ -30,11 +31,9 @@ from linkwork.numerics.newton import newton
 
 __all__ = ["Passage", "pass_change_points"]
 
-_CONVERGED = Status.CONVERGED.code
 _HALVES = (1e-2, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6)  # of the path's size, to both sides, in this order
 _STEPS = 4  # in which a block that does not cross is followed
 _OFF = 1e-3  # weighted: how far such a step may end from its prediction
-_CLOSER = 0.1  # a position belongs to a tangent it is so many times nearer to than to the other
 _REGULAR = 3e6  # condition from which on branches are as good as crossing, as in tracks
 _BESIDE = 0.1  # of the way to the next kink: a crossing so near to a kink is taken together with it
 _DRIVEN = 2e-13  # relative: how well a crossing is located behind blocks that cross themselves
@@ -263,7 +262,7 @@ class _Walk:
     def _solve(self, block: Block, t: float, guess: Array, towards: float) -> Array | None:
         v = np.concatenate([guess, self._known(block, t, towards)[0]])
         done = newton(block.system, v[None, :], self.options)
-        return done.v[0, : len(guess)] if done.status[0] == _CONVERGED else None
+        return done.v[0, : len(guess)] if done.status[0] == CONVERGED else None
 
     def _follow(self, block: Block, begin: float, end: float, x: Array) -> list[_Step] | None:
         """The block led from one value of t to another; ``None`` if it comes near a crossing."""
@@ -366,7 +365,7 @@ class _Walk:
         apart = float(np.abs((chosen - left) / weights).max())
         gap = abs(h) * apart if np.isfinite(apart) else abs(h)
         after, _, condition = self._step(block, end, x, t)
-        close = bool(float(np.abs((x - guess) / weights).max()) <= _CLOSER * gap)
+        close = bool(float(np.abs((x - guess) / weights).max()) <= CLOSER_TANGENT * gap)
         return after if close and condition < _REGULAR else None
 
 

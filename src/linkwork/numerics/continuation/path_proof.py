@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, CountArray, IndexArray
-from linkwork.foundation.status import Status
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.foundation.status import CONVERGED
+from linkwork.marching.loop import Attempt, StepBounds, march
 from linkwork.numerics.block_solver import BlockSolver, Rates
-from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Watch, node_at
+from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Watch, node_at, predict
 from linkwork.numerics.proof.kantorovich import Expansion
 from linkwork.numerics.proof.position_proof import (
     Proof,
@@ -23,11 +26,9 @@ from linkwork.numerics.proof.position_proof import (
 
 __all__ = ["PathPoints", "ProvenPath", "follow_with_proof", "prove_path"]
 
-_CONVERGED = Status.CONVERGED.code
 _ROUNDS = 45  # halvings of one step before it counts as not proved
 _MOST = 30_000  # positions solved in between for the proof of one path
 _MOST_EACH = 8  # and so many more for each of its own positions
-_UNIT = np.finfo(float).eps / 2
 _PIECE = 1024  # positions proved together: arrays that fit the cache
 _LANES = 1024  # steps halved together
 
@@ -224,7 +225,7 @@ def _steps(
 
     The inputs are taken from the positions: those of a row may differ from the path's by rounding.
     """
-    input_radius = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
+    input_radius = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
     input_radius += start.input_radius + goal.input_radius
     return steps_connected(start.v, goal.v, reach(solver, start.v, input_radius, places), near)
 
@@ -360,12 +361,10 @@ def _between(
     points = PathPoints(
         t=t, v=done.v, first=rates.first, second=rates.second, input_radius=input_radius
     )
-    return points, done.status == _CONVERGED, expansions(solver, done.v, linear)
+    return points, done.status == CONVERGED, expansions(solver, done.v, linear)
 
 
-_FIRST_STEP = 0.01  # of the path's natural size
-_LEAST_STEP = 1e-13
-_MOST_PROVED = 2000  # steps of a path whose every step is proved before the next
+_PROVED_GROWTH = 1.5  # of steps that are proved one by one
 
 
 def follow_with_proof(
@@ -376,30 +375,39 @@ def follow_with_proof(
     The step size is what the proof allows: many short steps near a crossing of branches, and none
     that could come onto the other one. Ends where ``watch`` has seen enough or nothing is proved.
     """
-    nodes: list[Node] = []
-    here = start
-    near = prove(solver, here.v[None, :], rounding_of_inputs(here.v[None, :], solver.unknowns))
-    sign, h = np.sign(goal - start.t), _FIRST_STEP * path.size
-    for _ in range(_MOST_PROVED):
-        t = goal if h >= abs(goal - here.t) else here.t + sign * h
-        step = t - here.t
-        guess = here.v + step * here.first + 0.5 * step * step * here.second
-        guess[solver.unknowns :] = path.at(t)
-        found = solver.solve(guess[None, :])
-        if found.status[0] == _CONVERGED:
-            known = rounding_of_inputs(found.v, solver.unknowns)
-            proof = prove(solver, found.v, known)
-            input_radius = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
-            reached = reach(solver, here.v[None, :], input_radius + 2.0 * known)
-            both = np.maximum(proof.error_bound, near.error_bound)
-            if proof.holds[0] and steps_connected(here.v[None, :], found.v, reached, both)[0]:
-                before, here, near = here, node_at(solver, path, t, found.v[0]), proof
-                nodes.append(here)
-                h *= 1.5
-                if t == goal or watch(before, here):
-                    break
-                continue
-        h = 0.5 * abs(step)
-        if h < _LEAST_STEP * max(path.size, abs(here.t)):
-            break
+    bounds = StepBounds(size=path.size, first=0.01, largest=math.inf, smallest=1e-13, attempts=2000)
+    nodes, _ = march(_ProvedTrial(solver, path, start), start, goal, bounds, watch)
     return nodes
+
+
+class _ProvedTrial:
+    """A step that is taken only if it is proved."""
+
+    def __init__(self, solver: BlockSolver, path: InputPath, start: Node) -> None:
+        self.solver, self.path = solver, path
+        self.here = self._proof(start.v[None, :])
+
+    def _proof(self, v: Array) -> Proof:
+        return prove(self.solver, v, rounding_of_inputs(v, self.solver.unknowns))
+
+    def room(self, here: Node, sign: float) -> float:
+        """The proof bounds the step, nothing else."""
+        return math.inf
+
+    def attempt(self, here: Node, t: float) -> Attempt[Node]:
+        """Predict, correct, prove the position and the step to it."""
+        solver = self.solver
+        guess = predict(here, t)
+        guess[solver.unknowns :] = self.path.at(t)
+        found = solver.solve(guess[None, :])
+        if found.status[0] != CONVERGED:
+            return Attempt(None)
+        known = rounding_of_inputs(found.v, solver.unknowns)
+        proof = self._proof(found.v)
+        spread = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
+        reached = reach(solver, here.v[None, :], spread + 2.0 * known)
+        both = np.maximum(proof.error_bound, self.here.error_bound)
+        if not (proof.holds[0] and steps_connected(here.v[None, :], found.v, reached, both)[0]):
+            return Attempt(None)
+        self.here = proof
+        return Attempt(node_at(solver, self.path, t, found.v[0]), _PROVED_GROWTH)

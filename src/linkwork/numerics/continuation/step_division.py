@@ -9,15 +9,14 @@ from dataclasses import replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.status import Status
+from linkwork.foundation.rounding import EPSILON
+from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.continuation.branch_tracking import Node, node_at
 from linkwork.numerics.continuation.local_parametrization import Parametrization
 
 __all__ = ["divide_step", "node_between", "one_way", "share_at", "sign_change"]
 
-_CONVERGED = Status.CONVERGED.code
-_UNIT = np.finfo(float).eps
-_STILL = 8.0 * _UNIT  # relative: a variable that moves less over a step rests, to rounding
+_STILL = 8.0 * EPSILON  # relative: a variable that moves less over a step rests, to rounding
 _DIVISIONS = 24  # halvings of a step in which a variable turns back several times
 _SAFE = 4.0  # the error of a cubic is at most so many times that halfway
 _SEARCH = 80  # positions solved to find a sign change
@@ -35,9 +34,9 @@ def node_between(
     h = high.t - low.t
     guess = _hermite(s, h, low.v, low.first, high.v, high.first)
     guess[-1] = low.t + s * h
-    options = replace(led.solver.options, equation_tolerance=_UNIT) if sharp else None
+    options = replace(led.solver.options, equation_tolerance=EPSILON) if sharp else None
     found = led.solver.solve(guess[None, :], options)
-    if found.status[0] != _CONVERGED:
+    if found.status[0] != CONVERGED:
         return None
     return node_at(led.solver, led.path, float(guess[-1]), found.v[0])
 
@@ -81,7 +80,7 @@ def sign_change(
     before, kept = np.inf, 0  # the bracket's width three tries ago, the end that was kept last
     for number in range(_SEARCH):
         width = abs(high.t - low.t)
-        if least == 0.0 or width <= 4.0 * _UNIT * max(1.0, abs(low.t)):
+        if least == 0.0 or width <= 4.0 * EPSILON * max(1.0, abs(low.t)):
             break
         s = a / (a - b)
         if number % 3 == 0:
@@ -122,7 +121,7 @@ def divide_step(
     if size * abs(h) <= _STILL * max(1.0, abs(float(a.v[place]))):
         return [a, b]
     off = abs(float(middle.first[place]) - float(_hermite(0.5, h, *ends)))
-    if _zero_once(_SAFE * off + 8.0 * _UNIT * size, h, *ends):
+    if _zero_once(_SAFE * off + 8.0 * EPSILON * size, h, *ends):
         return [a, b]
     left = divide_step(led, place, a, middle, depth - 1)
     return [*left, *divide_step(led, place, middle, b, depth - 1)[1:]]

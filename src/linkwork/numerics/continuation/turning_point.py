@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.status import Status
+from linkwork.foundation.rounding import EPSILON
+from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import (
     BOLD,
@@ -38,8 +39,6 @@ from linkwork.numerics.continuation.step_division import divide_step
 
 __all__ = ["TurnAhead", "TurningPoint", "turn_beyond", "turning_points"]
 
-_CONVERGED = Status.CONVERGED.code
-_UNIT = np.finfo(float).eps
 _MOST_STEPS = 400  # to a dead point ahead: it is near, unless it is none
 _RESTING = 1e-7  # weighted rate below which the parameter may not move at all,
 _LEVEL = 100.0  # nor does it if the rate's own rate is at most so many times that
@@ -235,10 +234,10 @@ def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
     Newton-Raphson on the rate, kept inside the sign change.
     """
     best = here = low if abs(low.first[place]) < abs(high.first[place]) else high
-    sharp = replace(led.solver.options, equation_tolerance=_UNIT)
+    sharp = replace(led.solver.options, equation_tolerance=EPSILON)
     for _ in range(60):
         step = -here.first[place] / here.second[place] if here.second[place] else np.inf
-        if abs(step) <= 4.0 * _UNIT * max(1.0, abs(here.t)):
+        if abs(step) <= 4.0 * EPSILON * max(1.0, abs(here.t)):
             break
         s = here.t + step
         edges = sorted((low.t, high.t))
@@ -248,7 +247,7 @@ def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
         guess = here.v + step * here.first + 0.5 * step * step * here.second
         guess[-1] = s
         found = led.solver.solve(guess[None, :], sharp)
-        if found.status[0] != _CONVERGED:
+        if found.status[0] != CONVERGED:
             break
         here = node_at(led.solver, led.path, s, found.v[0])
         if here.first[place] * low.first[place] > 0.0:

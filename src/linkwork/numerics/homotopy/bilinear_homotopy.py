@@ -21,8 +21,6 @@ from linkwork.numerics.homotopy.bilinear import BilinearSystem
 
 __all__ = ["ParameterHomotopy", "StartHomotopy", "null_space"]
 
-_TOO_CLOSE = 1e8  # condition of the decomposition beyond which another start is drawn
-
 
 def null_space(closure: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     """Orthonormal bases of the null space, (K, K - L), and row space, (K, L), of (L, K)."""

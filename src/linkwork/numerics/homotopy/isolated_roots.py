@@ -42,7 +42,7 @@ __all__ = [
 #: All random numbers follow from this one, so that every run gives the same answer.
 SEED = 20_210_501
 
-_SAME = 1e-6  # two solutions are the same one
+_SAME_ROOT = 1e-6  # two solutions are the same one
 _FINITE = 1e-8  # smallest homogenising coordinate, of vectors of length 1, of a finite solution
 _FADING = 0.5  # a singular path whose homogenising coordinate shrinks so much runs to infinity
 _FINITE_MULTIPLE = 1e-5  # the smallest one of a finite multiple solution, which is known roughly
@@ -287,13 +287,13 @@ def _near_another(x: ComplexArray) -> BoolArray:
         return np.zeros(len(x), dtype=bool)
     size = 1.0 + np.abs(x).max(axis=1)
     gap = np.abs(x[:, None, :] - x[None, :, :]).max(axis=2)
-    close = gap < _SAME * np.minimum(size[:, None], size[None, :])
+    close = gap < _SAME_ROOT * np.minimum(size[:, None], size[None, :])
     np.fill_diagonal(close, False)
     near: BoolArray = close.any(axis=1)
     return near
 
 
-def _distinct(x: ComplexArray, same: float = _SAME) -> ComplexArray:
+def _distinct(x: ComplexArray, same: float = _SAME_ROOT) -> ComplexArray:
     """The rows without repetitions, first ones kept."""
     kept: list[int] = []
     for k in range(len(x)):

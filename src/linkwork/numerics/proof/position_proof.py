@@ -13,8 +13,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.numerics.block_solver import Block, BlockSolver, Linearised
-from linkwork.numerics.proof.kantorovich import Expansion, Majorant, Radii, expansion, radii
+from linkwork.numerics.proof.kantorovich import (
+    Expansion,
+    Majorant,
+    Radii,
+    expansion,
+    weighted_radii,
+)
 
 __all__ = [
     "Proof",
@@ -26,8 +33,6 @@ __all__ = [
     "rounding_of_inputs",
     "steps_connected",
 ]
-
-_UNIT = np.finfo(float).eps / 2
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -59,7 +64,7 @@ class Proof:
 
 def rounding_of_inputs(v: Array, unknowns: int) -> Array:
     """How far an input may be from the value it stands for, (B, p): conversion of units."""
-    input_radius: Array = 2.0 * _UNIT * np.abs(v[:, unknowns:])
+    input_radius: Array = 2.0 * UNIT_ROUNDOFF * np.abs(v[:, unknowns:])
     return input_radius
 
 
@@ -173,7 +178,7 @@ def _radii(block: Block, place: Expansion, error_bound: Array, fitted: bool = Fa
         majorant = Majorant(place, error_bound[:, block.variables[n:]])
         if fitted:
             weights = majorant.fitted(weights)
-        return radii(majorant.bounds(weights), weights)
+        return weighted_radii(majorant.bounds(weights), weights)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from linkwork.foundation.errors import InputError
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.linkage import Linkage
 from linkwork.viewer.live.requests import MovePoint
 from linkwork.viewer.live.solvable import Solvable
 

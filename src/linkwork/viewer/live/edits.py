@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from functools import singledispatch
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import canonical, find_spelling
+from linkwork.foundation.names import GROUND, canonical, find_spelling
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import GROUND, PART_KINDS, Linkage
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.quantities import Quantity, quantity_named
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import requests as ask
@@ -271,7 +272,7 @@ def _(edit: ask.AddPart, text: TextEdits, before: Before) -> Followed:
 @applied.register
 def _(edit: ask.RemovePart, text: TextEdits, before: Before) -> Followed:
     names: list[str] = []
-    for table in PART_KINDS:
+    for table in PARTS:
         for k, row in text.entries(table):
             name = part_name(row)
             if canonical(edit.name) == canonical(name):

@@ -21,6 +21,7 @@ from linkwork.viewer.live.history import History
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
 from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.motion_picture import MotionPicture
+from linkwork.viewer.live.palette import PALETTE
 from linkwork.viewer.live.solvable import Read, Solvable
 
 __all__ = ["GivenUpError", "Workbench"]
@@ -95,9 +96,7 @@ class Workbench:
 
     def opened(self) -> Events:
         """Everything that a page needs to begin."""
-        self._end_drag()
-        conflict = [] if self._conflict is None else [self._conflict]
-        return [self._state(), *self._solved(), *conflict]
+        return [tell.PaletteShown(parts=PALETTE), *self._everything()]
 
     def handle(self, request: ask.Request) -> Events:
         """Carry out a request and send its events; wrong requests are answered, not raised."""
@@ -176,7 +175,7 @@ class Workbench:
         if drag is None or getattr(request, "live", False):
             return []
         self._end_drag()
-        return [] if drag.latest is None else self.opened()
+        return [] if drag.latest is None else self._everything()
 
     @_handle.register
     def _(self, request: ask.Together) -> Events:
@@ -244,6 +243,12 @@ class Workbench:
         return [telling.newton_shown(shown, guess, mechanism.guessed_points())]
 
     # The text and what is solved from it
+
+    def _everything(self) -> Events:
+        """The file and its motion."""
+        self._end_drag()
+        conflict = [] if self._conflict is None else [self._conflict]
+        return [self._state(), *self._solved(), *conflict]
 
     def _before(self) -> Before:
         """The mechanism as it is, with its points where the start closes."""
