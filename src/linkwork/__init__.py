@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from linkwork.mechanism.part.curve import Curve as Curve
     from linkwork.mechanism.part.cylinder import Cylinder as Cylinder
     from linkwork.mechanism.part.gear import Gear as Gear
+    from linkwork.mechanism.part.noncircular_gear import NoncircularGear as NoncircularGear
     from linkwork.mechanism.part.rack import Rack as Rack
     from linkwork.mechanism.part.rolling import Rolling as Rolling
     from linkwork.mechanism.part.slider import Slider as Slider

@@ -254,3 +254,66 @@ def test_a_link_between_the_centres_of_a_rolling_wheel_is_one_too_many() -> None
     assert problem.message == (
         '"arm" carries both centres O and C already: two wheels on an arm are [[gears]]'
     )
+
+
+NONCIRCULAR = """\
+format = 1
+[points]
+O = [0, 0]
+P = [100, 0]
+[links]
+ground = ["O", "P"]
+first = ["O"]
+second = ["P"]
+[[noncircular_gears]]
+name = "mesh"
+wheels = ["first", "second"]
+centers = ["O", "P"]
+LAW
+[input]
+link = "first"
+"""
+
+
+@pytest.mark.parametrize(
+    ("law", "message"),
+    [
+        ("", "needs one of law, table and pitch_curve, it has none of them"),
+        (
+            'law = "-phi"\ntable = [[0, 0], [90, -90], [180, -180], [270, -270], [360, -360]]',
+            "needs one of law, table and pitch_curve, it has law and table",
+        ),
+        ('law = "-psi"', 'column 2: "psi" is not defined (dimensions: phi)'),
+        ('law = "phi"', "does not fall everywhere: external gears turn against each other"),
+        (
+            'law = "-phi*0.7071"',
+            "turns the second wheel by -0.7071 of a turn while the first one turns once: that is "
+            "no ratio of whole numbers up to 12, so the pitch curves do not close",
+        ),
+        (
+            'law = "-2*phi - 20*sin(phi)"',
+            "turns the second wheel 2 times while the first one turns 1 times, but not alike: its "
+            "pitch curve does not close",
+        ),
+        (
+            "table = [[0, 0], [90, -90], [180, -180], [270, -270], [350, -360]]",
+            "covers 350: one turn of the first wheel is 360",
+        ),
+        (
+            "table = [[0, 0], [90, -90], [80, -180], [270, -270], [360, -360]]",
+            "the first angle must rise, the second must fall",
+        ),
+        (
+            "pitch_curve = [[110, 0], [0, 50], [-50, 0], [0, -50]]",
+            "reaches beyond the other centre, 100 away",
+        ),
+        (
+            "pitch_curve = [[50, 0], [40, 0], [30, 10], [35, -5]]",
+            "is not seen in one direction only once from its centre",
+        ),
+    ],
+)
+def test_non_circular_gears_that_cannot_roll_are_refused(law: str, message: str) -> None:
+    with pytest.raises(lw.MechanismError) as caught:
+        _ = lw.loads(NONCIRCULAR.replace("LAW", law)).model
+    assert any(problem.message.startswith(message) for problem in caught.value.problems)

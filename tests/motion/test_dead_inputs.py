@@ -269,8 +269,8 @@ def test_too_many_loops_are_a_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("linkwork.motion.circuit.dead_inputs._MOST_PATHS", 6)
     found = dead_inputs_of(lw.example("double-four-bar"))
     assert found.reason == (
-        "the equations of θ4, θ5 depend on 2 loops; their dead points would take 20 paths, more "
-        "than the 6 that are followed"
+        "the equations of θ4, θ5 depend on 2 loops; their dead points would take 20 paths, "
+        "more than the 6 that are followed"
     )
     assert [count.bound for count in found.counts] == [6]
 

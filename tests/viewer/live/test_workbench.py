@@ -21,8 +21,8 @@ from tests.viewer.live.conftest import FOUR_BAR
 from tests.viewer.unpacking import unpacked
 
 TITLES = [
-    "Pin in slot", "Slider", "Cylinder", "Weld", "Gear pair", "Belt or chain", "Rack and pinion",
-    "Rolling wheel", "Cam", "Curve", "Spring",
+    "Pin in slot", "Slider", "Cylinder", "Weld", "Gear pair", "Non-circular gears", "Belt or chain",
+    "Rack and pinion", "Rolling wheel", "Cam", "Curve", "Spring",
 ]  # fmt: skip
 
 

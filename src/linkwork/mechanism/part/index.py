@@ -14,6 +14,7 @@ from linkwork.mechanism.part.cam import Cam
 from linkwork.mechanism.part.curve import Curve
 from linkwork.mechanism.part.cylinder import Cylinder
 from linkwork.mechanism.part.gear import Gear
+from linkwork.mechanism.part.noncircular_gear import NoncircularGear
 from linkwork.mechanism.part.part import Part
 from linkwork.mechanism.part.rack import Rack
 from linkwork.mechanism.part.rolling import Rolling
@@ -34,6 +35,7 @@ class _Tables:
     cylinders: tuple[Cylinder, ...] = ()
     welds: tuple[Weld, ...] = ()
     gears: tuple[Gear, ...] = ()
+    noncircular_gears: tuple[NoncircularGear, ...] = ()
     belts: tuple[Belt, ...] = ()
     racks: tuple[Rack, ...] = ()
     rolling: tuple[Rolling, ...] = ()
