@@ -24,7 +24,7 @@ __all__ = ["LinkworkKernel", "rows_of_one"]
 def rows_of_one(march: March, t: Array) -> RowsOfOne:
     """The rows of a family of one design, to be computed again and again."""
     steps = import_module("linkwork.kernels.march.sweep_kernel").Steps()
-    return march.kernel.alone(
+    return march.kernel.prepare_single(
         march.coefficients,
         march.guess[:, 0],
         float(march.start[0]),

@@ -104,7 +104,7 @@ def _case(rng: np.random.Generator, placed: Placed, number: int) -> Case | None:
     if number % 3 == 2:  # in fitted weights, as a step is proved
         place = expansion(table, v[None, :], jacobian, matrix[None])
         weights = table.variable_scale.copy()
-        fitted = Majorant(place, known[None, :]).fitted(weights[:n])[0]
+        fitted = Majorant(place, known[None, :]).fit_weights(weights[:n])[0]
         weights[:n] = fitted / (fitted / weights[:n]).max()  # their ratios are what matters
         table = replace(table, variable_scale=weights)
         placed = replace(placed, table=table)

@@ -85,15 +85,15 @@ def test_what_makes_the_list_complete_is_told() -> None:
     no_limits = lw.example("rapier-drive-limited").circuits(certify=False)
     assert no_limits.completeness is Completeness.WITH_PROBABILITY_ONE
     assert no_limits.message == (
-        "every circuit is listed, with probability one: all dead points were found, and all "
-        "configurations at 2 input values, at least one between any two of them"
+        "the list of circuits is complete with probability one: all dead points were found, and "
+        "all configurations at 2 input values, at least one between any two of them"
     )
     assert no_limits.seeded == 2
     free = lw.example("four-bar").circuits(certify=False)
     assert (free.completeness, free.seeded) == (Completeness.WITH_PROBABILITY_ONE, 1)
     assert free.message == (
-        "every circuit is listed, with probability one: all dead points were found, and all "
-        "configurations at the guess's input (there is no dead point)"
+        "the list of circuits is complete with probability one: all dead points were found, and "
+        "all configurations at the guess's input (there is no dead point)"
     )
 
 
@@ -105,8 +105,8 @@ def test_where_dead_points_may_be_missing_the_reason_is_told() -> None:
     ).circuits(certify=False)
     assert kite.completeness is Completeness.NOT_PROVED
     assert kite.message.endswith(
-        f"{kite.seeded} input values looked at; one that lies between two of them would be missing "
-        "(p, q can move while the input stands still, as at t = 0 deg)"
+        f"{kite.seeded} input values; a circuit that lies between two of them would be missing "
+        "(p, q can move while the input is constant, as at t = 0 deg)"
     )
 
 
@@ -117,8 +117,8 @@ def test_lists_that_fail_in_an_interval_are_tried_elsewhere_then_told(
     found = lw.example("rapier-drive-limited").circuits(certify=False)
     assert found.completeness is Completeness.NOT_PROVED
     assert found.message == (
-        "the circuits found at 6 input values looked at; one that lies between two of them would "
-        "be missing"
+        "the circuits found at 6 input values; a circuit that lies between two of them would be "
+        "missing"
     )
 
 

@@ -16,7 +16,7 @@ import pytest
 from linkwork.api import example_text, load
 from linkwork.cli import output_file
 from linkwork.foundation.errors import InputError
-from linkwork.results.table import table_of
+from linkwork.results.motion_table import table_of
 from tests.cli.conftest import Run
 
 

@@ -54,8 +54,8 @@ Position found
   residual     0
   iterations   5
   condition    1.00
-  certificate  none: plain equations have no known bound of their curvature, so
-               nothing is proved
+  certificate  none: plain equations have no known bound on their curvature, so
+               there is no proof
 
 Newton-Raphson from the guess
 
@@ -91,7 +91,7 @@ branches
                    (coupler and rocker in line)
   maximum          mu = 114.9530208 deg at crank = 180 deg
   minimum          mu = -114.9530208 deg at crank = 180 deg
-  circuit          closed: the motion comes back to where it began
+  circuit          closed: the motion returns to its start
   certified        70
 """
 
@@ -106,10 +106,10 @@ crank from 0 to 360 deg by 30: 13 positions
   change point     crank = 360 deg, where loop "O2 A B O4" can close in two ways
                    (coupler and rocker in line)
   certified        5
-  not certified    3: too near to a singular position: rounding is larger than
-                   what the proof allows
-  not certified    5: the position is proved; at a change point before it
-                   nothing but the chosen way of going on decides the branch
+  not certified    3: too close to a singular position: rounding errors exceed
+                   the margin of the proof
+  not certified    5: the position is proved; at a change point before it, the
+                   chosen policy decides the branch
 """
 
 CHECKED = """\
@@ -164,7 +164,7 @@ RAPIER = """\
 """
 
 EXTREMUM = """\
-  chain       not known: plain equations tell nothing of links and joints
+  chain       not known: plain equations do not determine links and joints
 
 """
 
@@ -318,7 +318,7 @@ def test_sweep_summary_names_what_failed_and_where_the_motion_ends(run: Run) -> 
     done = run("sweep", "double-rocker.toml")
     assert done.stdout.startswith(SWEPT)
     assert done.stdout.endswith(
-        "\nThe whole table: --csv double-rocker.csv. A picture: --draw double-rocker.png.\n"
+        "\nFor the table add --csv double-rocker.csv, for a picture --draw\ndouble-rocker.png.\n"
     )
 
 
@@ -334,7 +334,11 @@ def test_sweep_through_dead_points_tells_of_the_whole_circuit(run: Run) -> None:
 
 @pytest.mark.parametrize(
     ("policy", "said"),
-    [("straight", "; went straight on\n"), ("turn", "; turned off\n"), ("stop", "")],
+    [
+        ("straight", "; went straight on\n"),
+        ("turn", "; turned onto the other branch\n"),
+        ("stop", ""),
+    ],
 )
 def test_sweep_tells_how_the_motion_went_on_at_change_points(
     run: Run, policy: str, said: str
@@ -394,7 +398,7 @@ def test_ranges_leave_out_rows_that_were_not_found(run: Run) -> None:
 def test_sweep_without_a_start_says_why_and_what_to_do(run: Run) -> None:
     text = " ".join(run("sweep", "open.toml").stdout.split())
     assert 'no start 361 at 0 to 360 deg why loop "O2 A B O4" cannot be closed' in text
-    assert " remedy it just closes with " in text
+    assert " remedy the loops just close with " in text
     assert text.endswith("To see the iterations: linkwork solve open.toml --show-steps")
 
 
@@ -440,8 +444,8 @@ def test_check_says_what_a_textbook_says(run: Run, folder: Path, name: str, line
 
 def test_check_of_a_loop_that_cannot_close_has_no_grashof_type(run: Run) -> None:
     assert (
-        "  type        no closed loop: crank is 100 mm longer than the other three\n"
-        "              together\n"
+        "  type        no closed loop: crank is 100 mm longer than the sum of the\n"
+        "              other three\n"
     ) in run("check", "open.toml").stdout
 
 

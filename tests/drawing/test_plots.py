@@ -287,8 +287,8 @@ def test_an_unknown_theme_is_refused_with_those_that_exist() -> None:
 
 
 def test_a_method_without_a_registered_presenter_is_a_lookup_error() -> None:
-    with pytest.raises(LookupError, match=r"^no presenter is registered for Motion\.table$"):
-        presenter(lw.Motion.table)
+    with pytest.raises(LookupError, match=r"^no presenter is registered for Motion\.trace$"):
+        presenter(lw.Motion.trace)
 
 
 def test_a_motion_read_back_in_a_new_process_is_plotted(tmp_path: Path) -> None:

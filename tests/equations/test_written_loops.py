@@ -265,8 +265,9 @@ def test_loops_that_cannot_close_name_the_gap_that_remains() -> None:
     assert position.status is lw.Status.CANNOT_CLOSE
     # from A = (1, 0) to C = (10, 0) rod and rocker reach 6 of 9
     assert position.message == (
-        'loop "O A B C" cannot be closed at crank = 0°: nearest to the guess a gap of 3 mm '
-        'remains; it just closes with "O A" = 4 mm (3 longer) or "A B" = 7 mm (3 longer) or '
-        '"C B" = 5 mm (3 longer); no input value was found at which it could be assembled; '
+        'loop "O A B C" cannot be closed at crank = 0°: near the guess a gap of at least 3 mm '
+        'remains; the loops just close with "O A" = 4 mm (3 longer) or "A B" = 7 mm (3 longer) or '
+        '"C B" = 5 mm (3 longer); no input value was '
+        "found at which the mechanism can be assembled; "
         "no configuration exists there"
     )

@@ -94,23 +94,23 @@ def test_the_cams_are_right_as_they_stand() -> None:
         ),
         (
             program("cycloidal", 40, 12, 30, 'contact = "flat"'),
-            "line 35  cams[2].segments  undercut the cam 21.75 deg after they begin: its outline "
-            "would cut into itself; take a larger base circle",
+            "line 35  cams[2].segments  undercut the cam 21.75 deg after their start: its "
+            "outline would intersect itself; use a larger base circle",
         ),
         (
             program("cycloidal", 40, 12, 25, 'contact = "roller"\nradius = 15'),
-            "line 35  cams[2].segments  undercut the cam 30.5 deg after they begin: its outline "
-            "would cut into itself; take a larger base circle or a smaller roller",
+            "line 35  cams[2].segments  undercut the cam 30.5 deg after their start: its outline "
+            "would intersect itself; use a larger base circle or a smaller roller",
         ),
         (
             f'profile = {HOLLOW}\ncontact = "flat"',
-            "line 34  cams[2].profile  is hollow at (20.01, 19.99): a flat face bridges it; round "
-            "the outline there",
+            "line 34  cams[2].profile  is concave at (20.01, 19.99), where a flat face cannot "
+            "follow: make it convex",
         ),
         (
             f'profile = {HOLLOW}\ncontact = "roller"\nradius = 60',
-            "line 34  cams[2].profile  is too hollow at (20.01, 19.99): its radius there is 42.1, "
-            "smaller than that of the roller",
+            "line 34  cams[2].profile  is too concave at (20.01, 19.99): its radius of "
+            "curvature is 42.1, smaller than that of the roller",
         ),
     ],
 )
@@ -138,8 +138,8 @@ def test_a_cam_that_cannot_move_its_slider_so_is_refused(lift: str, message: str
         ),
         (
             program("harmonic", 20, 20, 40, 'contact = "flat"'),
-            "line 28  cams[1].segments  undercut the cam 14 deg after they begin: its outline "
-            "would cut into itself; take a larger base circle",
+            "line 28  cams[1].segments  undercut the cam 14 deg after their start: its outline "
+            "would intersect itself; use a larger base circle",
         ),
     ],
 )

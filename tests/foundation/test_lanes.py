@@ -139,13 +139,13 @@ def test_what_is_not_done_goes_on_with_the_leader_and_comes_back() -> None:
     rest = lanes.rest_of(x < 2.5)
     assert rest is not None
     assert rest.lanes.tolist() == [1, 2, 3]
-    part = rest.narrowed(x)
+    part = rest.narrow(x)
     assert part < 3.5  # and the fourth
     rest.leave()
-    whole: Any = rest.widened(x, 10.0 * part)
+    whole: Any = rest.widen(x, 10.0 * part)
     assert whole.values.tolist() == [1.0, 20.0, 30.0, 40.0, 5.0]
     assert consensus.agreeing.tolist() == [True, True, True, False, False]
-    assert rest.narrowed(7.0) == 7.0
+    assert rest.narrow(7.0) == 7.0
     assert lanes.rest_of(True) is None
 
 

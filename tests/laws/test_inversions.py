@@ -256,7 +256,7 @@ def test_what_cannot_be_inverted_is_refused_with_the_reason() -> None:
             lw.example("newton-extremum"),
             "crank",
             "Newton-Raphson starting at a local extremum is given by equations, and cannot be "
-            "inverted without links and joints: plain equations tell nothing of links and joints",
+            "inverted without links and joints: plain equations do not determine links and joints",
         ),
     ]
     for mechanism, link, message in refused:

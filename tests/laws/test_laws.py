@@ -13,8 +13,8 @@ import linkwork as lw
 from linkwork.foundation.angles import AngleUnit
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.index import PARTS
+from linkwork.results.motion_table import table_of
 from linkwork.results.quantity import Kind
-from linkwork.results.table import table_of
 from tests.laws.agreement import CLOSE, agree, angles_of, internal, series_of
 from tests.laws.mechanisms import NAMES, mechanism_of, motion_of, size_of
 from tests.laws.transforms import mirrored, scaled, turned

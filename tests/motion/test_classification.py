@@ -201,7 +201,7 @@ def _slider_crank(crank: float, rod: float, offset: float, pivot: float = 0.0) -
                        "s + e > l by 0.5 mm"),
         (3, 1, 0.5, 0, "slider-rocker (hand pump): the driven link cannot turn fully, "
                        "s + e < l by 1.5 mm"),
-        (1, 3, 4.5, 0, "no closed loop: the pins beside the slide are 0.5 mm further apart than "
+        (1, 3, 4.5, 0, "no closed loop: the offset pins are 0.5 mm further apart than "
                        "crank and rod reach"),
         (1, 3, 2, 0, "slider-crank: change point, s + e = l (margin 0 mm)"),
         (2, 2, 0, 0, "isosceles slider-crank: change point, s + e = l (margin 0 mm)"),
@@ -406,7 +406,7 @@ def test_an_input_that_holds_no_joint_leaves_no_assur_group() -> None:
     """The coupler's angle against ground is no joint of the four-bar."""
     found = _classified(_four_bar(3, 1, 2.5, 2, link="coupler"))
     assert [group.text for group in found.groups] == [
-        "no Assur group: an input holds the angle of a link that is not at its pin"
+        "not an Assur group: an input drives the angle of a link away from its pin"
     ]
     assert found.class_number is None
 
@@ -415,7 +415,7 @@ def test_plain_equations_have_no_classification() -> None:
     mechanism = lw.example("newton-extremum")
     report = mechanism.check()
     assert report.classification is None
-    assert report.unclassified == "plain equations tell nothing of links and joints"
+    assert report.unclassified == "plain equations do not determine links and joints"
     assert block_groups(mechanism.model, as_linkage(mechanism.model)) == (None,)
 
 

@@ -66,7 +66,7 @@ def test_a_truss_of_three_loops_is_proved_by_its_laman_number() -> None:
     found = truss("FCpv?", np.random.default_rng(1)).configurations()
     assert found.completeness is Completeness.PROVED
     assert found.message.endswith(
-        "exist at most; b1, b2, b3, b4, b5, b6: "
+        "largest possible number; b1, b2, b3, b4, b5, b6: "
         "16 complex solutions, at most 16 by the Laman number of the links"
     )
     (paths,) = found.to_dict()["paths"]
@@ -431,7 +431,9 @@ def test_solve_takes_a_configuration_by_name() -> None:
     stuck = looped({"l": "4*e^(i*q) + 2*e^(i*a) = 4 + 1.5*e^(i*b)"}, a=10, b=60)
     position = stuck.solve(90, configuration="open")
     assert position.status is lw.Status.CANNOT_CLOSE
-    gap = 'loop "l" cannot be closed at q = 90°: nearest to the guess a gap of 2.15685 mm remains'
+    gap = (
+        'loop "l" cannot be closed at q = 90°: near the guess a gap of at least 2.15685 mm remains'
+    )
     assert position.message.startswith(gap)
     assert position.message.endswith("; no configuration exists there")
     assert position.failure is not None
@@ -446,7 +448,7 @@ def test_solve_takes_a_configuration_by_name() -> None:
 def test_a_configuration_has_no_steps_from_the_guess() -> None:
     options: tuple[dict[str, Any], ...] = ({"from_guess": True}, {"with_steps": True})
     for option in options:
-        with pytest.raises(lw.InputError, match=r"^a configuration has no steps from the guess"):
+        with pytest.raises(lw.InputError, match=r"^configuration= has no steps from a guess"):
             lw.example("four-bar").solve(60, configuration="open", **option)
 
 

@@ -108,7 +108,9 @@ def test_a_turn_that_a_law_does_not_repeat_is_a_change() -> None:
     assert not table.repeats_after(turns)
 
 
-NOT_LISTED = "not proved: these equations have no list of configurations; the equations of {} {}"
+NOT_LISTED = (
+    "not proved: configurations of plain equations cannot be listed; the equations of {} {}"
+)
 
 
 @pytest.mark.parametrize(

@@ -532,42 +532,41 @@ def test_every_reason_for_a_missing_certificate_is_reached(monkeypatch: pytest.M
     assert [(reason.name, reason.value) for reason in reasons] == [
         (
             "CERTIFIED",
-            "a true position is proved to lie within the radius, no other near it, "
-            "and the motion from the start to it stays on one branch",
+            "proved: a true position lies within the radius, no other near it, and the motion "
+            "from the start stays on one branch",
         ),
         (
             "MOTION_NOT_PROVED",
-            "the position is proved, but not that the motion from the start to it stays on one "
-            "branch",
+            "the position is proved, but not that the motion from the start stays on one branch",
         ),
         ("NO_POSITION", "there is no position to certify"),
         (
             "POSITION_NOT_PROVED",
-            "too near to a singular position: rounding is larger than what the proof allows",
+            "too close to a singular position: rounding errors exceed the margin of the proof",
         ),
         (
             "NO_BOUND",
-            "plain equations have no known bound of their curvature, so nothing is proved",
+            "plain equations have no known bound on their curvature, so there is no proof",
         ),
         ("NOT_ASKED", "certificates were switched off"),
         (
             "BRANCH_CHOSEN",
-            "the position is proved; at a change point before it nothing but the chosen way of "
-            "going on decides the branch",
+            "the position is proved; at a change point before it, the chosen policy decides the "
+            "branch",
         ),
         (
             "SUBSET_CERTIFIED",
-            "proved for the mechanism without its redundant links; that these fit holds to "
-            "rounding, not proved",
+            "proved for the mechanism without its redundant links; these fit to rounding, "
+            "without proof",
         ),
         (
             "CONFIGURATION_CERTIFIED",
-            "a true position is proved to lie within the radius, and no other near it",
+            "proved: a true position lies within the radius, and no other near it",
         ),
         (
             "PROOF_TOO_LONG",
-            "the position is proved; that the motion from the start to it stays on one branch "
-            "would take more steps of proof than are tried",
+            "the position is proved; the proof that the motion from the start stays on one "
+            "branch would take too many steps",
         ),
     ]
     assert set(reasons) == set(Certification)

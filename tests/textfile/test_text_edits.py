@@ -94,7 +94,7 @@ def test_what_is_not_there_is_said_with_its_key() -> None:
         with pytest.raises(lw.UnknownNameError) as caught:
             wrong(("points", "Z Z"))
         assert str(caught.value) == 'points."Z Z" is not in the file'
-    with pytest.raises(lw.InputError, match="nothing can be put there"):
+    with pytest.raises(lw.InputError, match="no value can be written there"):
         text.put(("sliders", 5, "offset"), 1)
     with pytest.raises(lw.InputError, match=r"is a single table: write it as \[\[input\]\]"):
         text.append("input", {"link": "rod"})

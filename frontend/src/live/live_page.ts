@@ -224,7 +224,7 @@ export class LivePage {
     const gap = `${trimmed(shortNumber(event.gap, 4))} ${unit}`.trim();
     const remedies = Object.entries(event.remedies).map(([name, needed]) => {
       const now = this.file!.numbers.find((one) => one.name === name)?.value ?? needed;
-      const value = Number((needed + 0.03 * (needed - now)).toPrecision(6)); // a little beyond where it just closes
+      const value = Number((needed + 0.03 * (needed - now)).toPrecision(6)); // a little beyond where the loops just close
       const rounded = trimmed(shortNumber(value));
       const set = (): void => {
         this.connection.ask({ kind: "set_number", name, value });

@@ -1,4 +1,4 @@
-"""Many designs of one mechanism at once: what varies, and the coefficients of their equations."""
+"""Families: many designs of one mechanism at once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The equations of many designs: the builder of one design, run on lanes.
+"""Build the equations of many designs by running the builder of one design on arrays.
 
 A pass builds all designs that are left, with one of them in the lead (the mechanism itself in the
 first pass); what it finds holds for the designs in which every decision is the leader's. Most

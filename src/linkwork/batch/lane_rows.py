@@ -1,4 +1,4 @@
-"""Designs over a table of inputs by the compiled march; what it leaves open, one by one."""
+"""Solve designs over a table of inputs by compiled kernels, and the rest one by one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Between which inputs every design of a family can move."""
+"""The input limits of every design of a family."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Designs whose start lies beside the table's path of inputs: led to it first, all together."""
+"""Move designs whose start is off the table's path of inputs to that path."""
 
 from __future__ import annotations
 

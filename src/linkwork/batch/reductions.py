@@ -1,4 +1,4 @@
-"""From the values of a quantity at all rows to one number per design."""
+"""Reductions: one number per design from the values of a quantity at all rows."""
 
 from __future__ import annotations
 

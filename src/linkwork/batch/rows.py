@@ -1,4 +1,4 @@
-"""What is known of designs over the rows of a table."""
+"""The solved rows of all designs, with their evidence."""
 
 from __future__ import annotations
 

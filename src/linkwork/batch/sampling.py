@@ -1,4 +1,4 @@
-"""Plans: which values the dimensions of a family take.
+"""Plans: the values of the varied dimensions of a family.
 
 A plan is a mapping of arrays, as :func:`linkwork.batch.designs_of` takes, that can also be made
 piece by piece: ``plan.chunk(k)`` needs no other chunk, so a study can be spread over any number of

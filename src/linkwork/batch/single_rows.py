@@ -1,4 +1,4 @@
-"""What one design says of its rows and limits that is kept when it was swept by itself."""
+"""Rows and limits of a design that was swept alone."""
 
 from __future__ import annotations
 

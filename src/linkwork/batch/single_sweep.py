@@ -1,4 +1,4 @@
-"""Designs that go alone: by the ordinary sweep, one after the other."""
+"""Sweep single designs one after the other."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ from linkwork.export import csv_lines, workbook_of
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.dimensions import Number
 from linkwork.results.motion import Motion
-from linkwork.results.table import table_of
+from linkwork.results.motion_table import table_of
 
 __all__ = ["sweep"]
 

@@ -1,4 +1,4 @@
-"""Writing results for other programs."""
+"""Export of results to files of other programs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The derivative of a formula as a formula, for showing; numbers come from jets."""
+"""The derivative of a formula as a formula, for display; jets compute the numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading a formula: a small recursive-descent grammar of our own.
+"""Parse a formula by recursive descent.
 
 ::
 

@@ -1,4 +1,4 @@
-"""The value of a formula in plain numbers."""
+"""Evaluate a formula in plain numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Room that begins where a cache line does: vector instructions take a third longer across two."""
+"""Arrays aligned to cache lines, without which vector instructions take a third longer."""
 
 from __future__ import annotations
 

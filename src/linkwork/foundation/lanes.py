@@ -1,4 +1,4 @@
-"""Numbers of many designs at once, for code that was written for one design.
+"""Numbers of many designs at once, for code written for one design.
 
 The code that builds a mechanism computes with floats and complex numbers. :class:`Lanes` stand for
 such a number in n designs; arithmetic goes lane by lane. Where the code asks *whether* something
@@ -458,13 +458,13 @@ class Rest:
         self.lanes = np.concatenate([[self.whole.leader], np.flatnonzero(wanted)])
         self.part = Consensus(len(self.lanes))
 
-    def narrowed(self, number: _Number) -> _Number:
+    def narrow(self, number: _Number) -> _Number:
         """A number in these lanes."""
         if not is_batched(number):
             return number
         return cast(_Number, Lanes(number.values[self.lanes], self.part))
 
-    def widened(self, whole: _Number, part: _Number) -> _Number:
+    def widen(self, whole: _Number, part: _Number) -> _Number:
         """A number of all lanes with what has become of it in these."""
         values = np.array(np.broadcast_to(_bare(whole), self.whole.agreeing.shape))
         values[self.lanes] = _bare(part)

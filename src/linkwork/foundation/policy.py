@@ -1,4 +1,4 @@
-"""What to do where two branches cross."""
+"""The policy at a change point, where two branches cross."""
 
 from __future__ import annotations
 

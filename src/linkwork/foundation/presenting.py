@@ -1,4 +1,4 @@
-"""Results call the functions that draw them; the layers above results register those functions."""
+"""Results call the functions that show them; a layer above results registers those functions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Work shared out among threads, of which the one that asks is the first."""
+"""Work shared among threads; the calling thread takes part."""
 
 from __future__ import annotations
 

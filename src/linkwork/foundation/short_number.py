@@ -1,4 +1,4 @@
-"""Numbers for people: 180 instead of 180.00000000000003."""
+"""Short decimal numbers: 180 instead of 180.00000000000003."""
 
 from __future__ import annotations
 

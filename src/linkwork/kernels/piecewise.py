@@ -68,7 +68,7 @@ class Piecewise:
             self, powers=factor * self.powers, sines=self.sines * np.array([factor, 1.0, 1.0])
         )
 
-    def _placed(self, x: Array) -> tuple[IndexArray, Array, Array]:
+    def _locate(self, x: Array) -> tuple[IndexArray, Array, Array]:
         """Piece of each x, t inside it, and how far x lies beyond an open end."""
         low, high = self.breaks[0], self.breaks[-1]
         if self.periodic:
@@ -84,7 +84,7 @@ class Piecewise:
     def jet(self, x: Array) -> tuple[Array, Array, Array]:
         """Value, first and second derivative at any x; the second from the right at a joint."""
         shape, x = np.shape(x), np.ravel(np.asarray(x, dtype=float))
-        piece, t, beyond = self._placed(x)
+        piece, t, beyond = self._locate(x)
         c = self.powers[piece]
         value, first, second = np.zeros_like(t), np.zeros_like(t), np.zeros_like(t)
         for k in range(c.shape[1] - 1, -1, -1):
@@ -155,7 +155,7 @@ class Piecewise:
 
     def rounding(self, x: Array) -> tuple[Array, Array]:
         """Bounds of the error of computing the value and the first derivative at x (B,)."""
-        piece, t, beyond = self._placed(x)
+        piece, t, beyond = self._locate(x)
         c, degrees = np.abs(self.powers[piece]), np.arange(self.powers.shape[1])
         t = np.abs(t)
         powers = t[:, None] ** degrees

@@ -55,7 +55,7 @@ class Description:
     Parameters
     ----------
     name : str
-        What the mechanism is called.
+        Name of the mechanism.
     length : str
         Unit of every length; nothing is converted.
     angle : AngleUnit

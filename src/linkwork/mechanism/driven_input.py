@@ -11,22 +11,36 @@ __all__ = ["Input"]
 
 @dataclass(frozen=True, kw_only=True)
 class Input:
-    """What is driven, and over which values.
+    """An input: the driven quantity, its range and its speed.
 
-    Exactly one of ``link`` (its angle), ``joint`` (the angle between the two links of a pin),
-    ``slider``, ``cylinder`` (their displacement or length) or ``variable`` (a name of the
-    equations) is given.
+    Exactly one of ``link``, ``joint``, ``slider``, ``cylinder`` and ``variable`` is given.
 
     Parameters
     ----------
+    link : str, optional
+        The link whose angle is driven.
+    joint : str, optional
+        The pin between two links whose relative angle is driven.
+    slider, cylinder : str, optional
+        The slider or slot whose displacement, or the cylinder whose length, is driven.
+    variable : str, optional
+        The driven variable of loop equations.
     relative_to : str, optional
-        With ``link``: the link against which the angle is measured, ground unless given.
+        With ``link``: the link from which the angle is measured; by default ground.
     start, stop, step : number or formula, optional
-        The table's input values in the file's unit (``from``, ``to``, ``step`` in a file).
-        An angle without them goes once around by one degree.
+        The input values in file units (``from``, ``to``, ``step`` in a file). An angle without them
+        makes one turn in steps of one degree.
     speed : str or number, optional
-        ``"300 rpm"``, ``"25 rad/s"``, ``"90 deg/s"``, for lengths ``"50 mm/s"``;
-        a bare number is the file's unit per second.
+        ``"300 rpm"``, ``"25 rad/s"``, ``"90 deg/s"``, for lengths ``"50 mm/s"``; a number is in
+        file units per second.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Input(link="crank", start=0, stop=90, step=30, speed="300 rpm").column
+    'crank'
+    >>> lw.Input(link="stick", relative_to="boom").column
+    'stick-boom'
     """
 
     link: str | None = None

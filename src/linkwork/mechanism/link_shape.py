@@ -71,8 +71,8 @@ class Distance:
     def shown(self, z: Mapping[str, complex]) -> str:
         return f"|{self.a}{self.b}| = {abs(z[self.b] - z[self.a]):.12g}"
 
-    def narrowed(self, rest: Rest) -> Distance:
-        return replace(self, length=rest.narrowed(self.length))
+    def narrow(self, rest: Rest) -> Distance:
+        return replace(self, length=rest.narrow(self.length))
 
 
 @dataclass(frozen=True)
@@ -109,8 +109,8 @@ class VertexAngle:
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
         return f"an angle of {degrees(phase(rays)):.12g}° at {self.vertex}"
 
-    def narrowed(self, rest: Rest) -> VertexAngle:
-        return replace(self, angle=rest.narrowed(self.angle))
+    def narrow(self, rest: Rest) -> VertexAngle:
+        return replace(self, angle=rest.narrow(self.angle))
 
 
 Given = Distance | VertexAngle
@@ -347,12 +347,12 @@ def _gone_on(
     z: Mapping[str, complex], rows: Sequence[Given], steps: int, rest: Rest
 ) -> dict[str, complex]:
     """Further steps of the designs that are not done."""
-    own = {point: rest.narrowed(place) for point, place in z.items()}
+    own = {point: rest.narrow(place) for point, place in z.items()}
     try:
-        found = _gauss_newton(own, [row.narrowed(rest) for row in rows], steps, first=steps)
+        found = _gauss_newton(own, [row.narrow(rest) for row in rows], steps, first=steps)
     finally:
         rest.leave()
-    return {point: rest.widened(place, found[point]) for point, place in z.items()}
+    return {point: rest.widen(place, found[point]) for point, place in z.items()}
 
 
 def _slopes(z: Mapping[str, complex], rows: Sequence[Given]) -> list[list[float]]:

@@ -55,7 +55,7 @@ class Loops(_Equations):
         Complex equations by label: ``"a2*e^(i*θ12) + a3*e^(i*θ13) = d + a4*e^(i*θ14)"``.
         An angle stands in an exponent, a variable length as a factor; the rest are dimensions.
     guess : Mapping[str, number]
-        Estimates of all unknowns and the input value they belong to.
+        Estimates of all unknowns at one input value.
     points : Mapping[str, str], optional
         Points as formulas of the same kind; they make the mechanism drawable.
     links : Mapping[str, sequence of str], optional

@@ -1,4 +1,4 @@
-"""What was understood: loops, unknowns, blocks, mobility, and whether the start closes."""
+"""Check a mechanism: loops, unknowns, blocks, mobility, closure at the start."""
 
 from __future__ import annotations
 

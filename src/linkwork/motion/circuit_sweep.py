@@ -1,4 +1,4 @@
-"""Around the whole circuit: the rows of the branches beyond the dead points."""
+"""Sweep the whole circuit: the rows of the branches beyond the dead points."""
 
 from __future__ import annotations
 

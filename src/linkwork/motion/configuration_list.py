@@ -1,4 +1,4 @@
-"""Every way to put a mechanism together at one input value, as positions."""
+"""All configurations at one input value, as positions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A mechanism made ready as its description says, from the configuration that it names."""
+"""The model of a mechanism, started in the configuration that its description names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A mechanism as it is driven: its inputs move in lock-step, measured by the leading one."""
+"""The inputs of a mechanism, which move in lock-step along the leading one."""
 
 from __future__ import annotations
 

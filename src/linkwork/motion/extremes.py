@@ -1,4 +1,4 @@
-"""Limits of an output: positions at which a chosen quantity stands still while the input moves."""
+"""Extremes of an output: positions at which its derivative with respect to the input is zero."""
 
 from __future__ import annotations
 

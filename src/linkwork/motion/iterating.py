@@ -1,4 +1,4 @@
-"""Newton-Raphson made visible: from any guess, every iterate kept."""
+"""The iterates of Newton-Raphson from any guess."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rows right before a dead point and around change points, where the input leads no longer well.
+"""Rows close to dead points and change points, where the input is a poor parameter.
 
 Before a dead point the position is found with the variable that leads through it: its value at
 which the input has the value asked for. Around change points it lies on the way across them.

@@ -1,4 +1,4 @@
-"""Where a branch ends: dead points and change points, with the loop that locks and its links."""
+"""Limits of a branch: dead points and change points, with the locking loop and its links."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Degrees of freedom: counted by Grübler's formula, and by rank at a position; why they differ."""
+"""Mobility by Grübler's count and by rank, and why the two differ."""
 
 from __future__ import annotations
 
@@ -58,23 +58,23 @@ def grubler_count(linkage: Linkage) -> int:
 def _why(model: Model, v: Array, count: int, rank: int) -> str:
     """Why a rank and a count are not the same, from what the rank is beside the position."""
     if rank < count:
-        return "some links move in ways that the equations do not ask for"
+        return "some links have freedoms that do not occur in the equations"
     beside = _rank_beside(model, v)
     redundant = len(model.equations.redundant)
     if redundant and beside == rank:
         several = "conditions follow" if redundant > 1 else "condition follows"
         return (
             f"{redundant} {several} from the others, because of special lengths such as parallel "
-            "or equal links: it is overconstrained and moves all the same"
+            "or equal links: it is overconstrained, but it moves"
         )
     if beside is not None and beside < rank:
         return (
-            "at this position alone the constraints repeat each other, as they do at dead points "
-            f"and change points; beside it the rank gives {beside}"
+            "only at this position are the constraints dependent, as at dead points and change "
+            f"points; near it the rank gives {beside}"
         )
     return (
-        "at this position the constraints repeat each other, and no position was found beside it: "
-        "it may be able to move no more than infinitely little"
+        "at this position the constraints are dependent, and no position was found near it: its "
+        "motion may be infinitesimal only"
     )
 
 

@@ -1,4 +1,4 @@
-"""A mechanism made ready to be solved: description, equations, arrays."""
+"""The model of a mechanism: description, equations, arrays."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A mechanism that cannot close, put together as well as it will go."""
+"""The position nearest to closure of a mechanism whose loops do not close."""
 
 from __future__ import annotations
 

@@ -28,8 +28,8 @@ __all__ = [
 
 _HOPELESS = 1e12  # condition beyond which derivatives mean nothing
 _SINGULAR = (
-    "position found, at a dead point or change point: there its derivatives do not exist, "
-    "and a motion cannot start"
+    "position found at a dead point or change point, where its derivatives do not exist and no "
+    "motion can start"
 )
 
 

@@ -1,4 +1,4 @@
-"""Certificates of solved rows: each position, and the motion that leads to it from the start."""
+"""Certificates of solved rows: the position, and the motion from the start to it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The first position: Newton-Raphson from the guess at its own input value."""
+"""The start position: Newton-Raphson from the guess at its input value."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The table of a sweep as it fills: rows asked for, and rows of limits in their places."""
+"""The table of a sweep: requested rows, and rows of limits in their places."""
 
 from __future__ import annotations
 
@@ -209,7 +209,7 @@ class SweepTable:
             self._extra_t.append(here)
         return bool(fresh) or not len(same)
 
-    def finished(self) -> tuple[SolvedRows, BoolArray]:
+    def finish(self) -> tuple[SolvedRows, BoolArray]:
         """All rows in the table's order, and which of them were not asked for."""
         everywhere = [(p, k) for k, (end, _) in enumerate(self._ends) for p in self._places(end)]
         for place, k in sorted(everywhere):  # where nothing else is, whole turns away

@@ -109,7 +109,7 @@ def sweep_rows(model: Model, *, certify: bool = True) -> tuple[SolvedRows, tuple
     work = _begin_sweep(model, certify, options, policy, None, explained=False)
     if isinstance(work, Start):
         return _no_rows(model), ()
-    rows, added = work.tables[0].finished()
+    rows, added = work.tables[0].finish()
     asked = rows.take(np.flatnonzero(~added))
     return fitting(model, asked), work.branches[0].found.ends
 
@@ -133,7 +133,7 @@ def _begin_sweep(
     asked = Asked(t=rows[:, lead], inputs=rows, in_file_units=model.rows_in_file_units)
     entry = _onto_path(drive, start, asked.t, certify)
     if entry is None:
-        message = "no row of the table could be reached from the guess's own input values"
+        message = "no row of the table can be reached from the input values of the guess"
         return replace(start, message=message)
     work = _Sweep(drive, certify, Report(progress, entry[0].t, *_span(asked.t)))
     work.message = start.message
@@ -340,7 +340,7 @@ class _Sweep:
 
     def motion(self) -> Motion:
         """Everything in one result."""
-        first, *further = (table.finished() for table in self.tables)
+        first, *further = (table.finish() for table in self.tables)
         added = [first[1], *(np.ones(len(rows), dtype=bool) for rows, _ in further)]
         rows = SolvedRows.concatenate([first[0], *(rows for rows, _ in further)])
         motion = replace(

@@ -1,4 +1,4 @@
-"""The cycle of a design beside one whose cycle is known: while a dimension is being changed."""
+"""The cycle of a design, started from the cycle of a neighbouring design."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ _FAR = 1e9  # weighted size of a correction beyond which the iteration has run a
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonOptions:
-    """When to stop, and how far one step may go.
+    """Stopping criteria of Newton-Raphson, and the limit of one step.
 
     Parameters
     ----------
@@ -30,8 +30,15 @@ class NewtonOptions:
     max_steps : int
         m: stop without a solution after so many steps.
     largest_turn : float
-        A step that would turn an angle further [rad] is shortened as a whole; ``inf`` gives the
-        textbook's bare method.
+        A step that turns an angle further than this [rad] is shortened as a whole; ``inf`` gives
+        the plain textbook method.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> options = lw.NewtonOptions(max_steps=1)
+    >>> lw.example("four-bar").solve(at=60, from_guess=True, options=options).status.name
+    'STEP_LIMIT'
     """
 
     equation_tolerance: float = 1e-14

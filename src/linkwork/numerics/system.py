@@ -6,10 +6,10 @@ from typing import Protocol
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 
-__all__ = ["Curvature", "System"]
+__all__ = ["Curvature", "SmallSystem", "System"]
 
 
-class System(Protocol):
+class SmallSystem(Protocol):
     """Equations F(v) = 0 with v = (unknowns, inputs), batched over the first axis of v (B, N)."""
 
     @property
@@ -24,6 +24,13 @@ class System(Protocol):
     def variable_scale(self) -> Array:
         """(N,) weights of the variables."""
 
+    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
+        """F, (B, m), and dF/dv, (B, m, N)."""
+
+
+class System(SmallSystem, Protocol):
+    """Equations with all that tracking and proving need."""
+
     @property
     def is_angle(self) -> BoolArray:
         """(N,) which variables are angles."""
@@ -35,9 +42,6 @@ class System(Protocol):
         """F at one position v (N,), (m,), with as little rounding as the equations allow, and a
         bound of its error.
         """
-
-    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
-        """F, (B, m), and dF/dv, (B, m, N)."""
 
     def jacobian(self, v: Array) -> Array:
         """dF/dv, (B, m, N)."""

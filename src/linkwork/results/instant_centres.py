@@ -1,4 +1,4 @@
-"""Instant centres: for two links, the point at which both have the same velocity; and centrodes.
+"""Instant centres, at which two links have the same velocity, and centrodes.
 
 A link's points move at ``v(z) = a + iωz``, so links 1 and 2 agree at
 ``z = i (a₁ - a₂) / (ω₁ - ω₂)``. Of three links, the three centres lie in one line: the theorem of

@@ -1,4 +1,4 @@
-"""How links move in the plane: where their frame is and at what rate, read off a result."""
+"""The motion of links in the plane: position and velocity of their frames."""
 
 from __future__ import annotations
 

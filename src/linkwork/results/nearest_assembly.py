@@ -1,4 +1,4 @@
-"""How near a mechanism that cannot close comes to closing, and where its links do not meet."""
+"""The position nearest to closure, with the gap and the ends of links that do not meet."""
 
 from __future__ import annotations
 

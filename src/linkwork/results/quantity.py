@@ -1,4 +1,4 @@
-"""Named quantities with units: how a column of numbers is called and measured."""
+"""Named quantities with their units."""
 
 from __future__ import annotations
 

@@ -1,17 +1,15 @@
-"""Short summaries of results: aligned text fit to be pasted into a question, rows of a table."""
+"""Short summaries of results as aligned text and as rows of a table."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from linkwork.results.motion import Motion
+from linkwork.results.motion import Motion
 
-__all__ = ["Summary", "driven_text", "motion_summary"]
+__all__ = ["Summary", "driven_text", "motion_summary", "motion_text"]
 
 
 @dataclass(frozen=True)
@@ -59,3 +57,8 @@ def motion_summary(motion: Motion) -> Summary:
             reached, unit = series.value[found], motion.units.of(series.quantity.kind)
             rows.append((own, f"{reached.min():.8g} … {reached.max():.8g} {unit}".rstrip()))
     return Summary(head, tuple(rows))
+
+
+def motion_text(motion: Motion) -> str:
+    """The summary as text; see :class:`linkwork.results.motion.Motion`."""
+    return str(motion_summary(motion))

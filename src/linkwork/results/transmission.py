@@ -1,4 +1,4 @@
-"""Transmission angles: how well a force is passed on from one link of a dyad to the other."""
+"""Transmission angles between the two links of a dyad."""
 
 from __future__ import annotations
 

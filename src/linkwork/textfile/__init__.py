@@ -1,4 +1,4 @@
-"""Mechanism files: TOML in, with every problem at its line; TOML out, and the JSON Schema."""
+"""Mechanism files: read and write TOML, report every problem with its line, JSON Schema."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every table and key of a mechanism file, said once; those of parts are said by the parts.
+"""All tables and keys of a mechanism file, defined in one place.
 
 The reader's checks (:mod:`~linkwork.textfile.structure`) and the published JSON Schema
 (:mod:`~linkwork.textfile.schema`) are both generated from :data:`FORMS`.
@@ -54,11 +54,11 @@ _HEAD = (
         "The version of this file format; write format = 1",
         required=True,
     ),
-    Key("name", Text(), "What the mechanism is called"),
+    Key("name", Text(), "Name of the mechanism"),
     Key("length", Text(), "Unit of every length in this file; nothing is converted"),
     Key("angle", Text(("deg", "rad")), "Unit of every angle in this file"),
     Key("source", Text(), "Where the mechanism comes from: book, page, drawing"),
-    Key("family", Text(), 'The kind of mechanism it is listed with: "straight line", "engine"'),
+    Key("family", Text(), 'The family in lists of mechanisms: "straight line", "engine"'),
     Key(
         "configuration",
         Text(),
@@ -77,24 +77,32 @@ _OUTPUTS = Key(
 _TRACE = Key(
     "trace",
     Table((Key("points", _NAME_LIST, "Points whose path is drawn", required=True),)),
-    "What leaves a trace in pictures",
+    "Traces in pictures",
 )
 _GUESS = Key(
     "guess",
     Named(Number()),
-    "Estimates of all unknowns and the input value they belong to",
+    "Estimates of all unknowns at one input value",
     required=True,
 )
 _RANGE = (
     Key("from", Number(), "First input value"),
     Key("to", Number(), "Last input value"),
-    Key("step", Number(), "Step between input values; its sign leads from the first to the last"),
-    Key("speed", Speed(), 'Speed of the input, "300 rpm"; a bare number is the unit per second'),
+    Key(
+        "step",
+        Number(),
+        "Step between input values; its sign points from the first value to the last",
+    ),
+    Key(
+        "speed",
+        Speed(),
+        'Speed of the input, "300 rpm"; a plain number is in file units per second',
+    ),
 )
 _DRIVES = (
     Key("link", Text(), "The link whose angle is driven"),
-    Key("relative_to", Text(), "The link against which the angle is measured; ground if left out"),
-    Key("joint", Text(), "The pin whose two links are driven against each other"),
+    Key("relative_to", Text(), "The link relative to which the angle is measured; default ground"),
+    Key("joint", Text(), "The pin whose relative angle is driven"),
     Key("slider", Text(), "The slider or slot whose displacement is driven"),
     Key("cylinder", Text(), "The cylinder whose length is driven"),
     *_RANGE,
@@ -105,7 +113,7 @@ _VARIABLE = (
 )
 LINKAGE = Form(
     "points-and-links",
-    "A mechanism by its points and the links that carry them",
+    "A mechanism given by points and links",
     "",
     (
         *_HEAD,
@@ -114,13 +122,13 @@ LINKAGE = Form(
         Key(
             "points",
             Named(ListOf(Number(), "coordinate", 2, 2)),
-            "One assembled position: A = [35, 20]; exact for ground, elsewhere a sketch will do",
+            "One assembled position: A = [35, 20]; exact for ground, elsewhere a sketch is enough",
             required=True,
         ),
         Key(
             "links",
             Named(ListOf(Text(), "point", 1)),
-            'The points each link carries: crank = ["O2", "A"]; "ground" stands still',
+            'The points each link carries: crank = ["O2", "A"]; "ground" is fixed',
             required=True,
         ),
         Key("lengths", Named(Number(), 2), 'Exact distances in one link: "O2 A" = 40'),
@@ -130,14 +138,14 @@ LINKAGE = Form(
             'Exact angles in one link: "B A P" = 30, at A from AB to AP, counter-clockwise',
         ),
         *(Key(name, Tables(kind.keys), kind.doc) for name, kind in PARTS.items()),
-        Key("input", Tables(_DRIVES, single=True), "What is driven, and over which values"),
+        Key("input", Tables(_DRIVES, single=True), "The driven quantity and its range"),
         _TRACE,
         _OUTPUTS,
     ),
 )
 LOOPS = Form(
     "loops",
-    "A mechanism by its vector loop-closure equations",
+    "A mechanism given by vector loop-closure equations",
     "loops",
     (
         *_HEAD,
@@ -152,18 +160,18 @@ LOOPS = Form(
         Key(
             "input",
             Tables(_VARIABLE, single=True),
-            'What is driven: variable = "theta2"',
+            'The driven variable: variable = "theta2"',
             required=True,
         ),
         Key(
             "points",
             Named(Formula()),
-            'Points as formulas, A = "a2*e^(i*theta2)"; they make it drawable',
+            'Points as formulas, A = "a2*e^(i*theta2)", for drawings',
         ),
         Key(
             "links",
             Named(ListOf(Text(), "point", 1)),
-            'Points drawn as one link: crank = ["A0", "A"]; "ground" stands still',
+            'Points drawn as one link: crank = ["A0", "A"]; "ground" is fixed',
         ),
         _TRACE,
         _OUTPUTS,
@@ -183,7 +191,7 @@ EQUATIONS = Form(
             required=True,
         ),
         _GUESS,
-        Key("input", Tables(_VARIABLE, single=True), 'What is driven: variable = "x"'),
+        Key("input", Tables(_VARIABLE, single=True), 'The driven variable: variable = "x"'),
         _OUTPUTS,
     ),
 )

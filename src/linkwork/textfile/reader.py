@@ -1,4 +1,4 @@
-"""Reading mechanism files: TOML in, a description out, or every problem with its line."""
+"""Read mechanism files: a description, or every problem with its line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Changing a mechanism file's text in place: comments, order and spelling stay as they are."""
+"""Edit the text of a mechanism file in place, with its comments, order and spelling."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Writing mechanism files: what is written reads back as the same description."""
+"""Write mechanism files that read back as the same description."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ x = 40
         """\
 8 problems in plan.toml
   line 3   sampling              must be "grid" or "random" or "latin-hypercube" or "table", got "latin"
-  line 4   count                 must be a whole number from 1 on, got 0
+  line 4   count                 must be a whole number of at least 1, got 0
   line 5   keeep                 is not a key of the file (keys: keep, format, name, mechanism, sampling, count, seed, table, … 8 more)
   line 7   dimensions."O2 A"     must be a number, a list of numbers, or a table such as { from = 36, to = 44 }, got "three"
   line 8   dimensions."A B".too  is not a key of [dimensions.A B] (keys: to, from, levels, likeliest, mean, deviation)
@@ -81,7 +81,7 @@ z = "certified"
   line 1   count              is missing: sampling = "latin-hypercube" needs it
   line 1   seed               is missing: sampling = "latin-hypercube" needs it
   line 4   table              has no effect: random designs are drawn; leave it out
-  line 7   dimensions."O2 A"  sampling = "latin-hypercube" wants a range: { from = 36, to = 44 }; got mean, deviation
+  line 7   dimensions."O2 A"  sampling = "latin-hypercube" needs a range: { from = 36, to = 44 }; got mean, deviation
   line 8   dimensions."A B"   from = 5 must not be larger than to = 2
   line 10  input.step         a step of -3 does not lead from 0 to 360
   line 12  reductions.a       there is no reduction "range" (reductions: min, max, mean, stroke)
@@ -161,7 +161,7 @@ x = "mew <= 40"
         """\
 2 problems in plan.toml
   line 4  count              has no effect: a grid is every combination of its values; leave it out
-  line 6  dimensions."O2 A"  sampling = "grid" wants values: [40, 50, 60] or { from = 40, to = 60, levels = 3 }; got from, to""",
+  line 6  dimensions."O2 A"  sampling = "grid" needs values: [40, 50, 60] or { from = 40, to = 60, levels = 3 }; got from, to""",
     ),
     "a table that is not there": (
         HEAD + 'sampling = "table"\ntable = "none.csv"\n',

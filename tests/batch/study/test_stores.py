@@ -303,7 +303,7 @@ def test_workers_that_die_again_and_again_end_the_run(
         run_study(study(*FEW), tmp_path / "out.zarr", workers=2)
     assert str(caught.value) == (
         "worker processes ended 3 times over the same designs, perhaps for want of memory: "
-        "make chunk smaller, or ask for fewer --workers"
+        "reduce chunk or --workers"
     )
 
 

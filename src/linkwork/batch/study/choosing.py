@@ -1,4 +1,4 @@
-"""From the ``[dimensions]`` of a plan to the designs of a study."""
+"""The designs of a study from the ``[dimensions]`` of its plan."""
 
 from __future__ import annotations
 

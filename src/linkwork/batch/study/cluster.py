@@ -1,4 +1,4 @@
-"""Parts of a study computed by a Dask cluster: the owner of dask.distributed.
+"""Compute the parts of a study on a Dask cluster; the only module that uses dask.distributed.
 
 Workers need Linkwork and nothing else: what they compute travels with the task, what they have
 computed comes back, and only the process that was started writes to the store.

@@ -1,4 +1,4 @@
-"""What one worker does: the motions of some designs, and what is kept of them."""
+"""The task of one worker: the motions of some designs, and the values to keep."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a plan asks of the motion of a design: reductions and conditions, as text.
+"""Reductions and conditions of a plan, parsed from text.
 
 ``stroke(rocker)`` is one number per design; ``mu >= 40`` and ``stroke(rocker) <= 60`` are true or
 false of it, as are the words of :data:`WORDS`. They are read by two patterns and never evaluated

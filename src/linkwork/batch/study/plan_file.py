@@ -1,4 +1,4 @@
-"""Reading study plans: TOML in, a study out, or every problem with its line."""
+"""Read study plans: a study, or every problem with its line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every table and key of a study plan, said once: for the reader and for the JSON Schema."""
+"""All tables and keys of a study plan, for the reader and for the JSON Schema."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Running a study: chunk by chunk into its store, by as many workers as there are."""
+"""Run a study chunk by chunk into its store, with any number of workers."""
 
 from __future__ import annotations
 

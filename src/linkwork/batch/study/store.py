@@ -1,4 +1,4 @@
-"""A study's store on disk: made, gone on with, refused if it is another study's."""
+"""The store of a study on disk: create, resume, or reject the store of another study."""
 
 from __future__ import annotations
 

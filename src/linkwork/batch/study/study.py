@@ -1,4 +1,4 @@
-"""A study: which designs of which mechanism, what is kept of them, and how they are stored."""
+"""A study: mechanism, designs, kept quantities and storage."""
 
 from __future__ import annotations
 

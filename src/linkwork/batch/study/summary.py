@@ -1,4 +1,4 @@
-"""What a store holds: counts, ranges and histograms, of a study that may not be finished yet."""
+"""The summary of a store: counts, ranges and histograms, also of an unfinished study."""
 
 from __future__ import annotations
 

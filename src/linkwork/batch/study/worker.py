@@ -1,4 +1,4 @@
-"""A worker process: parts of a study asked for on its input, given on its output.
+"""A worker process: reads parts of a study from its input, writes results to its output.
 
 It ends when whoever started it is gone, so that a run that was killed leaves no process behind.
 """

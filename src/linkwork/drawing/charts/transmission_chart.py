@@ -98,7 +98,7 @@ def _column(
         label = f"{printed_name(pin)}: {', '.join(pins[pin].links)}"
         values = found[pins[pin]] / radians
     elif name in motion.points:
-        known = choices("pins between two links that are known to be held", pins, name)
+        known = choices("pins with a known transmission angle", pins, name)
         raise UnknownNameError(f'the transmission angle at "{name}" is not known {known}')
     else:
         column = column_of(motion, name)

@@ -1,4 +1,4 @@
-"""What all sheets of a workbook share: names, numbers, and where the rows are."""
+"""The workbook that its sheets share: names of cells, numbers, first and last rows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the cells of a workbook come to: each row's Newton-Raphson from the row above."""
+"""The values of the Newton cells: every row is iterated from the row above."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Real numbers that are known as formulas: sums of weighted terms, simplified as they are made.
+"""Real numbers with formulas: sums of weighted terms, simplified as they are built.
 
 A term is a formula without a numerical factor. Functions take and give radians here;
 ``radians`` and ``degrees`` are functions among them, because cells hold angles in the file's unit.

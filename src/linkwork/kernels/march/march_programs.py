@@ -126,11 +126,11 @@ class _MarchWriter:
         """By how much an input changes with t."""
         return rec.constant(1.0) if self.alone else rec.input(f"u{j}.rate")
 
-    def _moved(self, rec: Recorder, k: int) -> Value:
+    def _rate_of_known(self, rec: Recorder, k: int) -> Value:
         """The rate of a variable that a block takes as known."""
         return rec.input(f"d{k}.0") if k < self.n else self._rate(rec, k - self.n)
 
-    def _weighted(self, rec: Recorder, k: int, change: Value) -> Value:
+    def _weigh(self, rec: Recorder, k: int, change: Value) -> Value:
         """|change| of a variable in its weight."""
         return rec.divide(rec.absolute(change), self._scale(rec, k))
 
@@ -188,7 +188,7 @@ class _MarchWriter:
             factor = rec.smallest([1.0, rec.input("most_turn") / rec.largest(turns)])
             change = [factor * d for d in change]
         size = rec.largest(
-            self._weighted(rec, k, d) for d, k in zip(change, part.unknowns, strict=True)
+            self._weigh(rec, k, d) for d, k in zip(change, part.unknowns, strict=True)
         )
 
         def put(name: str, value: Value) -> None:
@@ -218,7 +218,7 @@ class _MarchWriter:
     ) -> list[Value]:
         """Rates after the correction, from those before it: the Jacobian is not solved again."""
         rec, unknowns = closure.rec, closure.part.unknowns
-        rates = {k: self._moved(rec, k) for k in closure.known()}
+        rates = {k: self._rate_of_known(rec, k) for k in closure.known()}
         rates |= {k: -r for k, r in zip(unknowns, moved, strict=True)}
         correction = {k: -d for k, d in zip(unknowns, change, strict=True)}
         (more,) = solve_linear(rec, matrix, [closure.bending(correction, rates)]).columns
@@ -227,7 +227,7 @@ class _MarchWriter:
     def _drives(self, closure: Closure, rec: Recorder) -> list[Value]:
         """F_k times the rates of the known variables."""
         known = closure.known()
-        rates = [self._moved(rec, k) for k in known]
+        rates = [self._rate_of_known(rec, k) for k in known]
         return [
             rec.total([rec.multiply(x, rate) for x, rate in zip(row, rates, strict=True)])
             for row in closure.jacobian(known)
@@ -250,7 +250,7 @@ class _MarchWriter:
                     f"u{k - self.n}.spread"
                 )
                 far[k] = step * abs(self._rate(rec, k - self.n)) + 2.0 * near[k]
-        for k, rate in zip(part.unknowns, proof.rates(self._moved), strict=True):
+        for k, rate in zip(part.unknowns, proof.rates(self._rate_of_known), strict=True):
             rec.write(f"d{k}.0", rate)
         here, there = proof.within(near), proof.within(far)
         masks = [here.holds, there.holds]
@@ -288,7 +288,7 @@ class _MarchWriter:
             masks.append(rec.at_most(0.0, product))
         h = rec.input("t.0") - rec.input("t.1")
         drifts = [
-            self._weighted(rec, k, (rec.input(f"d{k}.0") - rec.input(f"d{k}.1")) * h)
+            self._weigh(rec, k, (rec.input(f"d{k}.0") - rec.input(f"d{k}.1")) * h)
             for k in range(self.n)
         ]
         masks.append(rec.at_most(rec.largest(drifts), rec.input("most_drift")))

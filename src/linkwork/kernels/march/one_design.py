@@ -60,7 +60,7 @@ class SingleDesign:
     table: InputTable
     scale: Array
 
-    def loaded(self, k: int) -> LoadedDesign:
+    def with_design(self, k: int) -> LoadedDesign:
         """With a design in place, until another one is."""
         self.ready.load(self.space, k)
         if self.own is not self.space:
@@ -97,7 +97,10 @@ class LoadedDesign:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RowsOfOne:
-    """The rows of one design, computed as often as wanted; see :meth:`SweepKernel.alone`."""
+    """The rows of one design, computed as often as wanted.
+
+    :meth:`SweepKernel.prepare_single` makes them.
+    """
 
     loaded: LoadedDesign
     guess: Array

@@ -69,17 +69,17 @@ class BlockProof:
         self.size = [[self.rec.absolute(a) for a in row] for row in self.inverse]
         row_error, slope_error = _Rounding(closure, scale).bounds()
         self.loss = [self.product(row, slope_error) for row in self.size]
-        self.residual = self._seen_residual(row_error)
-        self.defect = [self._seen_defect(i, jacobian) for i in range(n)]
-        self._see_slopes()
-        self._see_bending()
+        self.residual = self._bound_residual(row_error)
+        self.defect = [self._bound_defect(i, jacobian) for i in range(n)]
+        self._bound_slopes()
+        self._group_terms()
 
     def product(self, row: Sequence[Number], column: Sequence[Number]) -> Value:
         """Σ a b."""
         rec = self.rec
         return rec.total([rec.multiply(a, b) for a, b in zip(row, column, strict=True)])
 
-    def _seen_residual(self, error: Sequence[Number]) -> list[Value]:
+    def _bound_residual(self, error: Sequence[Number]) -> list[Value]:
         """|A F| with its rounding."""
         rec, f = self.rec, self.closure.residual()
         own = (self.count + 2.0) * UNIT_ROUNDOFF
@@ -89,7 +89,7 @@ class BlockProof:
             for row, size in zip(self.inverse, self.size, strict=True)
         ]
 
-    def _seen_defect(self, i: int, jacobian: Sequence[Sequence[Number]]) -> list[Value]:
+    def _bound_defect(self, i: int, jacobian: Sequence[Sequence[Number]]) -> list[Value]:
         """Row i of |I - A J|."""
         found = []
         for k in range(self.count):
@@ -97,7 +97,7 @@ class BlockProof:
             found.append(self.rec.absolute(self.rec.subtract(entry, 1.0 if i == k else 0.0)))
         return found
 
-    def _see_slopes(self) -> None:
+    def _bound_slopes(self) -> None:
         """A F_k by the known variables; of linear rows alone."""
         rec, slopes = self.rec, self.closure.jacobian(self.known)
         lines = range(2 * len(self.closure.loops), self.count)
@@ -115,7 +115,7 @@ class BlockProof:
             for row in self.inverse
         ]
 
-    def _see_bending(self) -> None:
+    def _group_terms(self) -> None:
         """Terms sorted by phase; what bends along each phase, seen through the inverse."""
         closure = self.closure
         groups: dict[Phase, list[tuple[int, int]]] = {}

@@ -235,7 +235,7 @@ class SweepKernel:
         errors = x if self.certified else np.zeros_like(w)
         return LastNodes(t=found.stopped[way, where], w=w, s=s, q=q, p=p, x=errors)
 
-    def _registered(
+    def _coefficient_registers(
         self, coefficients: Mapping[str, Array], count: int
     ) -> tuple[IndexArray, Array]:
         """Registers (C,) of the coefficients that programs use, and their values (C, D)."""
@@ -245,7 +245,7 @@ class SweepKernel:
         return np.array([named[name] for name in used], dtype=np.intp), values
 
     def _ready(self, coefficients: Mapping[str, Array], count: int) -> Ready:
-        places, design = self._registered(coefficients, count)
+        places, design = self._coefficient_registers(coefficients, count)
         return Ready(self._topology(places), design)
 
     def _space(self, steps: Steps) -> Array:
@@ -297,11 +297,11 @@ class SweepKernel:
         found: LaneRows,
     ) -> None:
         """One design after the other, its rows side by side; then those that this is not for."""
-        alone, n = self._alone(ready, coefficients, table, steps), self.table.unknowns
+        alone, n = self._prepare_single(ready, coefficients, table, steps), self.table.unknowns
         counts = np.zeros(len(table.rows), dtype=np.int64)
         for k in range(given.shape[1]):
             guess = np.append(given[:n, k], given[-1, k])
-            found.found[k] = alone.loaded(k).run(guess, found.at(k), counts)
+            found.found[k] = alone.with_design(k).run(guess, found.at(k), counts)
         left = ~found.found
         if left.any():
             space = self._space(steps)
@@ -309,7 +309,7 @@ class SweepKernel:
             found.found[left] = begun[left]
             _march_part(ready, space, node, begun & left, table, found.at(0))
 
-    def alone(
+    def prepare_single(
         self,
         coefficients: Mapping[str, Array],
         guess: Array,
@@ -328,7 +328,7 @@ class SweepKernel:
         """
         ready = self._ready(coefficients, 1)
         table = self._table(rows, steps)
-        loaded = self._alone(ready, coefficients, table, steps).loaded(0)
+        loaded = self._prepare_single(ready, coefficients, table, steps).with_design(0)
         size = 2 * self.nodes.shape[1]
         room = (np.zeros((len(rows), 1), dtype=bool), np.empty((2, 1)), np.empty((2, size, 1)))
         return RowsOfOne(
@@ -339,7 +339,7 @@ class SweepKernel:
             certified=self.certified,
         )
 
-    def _alone(
+    def _prepare_single(
         self, ready: Ready, coefficients: Mapping[str, Array], table: InputTable, steps: Steps
     ) -> SingleDesign:
         count = ready.design.shape[1]

@@ -23,8 +23,8 @@ class _Lowering:
 
     def run(self) -> Program:
         rec = self.recorder
-        live = self._needed()
-        self.fused = self._fused(live)
+        live = self._find_needed()
+        self.fused = self._fuse_products(live)
         order = [k for k in sorted(live) if self._is_computed(k)]
         self.last = self._last_uses(order)
         self.place: dict[int, int] = {}
@@ -61,7 +61,7 @@ class _Lowering:
             found.append((int(Op.COPY), there, here, there, there))
         return found
 
-    def _needed(self) -> set[int]:
+    def _find_needed(self) -> set[int]:
         rec, todo, found = self.recorder, list(self.recorder.writes.values()), set[int]()
         while todo:
             k = todo.pop()
@@ -74,7 +74,7 @@ class _Lowering:
                 todo += [] if cosine is None else [cosine]
         return found
 
-    def _fused(self, live: set[int]) -> dict[int, tuple[Op, tuple[int, int, int]]]:
+    def _fuse_products(self, live: set[int]) -> dict[int, tuple[Op, tuple[int, int, int]]]:
         """Sums with a product that is used nowhere else, as one instruction."""
         rec = self.recorder
         uses = dict.fromkeys(live, 0)

@@ -31,9 +31,35 @@ class BeltRun(Figure):
 
 @dataclass(frozen=True, kw_only=True)
 class Belt(WheelPair):
-    """A belt or chain around two wheels, open or crossed; it keeps r1 θ1 ∓ r2 θ2 against the arm.
+    """A belt or chain around two wheels: r1 (θ1 - θ_arm) ∓ r2 (θ2 - θ_arm) is constant.
 
-    Fields as of :class:`~linkwork.mechanism.part.gear.Gear`.
+    Parameters
+    ----------
+    name : str
+        The name of the belt.
+    wheels : (str, str)
+        The two links that turn.
+    centers : (str, str)
+        The points about which they turn on ``arm``.
+    arm : str
+        The link with both centres.
+    radii : (number, number), optional
+        Pitch radii [length]; either these or ``teeth``.
+    teeth : (number, number), optional
+        Numbers of teeth.
+    crossed : bool
+        Whether the belt crosses itself, so that the wheels turn in opposite directions.
+    phase : number, optional
+        Angle of the second wheel relative to the arm where that of the first is zero [file's angle
+        unit]; by default as sketched.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Belt(name="b", wheels=("m", "p"), centers=("M", "O"), radii=(25, 50)).crossed
+    False
+    >>> round(lw.example("belt-drive").solve(at=90)["pulley"], 6)
+    45.0
     """
 
     title = "Belt or chain"
@@ -43,7 +69,7 @@ class Belt(WheelPair):
         *ARM_KEYS,
         *SIZE_KEYS,
         PHASE_KEY,
-        Key("crossed", Flag(), "The belt crosses itself: the wheels turn against each other"),
+        Key("crossed", Flag(), "The belt crosses itself: the wheels turn in opposite directions"),
     )
     kind = JointKind("B", 2, "belt")
     disc_kind: ClassVar[str] = "pulley"

@@ -36,9 +36,9 @@ __all__ = ["Cam", "CamOutline", "Follower", "Segment", "follower_frame"]
 _CONTACTS = ("knife", "roller", "flat")
 _SHORTEST = 1e-6  # of a turn: parts of a cam's motion are longer
 _SEGMENT = (
-    Key("law", Text(LAWS), "How the follower moves", required=True),
-    Key("over", NumberKey(), "The angle by which the cam turns meanwhile", required=True),
-    Key("lift", NumberKey(), "How far the follower moves; away from the centre is positive"),
+    Key("law", Text(LAWS), "Motion law of the follower", required=True),
+    Key("over", NumberKey(), "Angle by which the cam turns", required=True),
+    Key("lift", NumberKey(), "Displacement of the follower, positive away from the centre"),
 )
 
 
@@ -65,7 +65,23 @@ class Follower(Figure):
 
 @dataclass(frozen=True, kw_only=True)
 class Segment:
-    """A part of a cam's turn: ``over`` an angle the follower moves by ``lift``."""
+    """A segment of a cam: the follower moves by ``lift`` while the cam turns by ``over``.
+
+    Parameters
+    ----------
+    law : str
+        The motion law: ``dwell``, ``cycloidal``, ``modified sine``, …; see the page on files.
+    over : number
+        Angle of the cam [file's angle unit].
+    lift : number
+        Displacement of the follower: a length, or an angle of an oscillating follower.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Segment(law="cycloidal", over=100, lift=25)
+    Segment(law='cycloidal', over=100, lift=25)
+    """
 
     law: str
     over: Number
@@ -74,28 +90,42 @@ class Segment:
 
 @dataclass(frozen=True, kw_only=True)
 class Cam(NamedPart):
-    """A cam that moves a follower, by the follower's motion or by the cam's own outline.
+    """A cam with its follower, given by the motion of the follower or by the outline of the cam.
 
     Parameters
     ----------
+    name : str
+        The name of the cam.
     cam, center : str
         The link that turns, and the point about which it turns.
     slider : str, optional
-        The slider that is moved; its first point is the knife edge, the roller's centre or on the
-        flat face.
+        A translating follower: the slider that moves. Its first point is the knife edge, the centre
+        of the roller, or on the flat face.
     link, pivot, point : str, optional
-        Else the link that swings about ``pivot``, with the edge or the roller's centre ``point``;
-        a flat face leads from the pivot to ``point``.
+        An oscillating follower: the link, the point about which it turns, and its knife edge or the
+        centre of its roller; a flat face runs from the pivot to ``point``.
     contact : str
         ``knife``, ``roller`` or ``flat``.
     radius : number
-        Of the roller.
+        Radius of the roller [length].
     base : number, optional
-        Radius of the base circle, with ``segments``.
+        Radius of the base circle [length], with ``segments``.
     segments : tuple of Segment
-        What the follower does in one turn, from the cam's angle ``start`` on.
+        The motion of the follower in one turn of the cam.
+    start : number
+        The cam's angle at which the first segment begins [file's angle unit].
     profile : tuple of (x, y), optional
-        Else the cam's outline, closed, in the cam's own frame about its centre.
+        Instead of segments: the closed outline of the cam in its own frame about its centre
+        [length].
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> rise = lw.Segment(law="cycloidal", over=180, lift=25)
+    >>> fall = lw.Segment(law="cycloidal", over=180, lift=-25)
+    >>> cam = lw.Cam(name="c", cam="disc", center="O", slider="s", base=40, segments=[rise, fall])
+    >>> len(cam.segments), cam.contact
+    (2, 'knife')
     """
 
     title = "Cam"
@@ -105,14 +135,18 @@ class Cam(NamedPart):
         Key("cam", LINK, "The link that turns", required=True),
         Key("center", POINT, "The point about which it turns", required=True),
         Key("slider", SLIDER, "The slider that it moves"),
-        Key("link", LINK, "Or the link that it swings"),
-        Key("pivot", POINT, "With link: the point about which that swings"),
-        Key("point", POINT, "With link: its edge, its roller's centre or the end of its face"),
-        Key("contact", Text(_CONTACTS), "Kind of the follower; knife if left out"),
+        Key("link", LINK, "Or the oscillating link that it moves"),
+        Key("pivot", POINT, "With link: the point about which it oscillates"),
+        Key(
+            "point",
+            POINT,
+            "With link: its knife edge, the centre of its roller or the end of its face",
+        ),
+        Key("contact", Text(_CONTACTS), "Kind of the follower; default knife"),
         Key("radius", NumberKey(), "Radius of the roller"),
         Key("base", NumberKey(), "Radius of the base circle, with segments"),
-        Key("start", NumberKey(), "Angle of the cam at which the segments begin; 0 if left out"),
-        Key("segments", Tables(_SEGMENT), "What the follower does in one turn of the cam"),
+        Key("start", NumberKey(), "Angle of the cam at which the segments begin; default 0"),
+        Key("segments", Tables(_SEGMENT), "Motion of the follower in one turn of the cam"),
         Key("profile", COORDINATES, "Or the outline, in the cam's frame about its centre"),
     )
     kind = JointKind("C", 2, "cam")

@@ -37,30 +37,42 @@ class CurvedSlot(Contour):
 
 @dataclass(frozen=True, kw_only=True)
 class Curve(NamedPart):
-    """A point that runs along a curve of a link.
+    """A point that moves along a curve of another link.
 
     Parameters
     ----------
     name : str
-        The place on the curve: an angle from 0 to a turn if it is closed, else a length.
-    point, on : str
-        The point of another link, and the link that carries the curve.
+        The place on the curve: an angle from 0 to a full turn if the curve is closed, otherwise a
+        length.
+    point : str
+        The point that moves, of another link.
+    on : str
+        The link with the curve.
     origin : str
-        A point of ``on``; the curve's coordinates are in that link's own frame about it.
+        A point of that link; the coordinates of the curve are relative to it in the link's own
+        frame.
     through : tuple of (x, y)
-        Points of the curve.
+        Points of the curve [length]; a spline runs through them.
     closed : bool
+        Whether the curve returns to its first point.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> path = [(80, 0), (57, 57), (0, 80)]
+    >>> lw.Curve(name="slot", point="B", on="ground", origin="O4", through=path).through[1]
+    (57, 57)
     """
 
     title = "Curve"
-    doc = "A point runs along a curve of another link"
+    doc = "A point moves along a curve of another link"
     keys = (
-        Key("name", Text(), "Name of the place on the curve", required=True),
-        Key("point", POINT, "The point that runs along it, of another link", required=True),
-        Key("on", LINK, "The link that carries the curve", required=True),
-        Key("origin", POINT, "The point of that link about which coordinates are given", True),
+        Key("name", Text(), "Name of the coordinate along the curve", required=True),
+        Key("point", POINT, "The point that moves along it, of another link", required=True),
+        Key("on", LINK, "The link with the curve", required=True),
+        Key("origin", POINT, "The point of that link from which coordinates are measured", True),
         Key("through", COORDINATES, "Points of the curve in that link's own frame", required=True),
-        Key("closed", Flag(), "Whether the curve leads back to its first point"),
+        Key("closed", Flag(), "Whether the curve is closed"),
     )
     kind = JointKind("C", 2, "pin on a curve")
 

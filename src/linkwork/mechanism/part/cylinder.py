@@ -26,7 +26,21 @@ class Strut(Figure):
 
 @dataclass(frozen=True, kw_only=True)
 class Cylinder(NamedPart):
-    """A link of variable length between two points; ``name`` is its length."""
+    """A link of variable length between two points, such as a hydraulic cylinder.
+
+    Parameters
+    ----------
+    name : str
+        The variable length.
+    between : (str, str)
+        The two points.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Cylinder(name="ram", between=("P", "Q")).angle_name
+    'ram_angle'
+    """
 
     title = "Cylinder"
     doc = "A link of variable length between two points"

@@ -23,17 +23,31 @@ class Gear(WheelPair):
 
     Parameters
     ----------
-    wheels, centers : (str, str)
-        Links, and the points at which they turn on ``arm``.
+    name : str
+        The name of the gear pair.
+    wheels : (str, str)
+        The two links that turn.
+    centers : (str, str)
+        The points about which they turn on ``arm``.
     arm : str
-        The link that carries both centres: ground, or the carrier of a planetary gear.
-    radii, teeth : (number, number)
-        One of both; with teeth the radii follow from the distance of the centres.
+        The link with both centres: ground, or the carrier of a planetary gear.
+    radii : (number, number), optional
+        Pitch radii [length]; either these or ``teeth``.
+    teeth : (number, number), optional
+        Numbers of teeth; the radii follow from the distance of the centres.
     internal : bool
-        The larger wheel is a ring around the smaller one.
+        Whether the larger wheel is a ring gear around the smaller one.
     phase : number, optional
-        The second wheel's angle against the arm where the first one's is zero; as sketched if
-        left out.
+        Angle of the second wheel relative to the arm where that of the first is zero [file's angle
+        unit]; by default as sketched.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Gear(name="mesh", wheels=("left", "right"), centers=("O", "P"), teeth=(20, 40)).teeth
+    (20, 40)
+    >>> round(lw.example("geared-five-bar").solve(at=45)["right"], 6)
+    -60.0
     """
 
     title = "Gear pair"

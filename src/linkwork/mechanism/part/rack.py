@@ -29,10 +29,33 @@ class RackBar(Figure):
 
 @dataclass(frozen=True, kw_only=True)
 class Rack(NamedPart):
-    """Rack and pinion: a slider's displacement is rolled off by a pinion.
+    """A rack and pinion: the displacement of a slider is the rolled arc of the pinion.
 
-    ``slider`` names a slider; the pinion turns about ``center`` on the link along which it slides.
-    The sketch tells on which side of the rack's line the pinion stands.
+    The sketch decides on which side of the rack the pinion is.
+
+    Parameters
+    ----------
+    name : str
+        The name of the rack and pinion.
+    pinion : str
+        The link that turns.
+    center : str
+        The point about which it turns, on the link along which the rack slides.
+    slider : str
+        The name of the slider of the rack.
+    radius : number
+        Pitch radius of the pinion [length].
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Rack(name="mesh", pinion="pinion", center="G", slider="s", radius=20).slider
+    's'
+    >>> motion = lw.example("rack-and-pinion").sweep(start=90, stop=180, step=90)
+    >>> turn = motion["pinion"][0] - motion["pinion"][1]
+    >>> stroke = motion["s"][0] - motion["s"][1]
+    >>> round(float(abs(stroke / turn)) * 180 / 3.141592653589793, 6)
+    20.0
     """
 
     title = "Rack and pinion"

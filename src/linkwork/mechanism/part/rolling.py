@@ -40,20 +40,37 @@ class RollingLine(Figure):
 
 @dataclass(frozen=True, kw_only=True)
 class Rolling(NamedPart):
-    """A wheel that rolls without slipping on a line or a circle of a link.
+    """A wheel that rolls without slipping on a line or on a circle of another link.
 
     Parameters
     ----------
     name : str
-        The way of the point of contact along ``line``, zero at its first point; on a circle the
-        angle of the line of centres.
-    wheel, center, radius
-        The link that rolls, its centre and size.
+        The displacement of the point of contact along ``line``, zero at its first point [length];
+        on a circle the angle of the line of centres.
+    wheel : str
+        The link that rolls.
+    center : str
+        The centre of the wheel.
+    radius : number
+        The radius of the wheel [length].
     on : str
         The link on which it rolls.
     line : (str, str), optional
-    circle, circle_radius : str, number, optional
-        Centre and size of the circle; with ``inside`` one runs inside the other.
+        Two points of that link; either this or ``circle``.
+    circle : str, optional
+        The centre of a circle on that link.
+    circle_radius : number, optional
+        The radius of the circle [length].
+    inside : bool
+        Whether the smaller of wheel and circle rolls inside the larger one.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Rolling(name="x", wheel="w", center="C", radius=40, line=("S", "T")).on
+    'ground'
+    >>> round(lw.example("rolling-wheel").solve(at=-180)["x"] / 40, 6)
+    1.570796
     """
 
     title = "Rolling wheel"
@@ -62,17 +79,17 @@ class Rolling(NamedPart):
         Key(
             "name",
             Text(),
-            "Way of the point of contact along the line, or angle of the centres",
+            "Displacement of the point of contact along the line, or angle of the line of centres",
             required=True,
         ),
         Key("wheel", LINK, "The link that rolls", required=True),
         Key("center", POINT, "Its centre", required=True),
         Key("radius", NumberKey(), "Its radius", required=True),
-        Key("on", LINK, "The link on which it rolls; ground if left out"),
+        Key("on", LINK, "The link on which it rolls; default ground"),
         Key("line", POINT_PAIR, "Two points of that link: it rolls along this line"),
         Key("circle", POINT, "Or the centre of the circle on which it rolls"),
         Key("circle_radius", NumberKey(), "The radius of that circle"),
-        Key("inside", Flag(), "One of wheel and circle runs inside the other"),
+        Key("inside", Flag(), "The smaller of wheel and circle is inside the larger one"),
     )
     kind = JointKind("W", 1, "rolling contact")
 

@@ -22,10 +22,32 @@ __all__ = ["Slider"]
 
 @dataclass(frozen=True, kw_only=True)
 class Slider(GuidePart):
-    """Prismatic joint: ``link`` translates along a line of ``on`` without turning against it.
+    """A prismatic joint: a link slides along a line of another link without turning.
 
-    ``points`` (one or two of the sliding link) keep the distance ``offset`` from the line,
-    positive to its left; with one point, ``angle`` leads from the line to the link's direction.
+    Parameters
+    ----------
+    name : str
+        The displacement, zero at the first point of ``line``, positive towards the second [length].
+    link : str
+        The sliding link.
+    points : tuple of str
+        One or two points of the sliding link at the distance ``offset`` from the line.
+    on : str
+        The link on which it slides.
+    line : (str, str)
+        Two points of that link.
+    offset : number
+        Distance of the points from the line, positive to its left [length].
+    angle : number, optional
+        With one point: the angle from the line to the sliding link's direction [file's angle unit].
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Slider(name="d", link="block", points=("B",), on="ground", line=("S", "T")).offset
+    0
+    >>> round(lw.example("slider-crank").solve(at=60)["d"], 3)
+    126.838
     """
 
     title = "Slider"

@@ -1,4 +1,4 @@
-"""Pin in slot: a point runs along a line of another link."""
+"""Pin in slot: a point moves along a line of another link."""
 
 from __future__ import annotations
 
@@ -17,13 +17,30 @@ __all__ = ["Slot"]
 
 @dataclass(frozen=True, kw_only=True)
 class Slot(GuidePart):
-    """Pin in slot: ``point`` runs along the line through two points of the link ``on``.
+    """A pin in a slot: a point of one link moves along a line of another link.
 
-    The displacement ``name`` is zero at the first point of ``line``, positive to the second.
+    Parameters
+    ----------
+    name : str
+        The displacement, zero at the first point of ``line``, positive towards the second [length].
+    point : str
+        The pin.
+    on : str
+        The link with the slot.
+    line : (str, str)
+        Two points of that link.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Slot(name="s", point="A", on="lever", line=("O4", "Q")).name
+    's'
+    >>> round(lw.example("crank-shaper").solve(at=90)["s"], 6)
+    210.0
     """
 
     title = "Pin in slot"
-    doc = "Pin in slot: a point runs along a line of another link"
+    doc = "Pin in slot: a point moves along a line of another link"
     keys = (
         Key("name", Text(), "Name of the displacement, zero at the first point of the line", True),
         Key("point", POINT, "The pin: a point of another link", required=True),

@@ -33,10 +33,24 @@ class SpringFigure(Figure):
 
 @dataclass(frozen=True, kw_only=True)
 class Spring(NamedPart):
-    """A spring between two points: drawn, and no constraint."""
+    """A spring between two points; it is drawn and does not constrain the motion.
+
+    Parameters
+    ----------
+    name : str
+        The name of the spring.
+    between : (str, str)
+        The two points.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Spring(name="return", between=("O4", "B")).between
+    ('O4', 'B')
+    """
 
     title = "Spring"
-    doc = "A spring between two points: drawn, and no constraint"
+    doc = "A spring between two points; drawn, without constraint"
     keys = (
         Key("name", Text(), "Name of the spring", required=True),
         Key("between", POINT_PAIR, "The two points it connects", required=True),

@@ -28,9 +28,21 @@ class RigidJoint(Figure):
 
 @dataclass(frozen=True, kw_only=True)
 class Weld(Part):
-    """Two links that share a point and turn together.
+    """A weld: two links share a point and turn together.
 
-    ``angle`` leads from the first link's direction to the second's; measured if left out.
+    Parameters
+    ----------
+    links : (str, str)
+        The two links.
+    angle : number, optional
+        Angle from the direction of the first link to that of the second [file's angle unit]; by
+        default measured in the sketch.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Weld(links=["pulley", "crank"], angle=0).links
+    ('pulley', 'crank')
     """
 
     title = "Weld"

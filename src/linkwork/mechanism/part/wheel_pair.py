@@ -20,7 +20,7 @@ _MOST_TEETH = 1_000_000
 ARM_KEYS = (
     Key("wheels", ListOf(Text(), "link", 2, 2), "The two links that turn", required=True),
     Key("centers", ListOf(Text(), "point", 2, 2), "The points at which they turn", required=True),
-    Key("arm", LINK, "The link that carries both centres; ground if left out"),
+    Key("arm", LINK, "The link with both centres; default ground"),
 )
 SIZE_KEYS = (
     Key("radii", NUMBER_PAIR, "Pitch radii"),

@@ -1,4 +1,4 @@
-"""All ways to put a mechanism together at given inputs, block by block, as arrays.
+"""All configurations at given inputs, block by block, as arrays.
 
 Every block is solved once for each configuration of the blocks before it, so the configurations of
 the whole are counted like a product.
@@ -125,7 +125,7 @@ class _Assembly:
                 break
         if self.model.equations.redundant:
             self._keep(misfit(self.model.equations, self.v) <= FITS)
-            self.notes.append("positions that a redundant link does not fit are left out")
+            self.notes.append("positions that do not fit a redundant link are left out")
         theorems = self.theorems if self.completeness.complete else []
         notes = [self.completeness.value, *theorems, *self.notes]
         return Assemblies(

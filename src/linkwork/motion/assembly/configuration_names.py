@@ -1,4 +1,4 @@
-"""In which order configurations stand, and what they are called."""
+"""The order and the names of configurations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rows of one mechanism by the compiled kernels, where that is quicker."""
+"""Rows of one mechanism computed by the compiled kernels, if that is faster."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A mechanism's equations as compiled kernels read them: blocks, coefficients by register."""
+"""The equations of a mechanism as input of compiled kernels."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The kernels of mechanisms, made once each. This module loads compiled code."""
+"""The kernels of mechanisms, each made once; this module loads compiled code."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Long tables of one mechanism by the compiled kernels.
+"""Long tables of one mechanism computed by the compiled kernels.
 
 A track has been followed to the ends of the table. The kernels compute the rows along it, which
 they predict from each other and prove from each other; the row next to every node of the track is
@@ -113,7 +113,7 @@ def kernel_rows(
     kernel.shift(Execution(positions=len(rows)))
     nearest, begin = _nearest(track, rows)
     steps = Steps().times(path.size)
-    march = kernel.alone(coefficients, begin.v[:n], begin.t, rows, steps)
+    march = kernel.prepare_single(coefficients, begin.v[:n], begin.t, rows, steps)
     done = march.run()
     if done is None:
         return None

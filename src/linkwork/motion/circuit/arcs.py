@@ -1,4 +1,4 @@
-"""All curves of positions that can be reached from a few: closed ones, and arcs between crossings.
+"""All curves of positions through given ones: closed curves, and arcs between crossings.
 
 Where two curves cross (a change point) four half-branches leave; each is followed, so that what is
 connected is found as a whole.

@@ -1,4 +1,4 @@
-"""The input values of all dead points at once, from polynomials instead of from circuits."""
+"""The input values of all dead points, from polynomials."""
 
 from __future__ import annotations
 
@@ -27,15 +27,13 @@ _MOST_PATHS = 300  # from products of linear forms: three loops at most, or a dy
 _SAME_INPUT = 1e-9  # weighted: two inputs are one,
 _SAME_MULTIPLE_INPUT = 1e-5  # and that of a multiple solution another one's
 _MOVES = 1e-6  # part of the largest change that is one
-_COMPLEX_CURVES = (
-    "not proved: dead points at complex values form a continuum, and whether real ones are among "
-    "them is not known"
-)
+_COMPLEX_CURVES = "not proved: complex dead points form a continuum, which may contain real ones"
 _WHOLE = 1e-12  # how far a rate may be from a whole number
 _STEPS = 40  # towards a multiple solution
 _GRADES = {
     Completeness.WITH_PROBABILITY_ONE: (
-        "every dead point is listed, with probability one: all solution paths are accounted for"
+        "the list of dead points is complete with probability one: all solution paths are "
+        "accounted for"
     ),
     Completeness.NOT_PROVED: "not proved: solution paths were lost, so dead points may be missing",
 }
@@ -160,8 +158,8 @@ class _Search:
             self.poles += form.poles
         if system.bound > _MOST_PATHS:
             raise NoDirectionForm(
-                f"hang on {system.loops} loops; their dead points would take {system.bound} paths, "
-                f"more than the {_MOST_PATHS} that are followed"
+                f"depend on {system.loops} loops; their dead points would take {system.bound} "
+                f"paths, more than the {_MOST_PATHS} that are followed"
             )
         roots = dead_point_roots(system)
         lost = roots.failed or not roots.sure
@@ -202,7 +200,7 @@ class _Search:
         value = self._wrap_angle([float(here[-1])])[0] / scale[self.number]
         at = f"{lead.name} = {round(value, 6) + 0.0:.6g} {self.model.input_units[lead.name]}"
         names = ", ".join(variables[int(k)].name for k in np.sort(moving))
-        return f"{names} can move while the input stands still, as at {at}"
+        return f"{names} can move while the input is constant, as at {at}"
 
     def _crossing(self, form: DeadPointForm, number: int, x: Array) -> float:
         """The input of a multiple solution x (n,): a change point's to rounding."""

@@ -1,4 +1,4 @@
-"""Where circuits begin: configurations at inputs that no circuit can avoid."""
+"""Seeds of circuits: configurations at inputs that every circuit must pass."""
 
 from __future__ import annotations
 
@@ -125,14 +125,14 @@ class Seeding:
             if len(self.dead.cuts):
                 where = f"{count} input values, at least one between any two of them"
             return Completeness.WITH_PROBABILITY_ONE, (
-                f"every circuit is listed, with probability one: {self._ends()} were found, and "
-                f"all configurations at {where}"
+                f"the list of circuits is complete with probability one: {self._ends()} were "
+                f"found, and all configurations at {where}"
             )
-        what = "the circuits found at" if self.unclear else "every circuit that comes by one of"
+        what = "the circuits found at" if self.unclear else "every circuit that contains one of"
         reason = ""
         if not self.dead.cover_all:
             reason = f" ({self.dead.reason})"
         return Completeness.NOT_PROVED, (
-            f"{what} {count} input values looked at; one that lies between two of them "
-            f"would be missing{reason}"
+            f"{what} {count} input values; a circuit that lies between two of them would be "
+            f"missing{reason}"
         )

@@ -1,4 +1,4 @@
-"""The weakest place of a circuit: where its Jacobian is nearest to being singular."""
+"""The position of a circuit at which its Jacobian is closest to being singular."""
 
 from __future__ import annotations
 

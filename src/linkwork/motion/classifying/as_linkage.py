@@ -1,4 +1,4 @@
-"""A mechanism as points and links, whichever way it is given, so that it can be classified."""
+"""Every mechanism as points and links, for its classification."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def as_linkage(model: Model) -> Seen | NotSeen:
             turning |= dict.fromkeys(cylinder.ends, (cylinder.angle_name,))
         return Seen(model=model, linkage=description, turning=turning)
     if not isinstance(description, Loops):
-        return NotSeen("plain equations tell nothing of links and joints")
+        return NotSeen("plain equations do not determine links and joints")
     done = model.compiled.solver.solve(equations.start[None, :])
     v = equations.start if done.failed_block[0] >= 0 else done.v[0]
     try:

@@ -1,4 +1,4 @@
-"""Four links around a loop, with their lengths between pins, as the type is read off them."""
+"""A loop of four links with their lengths between pins, from which its type follows."""
 
 from __future__ import annotations
 

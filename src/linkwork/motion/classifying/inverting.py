@@ -1,4 +1,4 @@
-"""Other grounds and other inputs of a mechanism."""
+"""Inversions of a mechanism, and other inputs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Grashof's and the slider-crank's condition: which links of a four-link loop turn fully."""
+"""The type of a four-link loop by Grashof's condition or that of the slider-crank."""
 
 from __future__ import annotations
 
@@ -47,9 +47,8 @@ def _four_bar(loop: FourLinkLoop, linkage: Linkage) -> LoopType:
     shortest, second, third, longest = sorted(lengths)
     if longest > shortest + second + third:
         told = (
-            f"{loop.links[lengths.index(longest)]} is "
-            f"{longest - (shortest + second + third):.6g} {linkage.length} longer than the other "
-            "three together"
+            f"{loop.links[lengths.index(longest)]} is {longest - (shortest + second + third):.6g} "
+            f"{linkage.length} longer than the sum of the other three"
         )
         return _no_loop(loop, told, (second + third) - (shortest + longest), longest)
     margin = (second + third) - (shortest + longest)
@@ -146,7 +145,7 @@ def _slider_crank(
     margin = long - short - offset
     if offset > long + short:
         told = (
-            f"the pins beside the slide are {offset - (long + short):.6g} {linkage.length} "
+            f"the offset pins are {offset - (long + short):.6g} {linkage.length} "
             f"further apart than {' and '.join(arms)} reach"
         )
         return _no_loop(loop, told, margin, offset)

@@ -1,4 +1,4 @@
-"""Why there is no position, and what would help: loaded only when something failed."""
+"""Explain failed positions and suggest remedies; loaded after a failure only."""
 
 from __future__ import annotations
 

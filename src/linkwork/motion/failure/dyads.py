@@ -1,4 +1,4 @@
-"""One loop with two unknowns in closed form: how far it is from closing, and its positions.
+"""Dyads in closed form: the closure gap and the positions of one loop with two unknowns.
 
 RRR   K + a e^{iα} + b e^{iβ} = 0      closes if |a - b| ≤ |K| ≤ a + b
 RRP   K + a e^{iα} + s u = 0           closes if the line K + s u comes within a of the origin

@@ -1,4 +1,4 @@
-"""The positions that exist at one input value, as far as they are known."""
+"""The known positions at one input value."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why there is no position: what does not close, what would help, what is within reach."""
+"""Explain a failed position: open loops, remedies, nearest reachable input."""
 
 from __future__ import annotations
 
@@ -97,8 +97,8 @@ def without_start(model: Model, failure: Failure, inputs: Array) -> Failure:
     nearest = failure if not here.configurations else here
     return replace(
         failure,
-        what="the motion is followed from the guess's own input value, and there is no position "
-        f"there: {failure.what}",
+        what="the motion starts at the input value of the guess, where there is no position: "
+        f"{failure.what}",
         asked=here.asked,
         nearest_input=nearest.nearest_input,
         nearest_kind=nearest.nearest_kind,
@@ -121,7 +121,7 @@ def without_circuit(model: Model, found: Array) -> Failure:
         model,
         inputs,
         what=f"position found{' at ' if where else ''}{where}, at a dead point or change point, "
-        "but no motion that comes by there",
+        "but no motion passes through it",
     )
 
 
@@ -231,7 +231,7 @@ def _name_unknowns(model: Model, block: Block, x: Array) -> dict[str, float]:
 def _stays_at(model: Model, block: Block, miss: Miss) -> str:
     labels = _labels(model, block)
     worst = int(np.argmax(np.abs(miss.f)))
-    return f'"{labels[worst % len(labels)]}" stays at {miss.f[worst]:.6g} at best nearby'
+    return f'"{labels[worst % len(labels)]}" has at least the residual {miss.f[worst]:.6g} nearby'
 
 
 def _cannot_close(model: Model, block: Block, number: int, here: Array, miss: Miss) -> Failure:
@@ -251,8 +251,8 @@ def _cannot_close(model: Model, block: Block, number: int, here: Array, miss: Mi
         size = float(gaps[worst])
     where = _inputs_text(model, inputs)
     what = (
-        f"{names} cannot be closed{' at ' if where else ''}{where}: "
-        f"nearest to the guess a gap of {size:.6g} {unit} remains"
+        f"{names} cannot be closed{' at ' if where else ''}{where}: near the guess a gap of at "
+        f"least {size:.6g} {unit} remains"
     )
     reach, reachable = None, True
     if len(inputs) and solver.unknowns <= MOST_UNKNOWNS:

@@ -1,4 +1,4 @@
-"""The lengths of a mechanism that its user can change, each under the user's own name."""
+"""The lengths that a user can change, under the user's names."""
 
 from __future__ import annotations
 

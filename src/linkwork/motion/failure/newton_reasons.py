@@ -1,4 +1,4 @@
-"""Telling apart why Newton-Raphson misses the position that was meant."""
+"""Classify why Newton-Raphson missed the intended position."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The input value nearest to the one asked that a mechanism reaches on one circuit."""
+"""The reachable input value of a circuit nearest to the requested one."""
 
 from __future__ import annotations
 

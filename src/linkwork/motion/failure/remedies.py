@@ -1,4 +1,4 @@
-"""Which lengths would have to be other, and by how much, for the loops just to close."""
+"""Changes of single lengths with which the loops just close."""
 
 from __future__ import annotations
 

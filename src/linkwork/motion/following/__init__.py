@@ -1,4 +1,4 @@
-"""A position at another input value than the guess's: loaded only when one is asked for."""
+"""Positions at other input values than the guess's; loaded on demand."""
 
 from __future__ import annotations
 

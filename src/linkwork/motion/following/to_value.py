@@ -1,4 +1,4 @@
-"""The branch of a position followed to one other input value."""
+"""Follow the branch of a position to another input value."""
 
 from __future__ import annotations
 

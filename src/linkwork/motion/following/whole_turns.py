@@ -1,4 +1,4 @@
-"""Far input values of a mechanism that turns freely: laps that bring it back are left out."""
+"""Distant input values of a freely turning mechanism, reduced by whole periods."""
 
 from __future__ import annotations
 

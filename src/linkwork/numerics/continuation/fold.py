@@ -14,27 +14,13 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import Array
+from linkwork.numerics.system import SmallSystem
 
 __all__ = ["Bending", "Fold", "FoldFamily", "locate_fold"]
 
 
-class Bending(Protocol):
-    """Equations as in :class:`~linkwork.numerics.system.System` that also know D²F[a, b]."""
-
-    @property
-    def unknowns(self) -> int:
-        """n, the first variables."""
-
-    @property
-    def equation_scale(self) -> Array:
-        """(n,) what residuals are divided by."""
-
-    @property
-    def variable_scale(self) -> Array:
-        """(N,) weights of the variables."""
-
-    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
-        """F, (B, n), and dF/dv, (B, n, N)."""
+class Bending(SmallSystem, Protocol):
+    """Equations that also know mixed second derivatives."""
 
     def mixed(self, v: Array, a: Array, b: Array) -> Array:
         """D²F[a, b], (B, m)."""
@@ -86,13 +72,13 @@ class _At:
         self.weights = np.concatenate([self.system.variable_scale[:n], np.zeros(len(inputs))])
         self.scale = self.system.equation_scale
         self.v = np.concatenate([x, inputs])
-        self.f, self.j = self._scaled(self.system)
-        (f_low, j_low), (f_high, j_high) = map(self._scaled, (family.low, family.high))
+        self.f, self.j = self._scale(self.system)
+        (f_low, j_low), (f_high, j_high) = map(self._scale, (family.low, family.high))
         self.f_p, self.j_p = (f_high - f_low) / family.step, (j_high - j_low) / family.step
         left, _, right = np.linalg.svd(self.j)
         self.w, self.z = left[:, -1], right[-1]
 
-    def _scaled(self, system: Bending) -> tuple[Array, Array]:
+    def _scale(self, system: Bending) -> tuple[Array, Array]:
         f, j = system.residual_and_jacobian(self.v[None, :])
         return f[0] / self.scale, j[0, :, : self.n] * self.weights[: self.n] / self.scale[:, None]
 

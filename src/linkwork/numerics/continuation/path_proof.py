@@ -404,8 +404,8 @@ class _ProvedTrial:
             return Attempt(None)
         known = rounding_of_inputs(found.v, solver.unknowns)
         proof = self._proof(found.v)
-        spread = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
-        reached = reach(solver, here.v[None, :], spread + 2.0 * known)
+        input_radius = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
+        reached = reach(solver, here.v[None, :], input_radius + 2.0 * known)
         both = np.maximum(proof.error_bound, self.here.error_bound)
         if not (proof.holds[0] and steps_connected(here.v[None, :], found.v, reached, both)[0]):
             return Attempt(None)

@@ -13,18 +13,13 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.numerics.homotopy.bilinear_homotopy import null_space
+from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers, null_space
 from linkwork.numerics.homotopy.column_sums import Columns, columns_of, random_closures
 from linkwork.numerics.homotopy.dead_point_system import DeadPointSystem, Slot, most_dead_points
 from linkwork.numerics.homotopy.isolated_roots import SEED, isolated_roots
 from linkwork.numerics.homotopy.polynomial_system import Roots
 
 __all__ = ["DeadPointFamily", "dead_point_roots"]
-
-
-def _normal(rng: np.random.Generator, *shape: int) -> ComplexArray:
-    drawn: ComplexArray = rng.normal(size=shape) + 1j * rng.normal(size=shape)
-    return drawn
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -81,7 +76,7 @@ class _Straight:
 def _patches(rng: np.random.Generator, parts: tuple[slice, ...]) -> ComplexArray:
     patches = np.zeros((3, parts[-1].stop), dtype=complex)
     for k, part in enumerate(parts):
-        patches[k, part] = _normal(rng, part.stop - part.start)
+        patches[k, part] = normal_numbers(rng, part.stop - part.start)
     return patches
 
 
@@ -115,7 +110,7 @@ class _FromProducts(_Straight):
         for k, pair in enumerate(kinds):
             for side, part in enumerate(pair):
                 width = part.stop - part.start
-                forms[side, k, part] = _normal(rng, width) / np.sqrt(width)
+                forms[side, k, part] = normal_numbers(rng, width) / np.sqrt(width)
         turn = np.exp(2j * np.pi * rng.uniform())
         product = turn * forms[0][:, :, None] * forms[1][:, None, :]
         start = product + product.transpose(0, 2, 1)

@@ -221,7 +221,7 @@ class Majorant:
             omega_slope=PROOF_SLACK * self.cubic(w) / w,
         )
 
-    def fitted(self, scale: Array) -> Array:
+    def fit_weights(self, scale: Array) -> Array:
         """Weights (B, n) in which the proof nearly always succeeds where there are any such.
 
         An unknown's weight is how far it may move: y, or what the others bring about. With

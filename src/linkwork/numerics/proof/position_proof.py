@@ -177,7 +177,7 @@ def _radii(block: Block, place: Expansion, error_bound: Array, fitted: bool = Fa
     with np.errstate(all="ignore"):
         majorant = Majorant(place, error_bound[:, block.variables[n:]])
         if fitted:
-            weights = majorant.fitted(weights)
+            weights = majorant.fit_weights(weights)
         return weighted_radii(majorant.bounds(weights), weights)
 
 
