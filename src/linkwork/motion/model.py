@@ -25,6 +25,8 @@ from linkwork.motion.rails import rails_of
 from linkwork.motion.redundancy import check_redundancy
 from linkwork.motion.speeds import input_speed
 from linkwork.results.position import Position
+from linkwork.results.quantities.definition import MechanismNames
+from linkwork.results.quantities.registry import Quantities
 from linkwork.results.quantity import Kind, Units
 
 __all__ = ["Model", "model_of"]
@@ -87,6 +89,30 @@ class Model:
     def units(self) -> Units:
         """The mechanism's units."""
         return Units(self.description.angle, self.description.length)
+
+    @cached_property
+    def quantities(self) -> Quantities:
+        """What can be asked of its positions and motions."""
+        equations = self.equations
+        released = {part.variable for part in equations.redundant}
+        inputs = {v.name: Kind(v.kind) for v in equations.inputs}
+        lead = equations.inputs[lock_step(self.rows)[0]].name if inputs else ""
+        return Quantities(
+            MechanismNames(
+                units=self.units,
+                skeleton=self.skeleton,
+                inputs=inputs,
+                unknowns={
+                    v.name: Kind(v.kind) for v in equations.unknowns if v.name not in released
+                },
+                links=tuple(equations.links),
+                sliders=tuple(equations.sliders),
+                outputs={name: Kind(output.kind) for name, output in equations.outputs.items()},
+                points=tuple(getattr(self.description, "points", {})),
+                by=self.derivative_unit,
+                lead=lead,
+            )
+        )
 
     @cached_property
     def input_scale(self) -> Array:

@@ -1,0 +1,16 @@
+"""All quantities beyond a mechanism's own: those of every row, and those of a whole motion."""
+
+from __future__ import annotations
+
+from linkwork.results.quantities.definition import MotionQuantity, RowQuantity
+from linkwork.results.quantities.extremes import EXTREMES
+from linkwork.results.quantities.stroke import STROKE
+
+__all__ = ["MOTION_QUANTITIES", "ROW_QUANTITIES"]
+
+ROW_QUANTITIES: tuple[RowQuantity, ...] = ()
+
+MOTION_QUANTITIES: tuple[MotionQuantity, ...] = (
+    *EXTREMES,
+    *STROKE,
+)
