@@ -43,7 +43,8 @@ class DesignValues(QuantityValues):
         turns: TurnArray,
         rates: DesignRates | None = None,
     ) -> None:
-        lost: BoolArray = np.isnan(v).any(axis=0) if len(v) else np.zeros(v.shape[1:], dtype=bool)
+        lost: BoolArray = np.zeros(v.shape[1:], dtype=bool)
+        lost |= np.isnan(v).any(axis=0)
         still = _NONE if rates is None else np.where(lost, np.nan, 0.0)
         super().__init__(designs.base, lost, still, designs.link_angles, designs.numbers)
         self.designs, self.inputs, self.v, self.turns = designs, inputs, v, turns

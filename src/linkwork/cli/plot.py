@@ -12,6 +12,7 @@ from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.motion_page import failure_line
 from linkwork.cli.options import (
     change_points_option,
+    columns_option,
     configuration_option,
     debug_option,
     file_argument,
@@ -38,13 +39,9 @@ __all__ = ["plot"]
 @click.command
 @file_argument
 @click.option("-o", "--output", metavar="PATH", required=True, help="Picture: .png, .svg or .pdf.")
-@click.option(
-    "--of",
-    "names",
-    metavar="NAME",
-    multiple=True,
-    help="What to plot: a column of the table; a point for path and hodograph; a pin for "
-    "transmission; repeatable. Left out: unknowns and outputs, traced points, all pins.",
+@columns_option(
+    "What to plot: a column of the table; a point for path and hodograph; a pin for "
+    "transmission. Left out: unknowns and outputs, traced points, all pins."
 )
 @click.option(
     "--kind",
@@ -90,10 +87,10 @@ def plot(
     branches      the same branch by branch, side by side
 
     \b
-      linkwork plot rapier.toml -o s16.png --of s16 --of s16.d1
-      linkwork plot fourbar.toml -o time.svg --of B.velocity --against time
-      linkwork plot jansen.toml -o foot.png --kind hodograph --of F
-      linkwork plot rapier.toml -o quality.png --of condition --of residual
+      linkwork plot rapier.toml -o s16.png --columns s16 --columns s16.d1
+      linkwork plot fourbar.toml -o time.svg --columns B.velocity --against time
+      linkwork plot jansen.toml -o foot.png --kind hodograph --columns F
+      linkwork plot rapier.toml -o quality.png --columns condition --columns residual
     """
     picture.check_picture(output)
     check_outputs(file, output)

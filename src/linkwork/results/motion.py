@@ -249,9 +249,9 @@ class Motion:
         found = self.residual[self.found]
         return float(found.max()) if len(found) else float("nan")
 
-    def table(self) -> Table:
-        """All columns with units; see :func:`linkwork.results.table.table_of`."""
-        return table_of(self)
+    def table(self, *names: str) -> Table:
+        """Columns with units, all or those named; see :func:`linkwork.results.table.table_of`."""
+        return table_of(self, names)
 
     def to_pandas(self) -> Any:
         """A pandas DataFrame with the input as index."""

@@ -17,7 +17,7 @@ from linkwork.drawing.theme import DARK, LIGHT, Theme
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.results.force import Force, check_forces, force_unit
-from linkwork.results.motion import Motion, Series
+from linkwork.results.motion import Motion
 from linkwork.results.quantity import Rate
 from linkwork.results.vector_loop import MovingLoop
 from linkwork.viewer.loop_arrows import loop_arrows
@@ -191,11 +191,14 @@ def _columns(motion: Motion, pack: Pack) -> Iterator[Column]:
             first=None,
             first_unit="",
         )
-    everything: dict[str, tuple[str, Series]] = {}
-    everything |= {name: ("unknown", series) for name, series in motion.unknowns.items()}
-    everything |= {name: ("unknown", motion.links[name]) for name in motion.riding}
-    everything |= {name: ("output", series) for name, series in motion.outputs.items()}
-    for name, (group, series) in everything.items():
+    everything = dict.fromkeys([*motion.unknowns, *motion.riding], "unknown")
+    everything |= dict.fromkeys(motion.outputs, "output")
+    traced = motion.skeleton.traced
+    for name, asked in motion.quantities.derived.items():
+        if asked.row is not None and (not asked.row.of_path or asked.part in traced):
+            everything[name] = "derived"
+    for name, group in everything.items():
+        series = motion.series(name)
         kind = series.quantity.kind
         yield Column(
             name=name,

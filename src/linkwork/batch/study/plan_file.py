@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -46,8 +46,13 @@ Key = tuple[str | int, ...]
 T = TypeVar("T")
 
 
-def read_plan(path: Path | str) -> Study:
+def read_plan(path: Path | str, *, columns: Sequence[str] = ()) -> Study:
     """Read the plan of a study.
+
+    Parameters
+    ----------
+    columns : sequence of str
+        Quantities that are kept at every row besides those that the plan keeps.
 
     Raises
     ------
@@ -56,15 +61,23 @@ def read_plan(path: Path | str) -> Study:
     """
     name = str(path)
     text = text_of(bytes_of(Path(path), name), name)
-    return read_plan_text(text, name, Path(path).parent)
+    return read_plan_text(text, name, Path(path).parent, columns=columns)
 
 
-def read_plan_bytes(data: bytes, name: str = "standard input") -> Study:
+def read_plan_bytes(
+    data: bytes, name: str = "standard input", *, columns: Sequence[str] = ()
+) -> Study:
     """Read the plan in the bytes of a file; raises like :func:`read_plan`."""
-    return read_plan_text(text_of(data, name), name)
+    return read_plan_text(text_of(data, name), name, columns=columns)
 
 
-def read_plan_text(text: str, name: str = "the plan", folder: Path | str = ".") -> Study:
+def read_plan_text(
+    text: str,
+    name: str = "the plan",
+    folder: Path | str = ".",
+    *,
+    columns: Sequence[str] = (),
+) -> Study:
     """Read the plan in a text; files that it names are looked for in ``folder``.
 
     Raises like :func:`read_plan`.
@@ -75,7 +88,10 @@ def read_plan_text(text: str, name: str = "the plan", folder: Path | str = ".") 
     structure = Structure(data, PLAN)
     if structure.problems:
         raise located_error(structure.problems, lines, name)
-    reader = _Reader(structure.content, text, Path(folder))
+    content = dict(structure.content)
+    if columns:
+        content["keep"] = [*dict.fromkeys([*content.get("keep", ()), *columns])]
+    reader = _Reader(content, text, Path(folder))
     study = reader.study(Path(name).stem)
     if study is None:
         raise located_error(reader.problems, lines, name)

@@ -106,6 +106,8 @@ class RowQuantity:
         The parts of a mechanism that have it, with the kind of its value.
     evaluate : callable
         From names, solved positions and the part; angles in radians.
+    of_path : bool
+        Whether it is about the path of a point: pages list it for traced points only.
     """
 
     word: str
@@ -113,6 +115,7 @@ class RowQuantity:
     needs: int
     of: Callable[[MechanismNames], Mapping[str, Kind]]
     evaluate: Callable[[MechanismNames, Solved, str], Jet]
+    of_path: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

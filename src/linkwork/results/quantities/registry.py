@@ -117,6 +117,13 @@ class Asked:
         return self.rate.unit(self.own.kind, units, self.names.by)
 
     @property
+    def measure(self) -> str:
+        """What it measures, in a word; "" for a number."""
+        if self.own.kind is Kind.NUMBER:
+            return ""
+        return self.own.kind.value if self.rate is None else self.rate.measure
+
+    @property
     def needs(self) -> int:
         """How many derivatives of the positions its values take."""
         return (self.row.needs if self.row else 0) + (self.rate.order if self.rate else 0)
