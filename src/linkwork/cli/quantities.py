@@ -17,7 +17,7 @@ from linkwork.results.quantities.registry import Listed
 __all__ = ["quantities"]
 
 _GAPS = 8  # before every column of the table
-_NARROWEST = 24  # characters of the line about a quantity
+_NARROWEST = 16  # characters of the line about a quantity
 
 
 @click.command
@@ -41,7 +41,7 @@ def quantities(file: str, changes: tuple[str, ...], as_json: bool) -> None:
     model = mechanism.model
     listed = list(model.quantities.listed(timed=model.speed is not None))
     if as_json:
-        print_json([asdict(line) for line in listed])
+        print_json({"quantities": [asdict(line) for line in listed]})
     else:
         print_lines([*title_lines(mechanism.name), "", *_table(listed)])
 

@@ -14,6 +14,7 @@ from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.names import canonical
 from linkwork.motion.model import Model
 from linkwork.results.quantities.definition import Vector
+from linkwork.results.quantities.index import row_quantity
 from linkwork.results.quantities.registry import Group
 from linkwork.results.quantity import Kind
 
@@ -95,7 +96,7 @@ class QuantityValues(ABC):
         return Jet(v, d1, d2)
 
     def _known(self, name: str) -> Mapping[str, Jet]:
-        """What the formula of an output needs: dimensions, variables, links, coordinates."""
+        """What the formula of an output needs: dimensions, variables, links, coordinates, …"""
         equations = self.equations
         used = {node.name for node in names_in(equations.outputs[name].formula)}
         zero = np.zeros(())
@@ -116,6 +117,11 @@ class QuantityValues(ABC):
                 symbol = coordinate_name(point, axis)
                 if symbol in used:
                     found[symbol] = self._coordinate(f"{point}.{axis}")
+        for symbol in used - set(found):
+            if row_quantity(symbol) is not None:
+                asked = self.model.quantities.find(symbol)
+                jet, scale = asked.jet(self), self.model.units.scale(asked.own.kind)
+                found[symbol] = Jet(jet.v, jet.d1 / scale, jet.d2 / scale)
         return found
 
     def _in_file_units(self, jet: Jet, kind: Kind) -> Jet:

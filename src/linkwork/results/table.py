@@ -105,8 +105,8 @@ def table_of(motion: Motion, names: Sequence[str] = ()) -> Table:
     for name, values in motion.inputs.items():
         add(name, values, motion.input_units[name])
     if names:
-        for asked in map(motion.quantity, names):
-            add(asked.name, motion[asked.name], asked.unit)
+        for quantity in map(motion.quantity, names):
+            add(quantity.name, motion[quantity.name], quantity.unit)
         add("status", np.array([status.name for status in motion.status]), "")
         return Table(columns=columns, units=unit_of, index=next(iter(motion.inputs)))
     everything: dict[str, Series] = dict(motion.unknowns)

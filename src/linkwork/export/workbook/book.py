@@ -55,7 +55,7 @@ class Book:
     """A workbook while its sheets are written.
 
     ``values`` holds what formulas come to: numbers of dimensions, arrays (R,) of what
-    every row has. ``columns``: further quantities for the sheet of Linkwork's own values.
+    every row has. ``further``: further quantities for the sheet of Linkwork's own values.
     """
 
     workbook: Any
@@ -64,7 +64,7 @@ class Book:
     traced: TracedEquations
     closure: ClosureFormulas
     iterations: Iterations
-    columns: tuple[str, ...] = ()
+    further: tuple[str, ...] = ()
     names: CellNames = field(default_factory=CellNames)
     values: dict[str, Any] = field(default_factory=dict)
 

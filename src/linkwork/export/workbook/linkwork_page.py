@@ -16,7 +16,7 @@ def write_linkwork(book: Book, sheet: Any) -> None:
     """All columns of the motion's table and those asked for, every row, at full precision."""
     motion, style = book.motion, book.style
     table = motion.table()
-    further = motion.table(*book.columns) if book.columns else table
+    further = motion.table(*book.further) if book.further else table
     columns = {**table.columns, **further.columns}
     units = {**table.units, **further.units}
     sheet.write(0, 0, f"{book.model.description.name}: values by Linkwork", style["title"])

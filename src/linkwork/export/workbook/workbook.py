@@ -37,14 +37,14 @@ class WrittenWorkbook:
     notices: tuple[str, ...]
 
 
-def workbook_of(model: Model, motion: Motion, columns: Sequence[str] = ()) -> WrittenWorkbook:
+def workbook_of(model: Model, motion: Motion, further: Sequence[str] = ()) -> WrittenWorkbook:
     """Write a motion of a mechanism as a workbook that solves it again.
 
     Parameters
     ----------
     model : Model
     motion : Motion
-    columns : sequence of str
+    further : sequence of str
         Further quantities, as values on the sheet of Linkwork's own table.
         A sweep of that mechanism.
 
@@ -71,7 +71,7 @@ def workbook_of(model: Model, motion: Motion, columns: Sequence[str] = ()) -> Wr
     )
     formulas = ClosureFormulas(model, traced(description))
     done = iterated(model, motion, formulas)
-    book = Book(workbook, model, motion, formulas.traced, formulas, done, tuple(columns))
+    book = Book(workbook, model, motion, formulas.traced, formulas, done, tuple(further))
     about = workbook.add_worksheet("About")
     write_dimensions(book)
     cycle = workbook.add_worksheet(CYCLE)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 
 from linkwork.expression.jets import Jet
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.quantity import Kind, Units
@@ -22,7 +22,10 @@ __all__ = [
     "RowQuantity",
     "Solved",
     "Vector",
+    "folded",
 ]
+
+_SAME = 1e-9  # relative: what differs by less is the same
 
 #: The derivative of a quantity whose derivative would need a third one of the positions.
 UNKNOWN = np.array(np.nan)
@@ -38,6 +41,8 @@ class MechanismNames:
     skeleton : Skeleton
     inputs, unknowns, outputs : Mapping[str, Kind]
         With what they measure.
+    output_needs : Mapping[str, int]
+        Of outputs, how many derivatives of the positions their values take.
     links, sliders, points : tuple of str
     by : str
         What derivatives are taken by: ``rad``, or the length unit; "" without an input.
@@ -52,6 +57,7 @@ class MechanismNames:
     links: tuple[str, ...] = ()
     sliders: tuple[str, ...] = ()
     outputs: Mapping[str, Kind] = FrozenDict()
+    output_needs: Mapping[str, int] = FrozenDict()
     points: tuple[str, ...] = ()
     by: str = ""
     lead: str = ""
@@ -108,6 +114,8 @@ class RowQuantity:
         From names, solved positions and the part; angles in radians.
     of_path : bool
         Whether it is about the path of a point: pages list it for traced points only.
+    kind : Kind
+        What formulas take it for.
     """
 
     word: str
@@ -116,6 +124,7 @@ class RowQuantity:
     of: Callable[[MechanismNames], Mapping[str, Kind]]
     evaluate: Callable[[MechanismNames, Solved, str], Jet]
     of_path: bool = False
+    kind: Kind = Kind.NUMBER
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,6 +141,8 @@ class MotionRows:
         Its derivatives by the leading input, in the same units; NaN if not asked for.
     unit : float
         [rad] or [length] per unit of the input in files.
+    turn : float
+        A full turn of the leading input [rad], 0 if it is no angle.
     """
 
     input: Array
@@ -139,6 +150,34 @@ class MotionRows:
     first: Array
     second: Array
     unit: float
+    turn: float
+
+    def ascending(self) -> MotionRows | None:
+        """The rows by growing input; ``None`` if the input turns back between them."""
+        steps = np.diff(self.input)
+        if (steps >= 0.0).all():
+            return self
+        if (steps > 0.0).any():
+            return None
+        value, first, second = (x[..., ::-1] for x in (self.value, self.first, self.second))
+        return replace(self, input=self.input[::-1], value=value, first=first, second=second)
+
+    @property
+    def cycle(self) -> BoolArray:
+        """Which motions come back after one turn of the input, at the last row, (…,)."""
+        span = self.input[-1] - self.input[0]
+        around = self.turn > 0.0 and abs(abs(span) - self.turn) <= _SAME * self.turn
+        size = np.fmax.reduce(np.abs(self.value), axis=-1)
+        same = np.abs(self.value[..., -1] - self.value[..., 0]) <= _SAME * size
+        found: BoolArray = around & same & np.isfinite(self.value).all(axis=-1)
+        return found
+
+
+def folded(angle: Jet, period: float) -> Jet:
+    """The size of an angle that is the same after a period: from 0 to half of it [rad]."""
+    rest = angle.v - period * np.round(angle.v / period)
+    side = np.sign(rest)
+    return Jet(np.abs(rest), side * angle.d1, side * angle.d2)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,7 @@ from linkwork.results.quantities.definition import MotionQuantity, RowQuantity
 from linkwork.results.quantities.extremes import EXTREMES
 from linkwork.results.quantities.stroke import STROKE
 
-__all__ = ["MOTION_QUANTITIES", "ROW_QUANTITIES"]
+__all__ = ["MOTION_QUANTITIES", "ROW_QUANTITIES", "row_quantity"]
 
 ROW_QUANTITIES: tuple[RowQuantity, ...] = ()
 
@@ -14,3 +14,8 @@ MOTION_QUANTITIES: tuple[MotionQuantity, ...] = (
     *EXTREMES,
     *STROKE,
 )
+
+
+def row_quantity(name: str) -> RowQuantity | None:
+    """The quantity that a name ends with: that of ``B.transmission``."""
+    return next((row for row in ROW_QUANTITIES if name.endswith(f".{row.word}")), None)

@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from linkwork.expression.jets import Jet
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import as_name, canonical, spelled
@@ -126,7 +127,8 @@ class Asked:
     @property
     def needs(self) -> int:
         """How many derivatives of the positions its values take."""
-        return (self.row.needs if self.row else 0) + (self.rate.order if self.rate else 0)
+        own = self.row.needs if self.row else self.names.output_needs.get(self.own.name, 0)
+        return own + (self.rate.order if self.rate else 0)
 
     def check_rate(self, speed: Array | float | None) -> None:
         """Refuse a rate that is not known: of a derived quantity, or by time without a speed.
@@ -215,13 +217,14 @@ class AskedOfMotion:
         value, first, second : (…, R)
             See :meth:`columns`.
         """
-        units = self.names.units
+        units, kind = self.names.units, self.names.inputs[self.names.lead]
         rows = MotionRows(
             input=leading,
             value=value,
             first=np.broadcast_to(first, value.shape),
             second=np.broadcast_to(second, value.shape),
-            unit=units.scale(self.names.inputs[self.names.lead]),
+            unit=units.scale(kind),
+            turn=FULL_TURN if kind is Kind.ANGLE else 0.0,
         )
         with np.errstate(all="ignore"):
             return np.asarray(self.quantity.evaluate(rows, self.numbers), dtype=float)
@@ -357,7 +360,7 @@ class Quantities:
             yield Listed(name=name, kind=Kind.NUMBER.value, unit="", about=EVIDENCE[name])
         for rate, about in _RATES.items():
             if timed or not rate.by_time:
-                yield Listed(name=f"….{rate.value}", kind=rate.measure, unit="", about=about)
+                yield Listed(name=f"….{rate.value}", kind="rate", unit="", about=about)
         for quantity in MOTION_QUANTITIES:
             inside = ["POINT" if quantity.of_point else "…", *map(str.upper, quantity.numbers)]
             name = f"{quantity.word}({', '.join(inside)})"
