@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from linkwork.results.quantities.definition import MotionQuantity, RowQuantity
 from linkwork.results.quantities.extremes import EXTREMES
+from linkwork.results.quantities.mechanical_advantage import MECHANICAL_ADVANTAGE
 from linkwork.results.quantities.stroke import STROKE
 from linkwork.results.quantities.transmission import TRANSMISSION
 
 __all__ = ["MOTION_QUANTITIES", "ROW_QUANTITIES", "row_quantity"]
 
-ROW_QUANTITIES: tuple[RowQuantity, ...] = (*TRANSMISSION,)
+ROW_QUANTITIES: tuple[RowQuantity, ...] = (
+    *TRANSMISSION,
+    *MECHANICAL_ADVANTAGE,
+)
 
 MOTION_QUANTITIES: tuple[MotionQuantity, ...] = (
     *EXTREMES,
