@@ -5,6 +5,7 @@ from __future__ import annotations
 from linkwork.results.quantities.definition import MotionQuantity, RowQuantity
 from linkwork.results.quantities.extremes import EXTREMES
 from linkwork.results.quantities.mechanical_advantage import MECHANICAL_ADVANTAGE
+from linkwork.results.quantities.path_curvature import PATH_CURVATURE
 from linkwork.results.quantities.stroke import STROKE
 from linkwork.results.quantities.transmission import TRANSMISSION
 
@@ -13,6 +14,7 @@ __all__ = ["MOTION_QUANTITIES", "ROW_QUANTITIES", "row_quantity"]
 ROW_QUANTITIES: tuple[RowQuantity, ...] = (
     *TRANSMISSION,
     *MECHANICAL_ADVANTAGE,
+    *PATH_CURVATURE,
 )
 
 MOTION_QUANTITIES: tuple[MotionQuantity, ...] = (
