@@ -6,6 +6,7 @@ from linkwork.results.quantities.definition import MotionQuantity, RowQuantity
 from linkwork.results.quantities.extremes import EXTREMES
 from linkwork.results.quantities.mechanical_advantage import MECHANICAL_ADVANTAGE
 from linkwork.results.quantities.path_curvature import PATH_CURVATURE
+from linkwork.results.quantities.pressure_angle import PRESSURE_ANGLE
 from linkwork.results.quantities.stroke import STROKE
 from linkwork.results.quantities.transmission import TRANSMISSION
 
@@ -15,6 +16,7 @@ ROW_QUANTITIES: tuple[RowQuantity, ...] = (
     *TRANSMISSION,
     *MECHANICAL_ADVANTAGE,
     *PATH_CURVATURE,
+    *PRESSURE_ANGLE,
 )
 
 MOTION_QUANTITIES: tuple[MotionQuantity, ...] = (
