@@ -8,6 +8,7 @@ from linkwork.results.quantities.mechanical_advantage import MECHANICAL_ADVANTAG
 from linkwork.results.quantities.path_curvature import PATH_CURVATURE
 from linkwork.results.quantities.pressure_angle import PRESSURE_ANGLE
 from linkwork.results.quantities.stroke import STROKE
+from linkwork.results.quantities.time_ratio import TIME_RATIO
 from linkwork.results.quantities.transmission import TRANSMISSION
 
 __all__ = ["MOTION_QUANTITIES", "ROW_QUANTITIES", "row_quantity"]
@@ -22,6 +23,7 @@ ROW_QUANTITIES: tuple[RowQuantity, ...] = (
 MOTION_QUANTITIES: tuple[MotionQuantity, ...] = (
     *EXTREMES,
     *STROKE,
+    *TIME_RATIO,
 )
 
 
