@@ -6,6 +6,7 @@ from linkwork.results.quantities.definition import MotionQuantity, RowQuantity
 from linkwork.results.quantities.extremes import EXTREMES
 from linkwork.results.quantities.mechanical_advantage import MECHANICAL_ADVANTAGE
 from linkwork.results.quantities.path_curvature import PATH_CURVATURE
+from linkwork.results.quantities.path_length import PATH_LENGTH
 from linkwork.results.quantities.pressure_angle import PRESSURE_ANGLE
 from linkwork.results.quantities.stroke import STROKE
 from linkwork.results.quantities.time_ratio import TIME_RATIO
@@ -24,6 +25,7 @@ MOTION_QUANTITIES: tuple[MotionQuantity, ...] = (
     *EXTREMES,
     *STROKE,
     *TIME_RATIO,
+    *PATH_LENGTH,
 )
 
 
