@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from linkwork.results.quantities.definition import MotionQuantity, RowQuantity
+from linkwork.results.quantities.dwell import DWELL
 from linkwork.results.quantities.extremes import EXTREMES
 from linkwork.results.quantities.mechanical_advantage import MECHANICAL_ADVANTAGE
 from linkwork.results.quantities.path_curvature import PATH_CURVATURE
@@ -26,6 +27,7 @@ MOTION_QUANTITIES: tuple[MotionQuantity, ...] = (
     *STROKE,
     *TIME_RATIO,
     *PATH_LENGTH,
+    *DWELL,
 )
 
 
