@@ -252,6 +252,7 @@ def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
         "check",
         "equations",
         "solve",
+        "quantities",
         "sweep",
         "configurations",
         "circuits",

@@ -354,7 +354,7 @@ def test_the_leading_input_is_the_one_that_moves() -> None:
     [
         (
             "rapier-drive", ["s17"], {}, UnknownNameError,
-            'there is no "s17" (nearest: s16, θ15, θ14; all: linkwork quantities FILE)',
+            'there is no "s17" (nearest: s16, radius, θ15; all: linkwork quantities FILE)',
         ),
         (
             "four-bar", ["status"], {}, InputError,

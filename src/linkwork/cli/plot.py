@@ -90,7 +90,7 @@ def plot(
       linkwork plot rapier.toml -o s16.png --columns s16 --columns s16.d1
       linkwork plot fourbar.toml -o time.svg --columns B.velocity --against time
       linkwork plot jansen.toml -o foot.png --kind hodograph --columns F
-      linkwork plot rapier.toml -o quality.png --columns condition --columns residual
+      linkwork plot rapier.toml -o quality.png --columns condition
     """
     picture.check_picture(output)
     check_outputs(file, output)

@@ -85,8 +85,8 @@ z = "certified"
   line 7   dimensions."O2 A"  sampling = "latin-hypercube" wants a range: { from = 36, to = 44 }; got mean, deviation
   line 8   dimensions."A B"   from = 5 must not be larger than to = 2
   line 10  input.step         a step of -3 does not lead from 0 to 360
-  line 12  reductions.a       there is no number "range" of a motion (nearest: mean, max, min; all: linkwork quantities FILE)
-  line 13  reductions.b       must be a number of a whole motion, as in "stroke(rocker)", got "mu" (nearest: max, min, mean; all: linkwork quantities FILE)
+  line 12  reductions.a       there is no number "range" of a motion (nearest: mean, path_length, stroke; all: linkwork quantities FILE)
+  line 13  reductions.b       must be a number of a whole motion, as in "stroke(rocker)", got "mu" (nearest: min, max, mean; all: linkwork quantities FILE)
   line 15  filters.x          must be "whole cycle", "no dead point", "certified" or a comparison such as "mu >= 40" or "stroke(rocker) <= 60", got "mu => 40"
   line 16  filters.y          "forty" in "mu >= forty" must be a number, as in "mu >= 40"
   line 17  filters.z          no design passes it with certify = false: leave one of them out""",
@@ -118,11 +118,11 @@ x = "mew <= 40"
   line 6   keep[4]                 "B.x" is already the name of keep[3]: leave it out or rename it
   line 10  reductions."B.x"        "B.x" is already the name of keep[3]: leave it out or rename it
   line 11  reductions.passed       "passed" is already an array of every study: leave it out or rename it
-  line 12  reductions.a            there is no "mew" (nearest: mu, O4.y, O4.x; all: linkwork quantities FILE)
+  line 12  reductions.a            there is no "mew" (nearest: mu, unique_within, rocker; all: linkwork quantities FILE)
   line 13  reductions."x/y"        "x/y" cannot name an array: up to 80 letters, without / \\ : *
   line 14  reductions."zarr.json"  "zarr.json" is already an array of every study: leave it out or rename it
   line 15  reductions.".x"         ".x" cannot name an array: begin with a letter
-  line 17  filters.x               there is no "mew" (nearest: mu, O4.y, O4.x; all: linkwork quantities FILE)""",
+  line 17  filters.x               there is no "mew" (nearest: mu, unique_within, rocker; all: linkwork quantities FILE)""",
     ),
     "numbers of the mechanism that are called like an array of the store": (
         'format = 1\nmechanism = "circle.toml"\nsampling = "grid"\n'
