@@ -62,7 +62,7 @@ def test_a_quantity_of_every_row_is_one_everywhere(
     column = column_of(motion, name)
     np.testing.assert_array_equal(column.values, values)
     assert column.unit == unit
-    output = mechanism.description.outputs | {"copy": f"2*{name} + 1"}
+    output = {**mechanism.description.outputs, "copy": f"2*{name} + 1"}
     copied = lw.Mechanism(replace(mechanism.description, outputs=output)).sweep()
     np.testing.assert_allclose(copied["copy"], 2 * values + 1, rtol=1e-9, atol=1e-9)
 
@@ -206,7 +206,7 @@ def test_a_workbook_has_them_beside_linkworks_values(
     k = heads.index("B.transmission")
     numbers = [row[k] for row in rows if isinstance(row[k], float)]
     np.testing.assert_allclose(numbers, motion["B.transmission"], rtol=1e-12)
-    output = mechanism.description.outputs | {"q": "B.transmission - 90"}
+    output = {**mechanism.description.outputs, "q": "B.transmission - 90"}
     derived = lw.Mechanism(replace(mechanism.description, outputs=output))
     notices = workbook_of(derived.model, derived.sweep()).notices
     assert any(note.startswith("q: values on the sheet Linkwork only") for note in notices)
