@@ -198,16 +198,15 @@ def _columns(motion: Motion, pack: Pack) -> Iterator[Column]:
         if asked.row is not None and (not asked.row.of_path or asked.part in traced):
             everything[name] = "derived"
     for name, group in everything.items():
-        series = motion.series(name)
-        kind = series.quantity.kind
+        asked, series = motion.quantity(name), motion.series(name)
         yield Column(
             name=name,
             shown=printed_name(name),
-            unit=motion.units.of(kind),
+            unit=asked.unit,
             group=group,
             values=pack(series.value, found),
-            first=pack(series.first, found, rate=True),
-            first_unit=Rate.FIRST.unit(kind, motion.units, motion.derivative_unit),
+            first=pack(series.first, found, rate=True) if asked.needs < 2 else None,
+            first_unit=Rate.FIRST.unit(asked.own.kind, motion.units, motion.derivative_unit),
         )
 
 

@@ -153,7 +153,8 @@ class Asked:
             return solved.own(self.own.name)
         with np.errstate(all="ignore"):
             jet = self.row.evaluate(self.names, solved, self.part)
-        return Jet(jet.v / self.names.units.scale(self.own.kind), jet.d1, jet.d2)
+        rates = (np.broadcast_to(rate, np.shape(jet.v)) for rate in (jet.d1, jet.d2))
+        return Jet(jet.v / self.names.units.scale(self.own.kind), *rates)
 
     def values(self, solved: Solved, speed: Array | float | None) -> Array:
         """What was asked for, the rate included."""
