@@ -30,7 +30,11 @@ MEASUREMENTS = {
     "page": page_time.measure,
     "live": live_time.measure,
 }
-PROGRAMS = {"peers": "benchmarks.peers", "scaling": "benchmarks.scaling"}
+PROGRAMS = {
+    "peers": "benchmarks.peers",
+    "scaling": "benchmarks.scaling",
+    "before-after": "benchmarks.before_after",
+}
 
 
 def main(names: list[str]) -> int:

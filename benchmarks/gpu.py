@@ -23,7 +23,7 @@ from linkwork.foundation.errors import InputError
 from linkwork.kernels.gpu.compiling import graphics_card, name_of
 from linkwork.kernels.gpu.kernel import DeviceKernel
 from linkwork.kernels.march.sweep_kernel import Steps
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.program.execution import Execution
 from linkwork.mechanism.quantities import quantities
 
 __all__ = ["FAMILIES", "Compared", "compared", "family_of", "kernel_speed", "main"]
@@ -86,7 +86,7 @@ def compared(ours: FamilyMotion, reference: FamilyMotion) -> Compared:
     differing = (ours.status != reference.status) | (ours.certification != reference.certification)
     both = ours.found & reference.found
     table = ours.designs.base.compiled.table
-    turns = table.turns[: table.unknowns]
+    turns = table.is_angle[: table.unknowns]
     weights = np.where(turns[:, None], 1.0, ours.designs.length_scale)
     gaps = np.abs(ours.rows.v - reference.rows.v) / weights[:, None, :]
     gap = gaps.max(axis=0).T[both]
@@ -108,7 +108,7 @@ def kernel_speed(family: Family, certify: bool, positions: int) -> tuple[int, fl
     model = family.designs.base
     path = Path.of(model)
     assert path is not None
-    march = path.march(family.designs, certify, 1, Gear(device="gpu"))
+    march = path.march(family.designs, certify, 1, Execution(device="gpu"))
     kernel = march.kernel
     assert isinstance(kernel, DeviceKernel)
     rows = np.sort(model.rows[:, path.lead])

@@ -1,20 +1,18 @@
 """The TypeScript types of the front end's data and of the live page's messages, from Python.
 
-python scripts/frontend_types.py          writes frontend/src/page_data.ts, messages.ts, palette.ts
+python scripts/frontend_types.py          writes frontend/src/page_data.ts and messages.ts
 python scripts/frontend_types.py --check  says whether they are current
 """
 
 from __future__ import annotations
 
-import json
 import sys
 import types
 import typing
-from dataclasses import asdict, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 from linkwork.viewer import page_data
-from linkwork.viewer.live.palette import PALETTE, PaletteField, PalettePart
 from linkwork.viewer.live.typescript import typescript_types
 
 SOURCES = Path(__file__).resolve().parent.parent / "frontend" / "src"
@@ -56,19 +54,10 @@ def module_text() -> str:
     return "\n\n".join([head, *map(interface, kinds)]) + "\n"
 
 
-def palette_text() -> str:
-    """The parts that can be added."""
-    head = "// Written by scripts/frontend types from linkwork.viewer.live.palette: change that."
-    parts = json.dumps([asdict(part) for part in PALETTE], indent=2, ensure_ascii=False)
-    listed = f"export const PALETTE: readonly PalettePart[] = {parts};"
-    return "\n\n".join([head, interface(PaletteField), interface(PalettePart), listed]) + "\n"
-
-
 def main(arguments: list[str]) -> int:
     texts = {
         "page_data.ts": module_text(),
         "messages.ts": typescript_types(),
-        "palette.ts": palette_text(),
     }
     stale = 0
     for name, text in texts.items():

@@ -71,7 +71,9 @@ def _figures() -> int:
         wanted = dict(shown)
         vectors = wanted.pop("vectors", False)
         scene = lw.example(name).scene(vectors=vectors, options=drawing.SceneOptions(**wanted))
-        page = drawing.render(scene, "png", dpi=_FIGURE_DPI, theme=drawing.theme_named(theme))
+        page = drawing.render(
+            scene, "png", dpi=_FIGURE_DPI, theme=drawing.theme_named(theme, drawing.THEMES)
+        )
         _write_small(page, FIGURES / f"{figure}.png")
     return len(_SHOWN)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from importlib import import_module
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,7 +14,23 @@ from benchmarks.peers.peer import Peer, Prepared
 from benchmarks.peers.work import Work
 from linkwork.foundation.arrays import Array
 
-__all__ = ["LinkworkKernel"]
+if TYPE_CHECKING:  # compiled code is loaded by those who use it
+    from linkwork.batch.lane_rows import March
+    from linkwork.kernels.march.one_design import RowsOfOne
+
+__all__ = ["LinkworkKernel", "rows_of_one"]
+
+
+def rows_of_one(march: March, t: Array) -> RowsOfOne:
+    """The rows of a family of one design, to be computed again and again."""
+    steps = import_module("linkwork.kernels.march.sweep_kernel").Steps()
+    return march.kernel.prepare_single(
+        march.coefficients,
+        march.guess[:, 0],
+        float(march.start[0]),
+        t,
+        steps.times(march.path.size),
+    )
 
 
 class LinkworkKernel(Peer):
@@ -39,12 +56,12 @@ class LinkworkKernel(Peer):
         # compiled code is loaded by those who use it
         path = import_module("linkwork.batch.lane_rows").Path.of(model)
         assert path is not None
-        gear = import_module("linkwork.kernels.program.execution").Gear
-        march = path.march(family.designs, self.certify, 1, gear(specialised=self.compiled))
+        execution = import_module("linkwork.kernels.program.execution").Execution
+        march = path.march(family.designs, self.certify, 1, execution(specialised=self.compiled))
         t = model.rows[:, path.lead]
         t = np.ascontiguousarray(t[::-1] if path.falling else t)
 
-        one = march.of_one(t)
+        one = rows_of_one(march, t)
 
         def run() -> Array:
             found = one.run()

@@ -123,16 +123,16 @@ export class Arrows {
       });
   }
 
-  /** Drawn length over what it shows, a short number; tells the legend. */
+  /** Drawn length divided by the size of the quantity, a short number; sets the legend. */
   private scaled(largest: number, what: string, unit: string): number {
     this.legend = "";
     if (!(largest > 0)) return 0;
     const [left, bottom, right, top] = this.data.view as [number, number, number, number];
     const size = Math.max(right - left, top - bottom);
-    const each = roundUp(largest / (LONGEST * size)); // what a unit of length shows
+    const each = roundUp(largest / (LONGEST * size)); // the quantity per drawn unit of length
     const length = 10 ** Math.floor(Math.log10(LONGEST * size));
     const [shown, means] = [trimmed(shortNumber(length)), trimmed(shortNumber(each * length))];
-    this.legend = `${what}: ${`${shown} ${this.data.length_unit}`.trim()} shows ${`${means} ${unit}`.trim()}`;
+    this.legend = `${what} scale: ${`${shown} ${this.data.length_unit}`.trim()} = ${`${means} ${unit}`.trim()}`;
     return 1 / each;
   }
 

@@ -166,6 +166,12 @@ export interface Reload {
   id?: number;
 }
 
+export interface PaletteShown {
+  kind: "palette_shown";
+  answers: number | null;
+  parts: readonly (PalettePart)[];
+}
+
 export interface FileState {
   kind: "file_state";
   answers: number | null;
@@ -199,7 +205,6 @@ export interface MotionFound {
   missing: number;
   certified: number;
   limits: readonly (LimitFound)[];
-  worst_residual: number | null;
   message: string;
   page: PageData | null;
 }
@@ -291,6 +296,22 @@ export interface Saved {
   kind: "saved";
   answers: number | null;
   file: string;
+}
+
+export interface PalettePart {
+  table: string;
+  title: string;
+  doc: string;
+  fields: readonly (PaletteField)[];
+}
+
+export interface PaletteField {
+  name: string;
+  doc: string;
+  entry: string;
+  required: boolean;
+  words: readonly (string)[];
+  named: readonly (string)[];
 }
 
 export interface ChangeableNumber {
@@ -406,6 +427,7 @@ export type LiveRequest =
   | Reload;
 
 export type LiveEvent =
+  | PaletteShown
   | FileState
   | MotionFound
   | PositionFound

@@ -308,7 +308,7 @@ class Page implements Mounted {
   }
 
   private toggles(parent: Element): HTMLElement {
-    const box = html("div", { class: "lw-toggles", role: "group", "aria-label": "What is shown" }, parent);
+    const box = html("div", { class: "lw-toggles", role: "group", "aria-label": "Display options" }, parent);
     toggle(box, "Paths", true, (on) => this.drawing.toggle("paths", on));
     toggle(box, "Names", true, (on) => this.drawing.toggle("names", on));
     this.arrows.switches(box);

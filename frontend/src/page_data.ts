@@ -71,7 +71,6 @@ export interface PageData {
   readonly title: string;
   readonly length_unit: string;
   readonly derivative_unit: string;
-  readonly input_name: string;
   readonly input_unit: string;
   readonly view: readonly number[];
   readonly stroke: number;

@@ -4,187 +4,87 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from linkwork import api
 from linkwork.foundation.lazy import loader
-from linkwork.foundation.showing import shown_by
+from linkwork.foundation.presenting import register_when_needed
 
-shown_by("Motion.plot", "linkwork.drawing.charts.matplotlib_plot", "plot_motion")
-shown_by("Motion.animate", "linkwork.viewer.animation", "animate_motion")
-shown_by("Motion.widget", "linkwork.viewer.widget", "motion_widget")
-shown_by("Position.html", "linkwork.viewer.notebook_html", "position_html")
-shown_by("Motion.html", "linkwork.viewer.notebook_html", "motion_html")
-shown_by("Configurations.html", "linkwork.viewer.notebook_html", "configurations_html")
-shown_by("Circuits.html", "linkwork.viewer.notebook_html", "circuits_html")
-shown_by("Circuits.plot", "linkwork.drawing.charts.matplotlib_plot", "plot_circuits")
+register_when_needed(lambda: api.register_presenters())
 
 if TYPE_CHECKING:
     from linkwork.api import (
-        Mechanism,
-        example,
-        example_text,
-        examples,
-        linkage,
-        load,
-        loads,
-        loops,
-        plain_equations,
+        Mechanism as Mechanism,
+        example as example,
+        example_text as example_text,
+        examples as examples,
+        linkage as linkage,
+        load as load,
+        loads as loads,
+        loops as loops,
+        plain_equations as plain_equations,
     )
-    from linkwork.foundation.angles import AngleUnit
-    from linkwork.foundation.certification import Certification
-    from linkwork.foundation.circuit_end import CircuitEnd
-    from linkwork.foundation.completeness import Completeness
+    from linkwork.foundation.angles import AngleUnit as AngleUnit
+    from linkwork.foundation.certification import Certification as Certification
+    from linkwork.foundation.circuit_end import CircuitEnd as CircuitEnd
+    from linkwork.foundation.completeness import Completeness as Completeness
     from linkwork.foundation.errors import (
-        ExpressionError,
-        InputError,
-        LinkworkError,
-        MechanismError,
-        MechanismFileError,
-        MissingPackageError,
-        NotConvergedError,
-        Problem,
-        UnknownNameError,
+        ExpressionError as ExpressionError,
+        InputError as InputError,
+        LinkworkError as LinkworkError,
+        MechanismError as MechanismError,
+        MechanismFileError as MechanismFileError,
+        MissingPackageError as MissingPackageError,
+        NotConvergedError as NotConvergedError,
+        Problem as Problem,
+        UnknownNameError as UnknownNameError,
     )
-    from linkwork.foundation.newton_trouble import NewtonTrouble
-    from linkwork.foundation.status import Status
-    from linkwork.mechanism.contacts import (
-        Belt,
-        Cam,
-        Curve,
-        Gear,
-        Rack,
-        Rolling,
-        Segment,
-        Weld,
+    from linkwork.foundation.newton_trouble import NewtonTrouble as NewtonTrouble
+    from linkwork.foundation.status import Status as Status
+    from linkwork.mechanism.driven_input import Input as Input
+    from linkwork.mechanism.part.belt import Belt as Belt
+    from linkwork.mechanism.part.cam import Cam as Cam, Segment as Segment
+    from linkwork.mechanism.part.curve import Curve as Curve
+    from linkwork.mechanism.part.cylinder import Cylinder as Cylinder
+    from linkwork.mechanism.part.gear import Gear as Gear
+    from linkwork.mechanism.part.noncircular_gear import NoncircularGear as NoncircularGear
+    from linkwork.mechanism.part.rack import Rack as Rack
+    from linkwork.mechanism.part.rolling import Rolling as Rolling
+    from linkwork.mechanism.part.slider import Slider as Slider
+    from linkwork.mechanism.part.slot import Slot as Slot
+    from linkwork.mechanism.part.spring import Spring as Spring
+    from linkwork.mechanism.part.weld import Weld as Weld
+    from linkwork.numerics.newton import NewtonOptions as NewtonOptions
+    from linkwork.results.check import CheckReport as CheckReport
+    from linkwork.results.circuits import (
+        Branch as Branch,
+        Circuit as Circuit,
+        Circuits as Circuits,
     )
-    from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot, Spring
-    from linkwork.numerics.newton import NewtonOptions
-    from linkwork.results.check import CheckReport
-    from linkwork.results.circuits import Branch, Circuit, Circuits
-    from linkwork.results.classification import AssurGroup, Classification, Inversion, LoopType
-    from linkwork.results.configurations import Configurations, PathCount
-    from linkwork.results.failure import Failure, Remedy
-    from linkwork.results.force import Force
-    from linkwork.results.motion import Limit, LimitKind, Motion, OutputLimit, Series
-    from linkwork.results.position import Certificate, Position
-    from linkwork.results.table import Table
+    from linkwork.results.classification import (
+        AssurGroup as AssurGroup,
+        Classification as Classification,
+        Inversion as Inversion,
+        LoopType as LoopType,
+    )
+    from linkwork.results.configurations import (
+        Configurations as Configurations,
+        PathCount as PathCount,
+    )
+    from linkwork.results.failure import (
+        Failure as Failure,
+        Remedy as Remedy,
+    )
+    from linkwork.results.force import Force as Force
+    from linkwork.results.motion import (
+        Limit as Limit,
+        LimitKind as LimitKind,
+        Motion as Motion,
+        OutputLimit as OutputLimit,
+        Series as Series,
+    )
+    from linkwork.results.position import (
+        Certificate as Certificate,
+        Position as Position,
+    )
+    from linkwork.results.table import Table as Table
 else:
-    __getattr__ = loader(
-        __name__,
-        {
-            "api": (
-                "Mechanism",
-                "example",
-                "example_text",
-                "examples",
-                "linkage",
-                "load",
-                "loads",
-                "loops",
-                "plain_equations",
-            ),
-            "foundation.angles": ("AngleUnit",),
-            "foundation.certification": ("Certification",),
-            "foundation.circuit_end": ("CircuitEnd",),
-            "foundation.completeness": ("Completeness",),
-            "foundation.errors": (
-                "ExpressionError",
-                "InputError",
-                "LinkworkError",
-                "MechanismError",
-                "MechanismFileError",
-                "MissingPackageError",
-                "NotConvergedError",
-                "Problem",
-                "UnknownNameError",
-            ),
-            "foundation.newton_trouble": ("NewtonTrouble",),
-            "foundation.status": ("Status",),
-            "mechanism.contacts": (
-                "Belt",
-                "Cam",
-                "Curve",
-                "Gear",
-                "Rack",
-                "Rolling",
-                "Segment",
-                "Weld",
-            ),
-            "mechanism.parts": ("Cylinder", "Input", "Slider", "Slot", "Spring"),
-            "numerics.newton": ("NewtonOptions",),
-            "results.check": ("CheckReport",),
-            "results.circuits": ("Branch", "Circuit", "Circuits"),
-            "results.classification": (
-                "AssurGroup",
-                "Classification",
-                "Inversion",
-                "LoopType",
-            ),
-            "results.configurations": ("Configurations", "PathCount"),
-            "results.failure": ("Failure", "Remedy"),
-            "results.force": ("Force",),
-            "results.motion": ("Limit", "LimitKind", "Motion", "OutputLimit", "Series"),
-            "results.position": ("Certificate", "Position"),
-            "results.table": ("Table",),
-        },
-    )
-
-__all__ = [
-    "AngleUnit",
-    "AssurGroup",
-    "Belt",
-    "Branch",
-    "Cam",
-    "Certificate",
-    "Certification",
-    "CheckReport",
-    "Circuit",
-    "CircuitEnd",
-    "Circuits",
-    "Classification",
-    "Completeness",
-    "Configurations",
-    "Curve",
-    "Cylinder",
-    "ExpressionError",
-    "Failure",
-    "Force",
-    "Gear",
-    "Input",
-    "InputError",
-    "Inversion",
-    "Limit",
-    "LimitKind",
-    "LinkworkError",
-    "LoopType",
-    "Mechanism",
-    "MechanismError",
-    "MechanismFileError",
-    "MissingPackageError",
-    "Motion",
-    "NewtonOptions",
-    "NewtonTrouble",
-    "NotConvergedError",
-    "OutputLimit",
-    "PathCount",
-    "Position",
-    "Problem",
-    "Rack",
-    "Remedy",
-    "Rolling",
-    "Segment",
-    "Series",
-    "Slider",
-    "Slot",
-    "Spring",
-    "Status",
-    "Table",
-    "UnknownNameError",
-    "Weld",
-    "example",
-    "example_text",
-    "examples",
-    "linkage",
-    "load",
-    "loads",
-    "loops",
-    "plain_equations",
-]
+    __getattr__ = loader(__name__)

@@ -6,8 +6,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import linkwork as lw
 from linkwork.batch import building
@@ -16,7 +15,8 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, MechanismError, UnknownNameError
 from linkwork.mechanism import link_shape
 from linkwork.mechanism.quantities import Quantity, quantities
-from tests.batch.alone import agree
+from tests.batch.single_design import agree
+from tests.thinned import thinned
 
 FOUR_BAR = {
     "points": {"O2": (0, 0), "A": (20, 35), "B": (120, 70), "O4": ("d", 0), "P": (60, 90)},
@@ -71,7 +71,7 @@ def _varied(
     return found
 
 
-@pytest.mark.parametrize("name", lw.examples())
+@pytest.mark.parametrize("name", thinned(lw.examples()))
 def test_every_kind_of_number_of_every_library_mechanism_varies_as_by_itself(name: str) -> None:
     mechanism, rng = lw.example(name), np.random.default_rng(7)
     tables: dict[str, list[Quantity]] = {}
@@ -284,7 +284,7 @@ def test_scalars_hold_for_all_designs_and_no_designs_are_fine() -> None:
 
 def test_names_that_mean_nothing_are_refused_with_what_exists() -> None:
     with pytest.raises(
-        UnknownNameError, match=r'"O2 B" is no number of .* \(numbers: O4 B, O2 A, '
+        UnknownNameError, match=r'"O2 B" is not a number of .* \(numbers: O4 B, O2 A, '
     ):
         designs_of(_four_bar(), {"O2 B": [1.0]})
     for name in ("zz", "O4.z", "s16.offset", "", "A B P"):

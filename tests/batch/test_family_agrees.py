@@ -25,10 +25,12 @@ from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 from tests.batch.rate_referee import assert_same_evidence, assert_same_limits, assert_same_rates
 from tests.described import described_as
+from tests.library_mechanisms import driven_examples
 from tests.oracles.balls import BallTable, exactly, newton
+from tests.thinned import thinned
 
 Array = npt.NDArray[np.float64]
-DRIVEN = [name for name in lw.examples() if lw.example(name).description.inputs]
+DRIVEN = driven_examples()
 #: What the compiled march does not lead through all rows, and why.
 ALONE = {"cam-roller-follower": "a law", "curved-slot": "a law", "garage-door": "a curve"}
 #: Whose guess lies beside the table's path of inputs.
@@ -49,7 +51,7 @@ def by_itself(family: Family, k: int, certify: bool = True) -> Motion:
     """A design's own sweep, over the table that all of the family share."""
     model = family.designs.design(k)
     base = family.designs.base
-    if not np.array_equal(model.everyday_rows, base.everyday_rows):
+    if not np.array_equal(model.rows_in_file_units, base.rows_in_file_units):
         number = base.description.numbers
         inputs = []
         for which in base.description.inputs:
@@ -122,7 +124,7 @@ def _assert_same_names(family: Family, motion: FamilyMotion, k: int, alone: Moti
 # ------------------------------------------------------------------ the library
 
 
-@pytest.mark.parametrize("name", DRIVEN)
+@pytest.mark.parametrize("name", thinned(DRIVEN))
 def test_library_mechanisms_move_together_as_each_by_itself(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

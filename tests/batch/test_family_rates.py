@@ -78,15 +78,14 @@ def test_rates_that_do_not_exist_are_refused_before_anything_is_computed(
 
     monkeypatch.setattr("linkwork.batch.family_motion.design_rates", refuse)
     slow = lw.example("four-bar").driven_by(link="crank", start=0, stop=90, step=45)
-    told = (
-        'there is no "rocker.velocity" without a speed of the input: give it one (speed in [input])'
-    )
+    told = '"rocker.velocity" needs the speed of the input: set speed in [input]'
     fresh = slow.family({"A B": [119.0, 121.0]})
     for mechanism in (slow.sweep(), fresh.sweep()):
         assert mechanism.speed is None
         with pytest.raises(UnknownNameError, match=re.escape(told)):
             mechanism["rocker.velocity"]
-    with pytest.raises(UnknownNameError, match=re.escape('"rocker.d2", which is by the input')):
+    wanted = re.escape('"rocker.d2", the derivative with respect to the input')
+    with pytest.raises(UnknownNameError, match=wanted):
         fresh.reduced(["max(rocker.acceleration)"])
     with pytest.raises(UnknownNameError, match=re.escape('there is no "rokcer"')):
         fresh.sweep()["rokcer.d1"]

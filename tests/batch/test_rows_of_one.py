@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from benchmarks.peers.linkwork_kernel import rows_of_one
 from linkwork.batch import Family
 from linkwork.batch.lane_rows import March, Path
-from linkwork.kernels.march.rowwise import _proved, _smooth
-from linkwork.kernels.march.work_arrays import Found
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.march.rowwise import _is_smooth, _prove_rows
+from linkwork.kernels.march.work_arrays import MarchResult
+from linkwork.kernels.program.execution import Execution
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.mechanism.linkage import Linkage
 from tests.described import described_as
@@ -21,7 +22,7 @@ def _march(family: Family, certify: bool) -> tuple[March, np.ndarray]:
     path = Path.of(designs.base)
     assert path is not None
     t = designs.base.rows[:, path.lead]
-    return path.march(designs, certify, 1, Gear()), np.ascontiguousarray(t)
+    return path.march(designs, certify, 1, Execution()), np.ascontiguousarray(t)
 
 
 @pytest.mark.parametrize("certify", [False, True])
@@ -33,7 +34,7 @@ def test_they_are_those_of_the_sweep_every_time(name: str, certify: bool) -> Non
     length, value = next(iter(table.items()))
     family = mechanism.family({length: [value]})
     march, t = _march(family, certify)
-    one = march.of_one(t)
+    one = rows_of_one(march, t)
     motion = mechanism.sweep()
     q = np.stack([motion[u.name] for u in mechanism.model.equations.unknowns])
     unit = np.array(
@@ -53,7 +54,7 @@ def test_they_are_those_of_the_sweep_every_time(name: str, certify: bool) -> Non
 def test_a_table_that_is_not_reached_is_left_to_the_march(certify: bool) -> None:
     mechanism = lw.example("four-bar")
     march, t = _march(mechanism.family({"O2 A": [95.0]}), certify)
-    assert march.of_one(t).run() is None
+    assert rows_of_one(march, t).run() is None
 
 
 def _near_crossing(apart: float, step: float) -> lw.Mechanism:
@@ -74,7 +75,7 @@ def test_near_crossings_are_not_passed_straight(apart: float, step: float, certi
     """Guesses from the rows before lie on the other branch, and all corrections are small."""
     mechanism = _near_crossing(apart, step)
     march, t = _march(mechanism.family({"A B": [1.0]}), certify)
-    found = march.of_one(t).run()
+    found = rows_of_one(march, t).run()
     if apart == 1e-3 and step <= 1:  # near, but the rows are nearer to each other
         assert found is not None
     if found is not None:
@@ -89,7 +90,7 @@ class Proving:
 
     def __init__(self) -> None:
         march, self.t = _march(lw.example("four-bar").family({"O2 A": [40.0]}), True)
-        self.one = march.of_one(self.t)
+        self.one = rows_of_one(march, self.t)
         found = self.one.run()
         assert found is not None
         self.rows, self.start = found[0], 60
@@ -104,9 +105,11 @@ class Proving:
         topology, scout, space, _ = self.one.loaded.spaces
         node = np.zeros(scout.nodes.shape[1])
         node[: len(begin)], node[-1] = begin, self.t[self.start]
-        kept = Found(0, rows.copy(), np.empty((len(self.t), 1)), *self.one.room)
+        kept = MarchResult(0, rows.copy(), np.empty((len(self.t), 1)), *self.one.room)
         alone = self.one.loaded.alone
-        done = _proved(topology, space, node, alone.table, alone.scale[0], kept, self.one.counts)
+        done = _prove_rows(
+            topology, space, node, alone.table, alone.scale[0], kept, self.one.counts
+        )
         return bool(done), kept.unknowns
 
 
@@ -153,7 +156,9 @@ def test_without_proofs_rows_have_to_follow_from_the_rates_before_them(row: int)
         space = np.zeros((scout.nodes.max() + 1, LANES))
         space[scout.nodes[0], :8] = node[:, 51:59]
         space[scout.nodes[0, place], row] += off
-        return bool(_smooth(scout, 0, space, 8, node[:, 50].copy(), is_first, np.ones(2), gap, 0.6))
+        return bool(
+            _is_smooth(scout, 0, space, 8, node[:, 50].copy(), is_first, np.ones(2), gap, 0.6)
+        )
 
     coupler, rate, side = 0, 2, 4
     assert follow(coupler, 0.0)

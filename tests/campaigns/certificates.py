@@ -11,8 +11,9 @@ import numpy.typing as npt
 from flint import arb
 
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.proof.kantorovich import Bounds, Majorant, Radii, bounds, expansion, radii
+from linkwork.numerics.proof.kantorovich import Bounds, Majorant, Radii, expansion, weighted_radii
 from tests.campaigns.positions import Placed
+from tests.numerics.proof_bounds import bounds
 from tests.oracles.balls import BallTable, ball, certainly_above, exactly, newton
 
 __all__ = ["Case", "Verdict", "judge", "judge_case"]
@@ -103,7 +104,7 @@ def _case(rng: np.random.Generator, placed: Placed, number: int) -> Case | None:
     if number % 3 == 2:  # in fitted weights, as a step is proved
         place = expansion(table, v[None, :], jacobian, matrix[None])
         weights = table.variable_scale.copy()
-        fitted = Majorant(place, known[None, :]).fitted(weights[:n])[0]
+        fitted = Majorant(place, known[None, :]).fit_weights(weights[:n])[0]
         weights[:n] = fitted / (fitted / weights[:n]).max()  # their ratios are what matters
         table = replace(table, variable_scale=weights)
         placed = replace(placed, table=table)
@@ -115,7 +116,7 @@ def _case(rng: np.random.Generator, placed: Placed, number: int) -> Case | None:
         matrix=matrix,
         known=known,
         bounds=claimed,
-        radii=radii(claimed, table.variable_scale[:n]),
+        radii=weighted_radii(claimed, table.variable_scale[:n]),
     )
 
 
@@ -200,7 +201,7 @@ def _lipschitz(rng: np.random.Generator, case: Case, shifts: list[Array], false:
     omega = case.bounds.omega[0] + rho * case.bounds.omega_slope[0]
     # rounding of the two Jacobians and of large angles
     size = (np.abs(case.matrix) @ np.abs(j_x) * w).sum(axis=2) / w
-    rounding = 1e-14 * size * (1 + np.abs(base[table.turns.nonzero()]).max(initial=0.0))
+    rounding = 1e-14 * size * (1 + np.abs(base[table.is_angle.nonzero()]).max(initial=0.0))
     if not (rows <= omega * far * (1 + 1e-9) + rounding).all():
         false("A J changes faster than ω")
 
@@ -210,10 +211,13 @@ def _radii(case: Case, root: list[arb], false: object) -> None:
     assert callable(false)
     for k in range(case.n):
         off = abs(root[k] - arb(float(case.v[k])))
-        if not off <= arb(float(case.radii.exists[0])) * case.balls.weights[k]:
-            false(f"unknown {k} is {float(off.mid())} away, beyond r- = {case.radii.exists[0]}")
-        if not off <= arb(float(case.radii.each[0, k])):
-            false(f"unknown {k} is {float(off.mid())} away, beyond {case.radii.each[0, k]}")
+        if not off <= arb(float(case.radii.existence_radius[0])) * case.balls.weights[k]:
+            false(
+                f"unknown {k} is {float(off.mid())} away, "
+                f"beyond r- = {case.radii.existence_radius[0]}"
+            )
+        if not off <= arb(float(case.radii.error_bound[0, k])):
+            false(f"unknown {k} is {float(off.mid())} away, beyond {case.radii.error_bound[0, k]}")
 
 
 def _alone(
@@ -227,7 +231,7 @@ def _alone(
     """No second root within r+: J is regular in balls halfway out, and Newton finds no other."""
     assert callable(false)
     n, table, w = case.n, case.placed.table, case.weights
-    unique = float(case.radii.unique[0])
+    unique = float(case.radii.uniqueness_radius[0])
     here = np.array([float(x.mid()) for x in root])
     inside = min(unique, 1e3)
     # I - A J contracts up to (1 - Z0)/ω, which is r+ at least halved; balls are a little wider

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.march.closure import BlockPart, Closure
 from linkwork.kernels.march.march_programs import MarchPrograms, march_programs
-from linkwork.kernels.march.proof_program import BlockProof, Found
+from linkwork.kernels.march.proof_program import BlockProof, BlockRadii
 from linkwork.kernels.program.interpreter import LANES, run
 from linkwork.kernels.program.recorder import Recorder, Value
 from linkwork.numerics.proof.kantorovich import Bounds, Radii
@@ -58,7 +58,7 @@ def claims(tables: list[LoopTable], v: Array, known: Array) -> LaneClaims:
     closure = Closure(table, part, rec, variables, zeros)
 
     def scale(k: int) -> Value:
-        return rec.constant(1.0) if table.turns[k] else rec.input(f"scale{k}")
+        return rec.constant(1.0) if table.is_angle[k] else rec.input(f"scale{k}")
 
     proof = BlockProof(closure, {k: scale(k) for k in range(count)})
     spread = {k: rec.input(f"d{k}") for k in proof.known}
@@ -73,10 +73,10 @@ def claims(tables: list[LoopTable], v: Array, known: Array) -> LaneClaims:
     return _claims(ran(rec, given), n, np.stack([t.variable_scale[:n] for t in tables]))
 
 
-def _write_found(rec: Recorder, found: Found) -> None:
+def _write_found(rec: Recorder, found: BlockRadii) -> None:
     rec.write("holds", found.holds)
     rec.write("radius", found.radius)
-    for i, (each, alone) in enumerate(zip(found.each, found.alone, strict=True)):
+    for i, (each, alone) in enumerate(zip(found.error_bound, found.isolation_radius, strict=True)):
         rec.write(f"each{i}", each)
         rec.write(f"alone{i}", alone)
 
@@ -89,7 +89,11 @@ def _claims(found: Mapping[str, Array], n: int, weights: Array) -> LaneClaims:
     bounds = Bounds(y=rows("y."), z=rows("z."), omega=rows("o."), omega_slope=rows("b."))
     unique = np.where(holds, (alone / weights).min(axis=1), 0.0)
     radii = Radii(
-        holds=holds, exists=found["radius"], unique=unique, each=rows("each"), alone=alone
+        holds=holds,
+        existence_radius=found["radius"],
+        uniqueness_radius=unique,
+        error_bound=rows("each"),
+        isolation_radius=alone,
     )
     inverse = np.stack([rows(f"a{i}.") for i in range(n)], axis=1)
     return LaneClaims(bounds=bounds, radii=radii, inverse=inverse)
@@ -157,10 +161,10 @@ def _case(table: LoopTable, v: Array, known: Array, found: LaneClaims, lane: int
         ),
         radii=Radii(
             holds=r.holds[here],
-            exists=r.exists[here],
-            unique=r.unique[here],
-            each=r.each[here],
-            alone=r.alone[here],
+            existence_radius=r.existence_radius[here],
+            uniqueness_radius=r.uniqueness_radius[here],
+            error_bound=r.error_bound[here],
+            isolation_radius=r.isolation_radius[here],
         ),
     )
 
@@ -230,7 +234,7 @@ def _with_one_input(table: LoopTable, v: Array) -> LoopTable:
             weight=linear.weight[entries],
         ),
         variable_scale=table.variable_scale[: n + 1],
-        turns=table.turns[: n + 1],
+        is_angle=table.is_angle[: n + 1],
     )
 
 
@@ -295,7 +299,9 @@ def _steps(rng: np.random.Generator, table: LoopTable, roots: Array) -> _Steps:
                 nodes.append(roots[j])
                 trials.append(moved[k])
                 wrong.append(j != k)
-            turning = rng.choice(np.flatnonzero(table.turns[:n])) if table.turns[:n].any() else -1
+            turning = (
+                rng.choice(np.flatnonzero(table.is_angle[:n])) if table.is_angle[:n].any() else -1
+            )
             if turning >= 0:  # the same pose, one link turned once around
                 nodes.append(roots[k])
                 trials.append(moved[k] + 2 * np.pi * np.eye(n + 1)[turning])

@@ -32,7 +32,7 @@ def random_position(seed: int) -> Placed:
     while True:
         table, v = _random_table(rng, plain=seed % 4 == 0)
         if seed % 5 == 4:  # a mechanism that has turned many times
-            v = v + np.where(table.turns, 2 * np.pi * rng.integers(-40, 41, len(v)), 0.0)
+            v = v + np.where(table.is_angle, 2 * np.pi * rng.integers(-40, 41, len(v)), 0.0)
         kind = "regular"
         if seed % 3 == 0:
             near = _near_singular(rng, table, v)
@@ -124,7 +124,7 @@ def _filled(
         functions=(),
         equation_scale=np.array([scale] * (2 * loops) + [1.0] * lines),
         variable_scale=np.where(turns, 1.0, scale),
-        turns=turns,
+        is_angle=turns,
     )
 
 
@@ -155,7 +155,7 @@ def closed(table: LoopTable, v: Array) -> LoopTable:
 
 def _near_singular(rng: np.random.Generator, table: LoopTable, v: Array) -> Array | None:
     """1e-2 to 1e-7 away from a place where det J = 0, if one is met on a random way."""
-    other = _place(rng, table.turns, float(table.variable_scale.max()))
+    other = _place(rng, table.is_angle, float(table.variable_scale.max()))
     way = other - v
 
     def sign(s: float) -> float:
@@ -189,7 +189,7 @@ def _library() -> tuple[tuple[str, LoopTable, Array], ...]:
             continue
         motion = mechanism.sweep(certify=False)
         solver = mechanism.model.compiled.solver
-        if not all(block.system.bends_boundedly for block in solver.blocks):
+        if not all(block.system.has_curvature_bound for block in solver.blocks):
             continue
         v = np.concatenate([motion.q[motion.asked], mechanism.model.rows], axis=1)
         v = v[motion.found[motion.asked]]

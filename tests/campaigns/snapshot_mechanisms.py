@@ -20,8 +20,7 @@ from linkwork.mechanism.linkage import Linkage
 from tests.campaigns.motion import FAMILIES, random_case
 from tests.described import described_as
 from tests.equations.linkages import LINKAGES
-from tests.laws.contacts import KINDS as CONTACTS
-from tests.laws.contacts import contact
+from tests.laws.contacts import KINDS as CONTACTS, contact
 from tests.laws.mechanisms import mechanism_of as law_mechanism
 from tests.motion.dyad_linkages import dyad_linkage
 from tests.motion.written_loops import as_loops

@@ -10,8 +10,8 @@ import numpy.typing as npt
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath
-from linkwork.numerics.continuation.path_proof import Beads, prove_path
-from linkwork.numerics.proof.position_proof import links_hold, prove, reach, rounding_of_inputs
+from linkwork.numerics.continuation.path_proof import PathPoints, prove_path
+from linkwork.numerics.proof.position_proof import prove, reach, rounding_of_inputs, steps_connected
 from tests.campaigns.certificates import Verdict
 from tests.campaigns.positions import closed
 from tests.numerics.systems import Term, blocks_of, loop_table
@@ -66,7 +66,7 @@ def _mechanism(rng: np.random.Generator, kind: str) -> tuple[LoopTable, Array]:
                 phase_variable=np.array([0, 2], dtype=np.intp),
                 phase_weight=np.ones(2),
             ),
-            turns=np.array([True, False, True]),
+            is_angle=np.array([True, False, True]),
         )
     return closed(table, v), v
 
@@ -94,15 +94,15 @@ def _branch(table: LoopTable, v: Array, length: float) -> Array | None:
     return np.stack(found)
 
 
-def beads_of(solver: BlockSolver, v: Array) -> Beads:
-    """Positions as beads along their own input."""
+def beads_of(solver: BlockSolver, v: Array) -> PathPoints:
+    """Positions as points along their own input."""
     rates = solver.rates(v, PATH.rate)
-    return Beads(
+    return PathPoints(
         t=v[:, solver.unknowns],
         v=v,
         first=rates.first,
         second=rates.second,
-        spread=rounding_of_inputs(v, solver.unknowns),
+        input_radius=rounding_of_inputs(v, solver.unknowns),
     )
 
 
@@ -119,24 +119,31 @@ def _true_step(
         spread = np.abs(following - v)[:, n:] + 2 * rounding_of_inputs(following, n)
         around = reach(solver, v, spread)
         arrival = prove(solver, following, rounding_of_inputs(following, n))
-        if not (arrival.holds[0] and links_hold(v, following, around, arrival.each)[0]):
+        if not (arrival.holds[0] and steps_connected(v, following, around, arrival.error_bound)[0]):
             verdict.counts["steps not proved at once"] += 1
             continue
         verdict.counts["steps proved at once"] += 1
         way = branch[: last + 1]
-        if not (np.abs(way - v)[:, :n] <= around.each[0] + 1e-9).all():
+        if not (np.abs(way - v)[:, :n] <= around.error_bound[0] + 1e-9).all():
             false.append("the branch leaves the radius of an unknown within a proved step")
         for here in way[::100]:
             others = _others(rng, table, here)
             verdict.counts["other roots beside a step"] += len(others)
-            if (np.abs(others - v)[:, :n] < around.alone[0] * (1.0 - 1e-9)).all(axis=1).any():
+            if (
+                (np.abs(others - v)[:, :n] < around.isolation_radius[0] * (1.0 - 1e-9))
+                .all(axis=1)
+                .any()
+            ):
                 false.append("another root lies in the box in which there is only one")
         for end, place in ((following[0], arrival), (way[last // 2], None)):
             root, proved = newton(balls, exactly(end))
             off = max(abs(float((a - b).mid())) for a, b in zip(root, exactly(end), strict=True))
             if not proved or off > 1e-9:
                 false.append("the branch is lost in balls")
-            if place is not None and not off <= place.exists[0, 0] * table.variable_scale[:n].max():
+            if (
+                place is not None
+                and not off <= place.existence_radius[0, 0] * table.variable_scale[:n].max()
+            ):
                 false.append("a true position is not within r- of the end of a step")
     return false
 
@@ -154,7 +161,7 @@ def _wrong_steps(
         if len(others) and k % 4 == 1:
             wrong[k] = others[rng.integers(len(others))]
         else:  # the same pose, but one link has made a whole turn
-            link = int(rng.choice(np.flatnonzero(table.turns[:n])))
+            link = int(rng.choice(np.flatnonzero(table.is_angle[:n])))
             wrong[k, link] += 2 * np.pi * rng.choice([-1, 1])
             verdict.counts["steps to a turned link"] += 2
             continue
@@ -163,9 +170,9 @@ def _wrong_steps(
         stops, wrong = stops[::-1], wrong[::-1]
     right = prove_path(solver, PATH, beads_of(solver, np.ascontiguousarray(stops)))
     verdict.counts["right steps"] += len(stops) - 1
-    verdict.counts["right steps proved"] += int(right.linked.sum())
+    verdict.counts["right steps proved"] += int(right.connected.sum())
     found = prove_path(solver, PATH, beads_of(solver, np.ascontiguousarray(wrong)))
-    return ["a step to another root is proved"] * int(found.linked.sum())
+    return ["a step to another root is proved"] * int(found.connected.sum())
 
 
 def _others(rng: np.random.Generator, table: LoopTable, v: Array) -> Array:
@@ -179,7 +186,7 @@ def _others(rng: np.random.Generator, table: LoopTable, v: Array) -> Array:
         x[:, :n] -= np.clip(step, -0.5, 0.5)
     f, j = table.residual_and_jacobian(x)
     good = (np.abs(f).max(axis=1) < 1e-13) & (np.linalg.cond(j[:, :, :n]) < 1e6)
-    turns = table.turns[:n]
+    turns = table.is_angle[:n]
     gap = (x - v)[:, :n]
     gap[:, turns] = np.remainder(gap[:, turns] + np.pi, 2 * np.pi) - np.pi
     near = x.copy()

@@ -10,7 +10,7 @@ import pytest
 from flint import arb, ctx
 
 import linkwork as lw
-from linkwork.equations.leading import LeadTable
+from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.motion.lock_step import lock_step
 from linkwork.numerics.continuation.branch_tracking import InputPath
 from tests.oracles.four_bar import FourBar, random_crank_rockers
@@ -123,8 +123,8 @@ def test_the_rate_of_the_smallest_value_is_its_slope() -> None:
     mechanism = lw.example("rapier-drive")
     model = mechanism.model
     lead, rate = lock_step(model.rows)
-    leads = LeadTable(model.compiled.table, InputPath(origin=np.zeros(1), rate=rate), lead)
-    led = leads.by(leads.parameter)
+    leads = ParametrizedTable(model.compiled.table, InputPath(origin=np.zeros(1), rate=rate), lead)
+    led = leads.with_parameter(leads.parameter)
     assert led is not None
     step = 1e-5
     for at in (20.0, 110.0, 250.0):

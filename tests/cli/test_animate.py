@@ -45,9 +45,12 @@ def test_animate_goes_on_through_dead_points_where_the_range_is_not_reached(
     ("arguments", "message"),
     [
         (("x.avi",), 'cannot animate "x.avi": its suffix must be one of .html, .gif, .mp4'),
-        (("x.gif", "--all"), "--all is for a page: a film shows one circuit, name it .html"),
-        (("x.html", "--rows", "9"), "--rows is for films: a page shows all rows"),
-        (("x.gif", "--force", "B=1,2"), "--force is for a page: name it .html"),
+        (
+            ("x.gif", "--all"),
+            "--all needs a page: use the suffix .html",
+        ),
+        (("x.html", "--rows", "9"), "--rows is for films only: a page shows all rows"),
+        (("x.gif", "--force", "B=1,2"), "--force needs a page: use the suffix .html"),
         (("x.html", "--force", "Q=1,2"), 'there is no point "Q" for a force (points: '),
         (("x.html", "--force", "B=1,2,3 N"), "--force B=1,2,3 N: a force is a point and two "),
         (("x.html", "--force", "B=1"), "--force B=1: a force is a point and two components, "),

@@ -15,7 +15,7 @@ Four-bar
   circuit 1  from crank [deg]           to  at the guess's input
   branch 1        18.19487234  341.8051277  open
   branch 2        18.19487234  341.8051277  crossed
-  closed      the motion comes back to where it began; proved
+  closed      the motion returns to its start; proved
   input       turns back at the dead points
   rocking     crank, coupler, rocker
   dead point  crank = 341.805127661 deg, where loop "O2 A B O4" locks (coupler
@@ -23,9 +23,9 @@ Four-bar
   dead point  crank = 18.1948723388 deg, where loop "O2 A B O4" locks (coupler
               and rocker in line)
 
-  complete  every circuit is listed, with probability one: all dead points were
-            found, and all configurations at 3 input values, at least one
-            between any two of them
+  complete  the list of circuits is complete with probability one: all dead
+            points were found, and all configurations at 3 input values, at
+            least one between any two of them
 """
 
 #: The crank's tip is 317.08 from O4, coupler and rocker reach 200.
@@ -33,15 +33,16 @@ NONE = """\
 Four-bar
 No circuits driven by crank
 
-  why        loop "O2 A B O4" cannot be closed at crank = 29.7449°: nearest to
-             the guess a gap of 117.081 mm remains
-  remedy     it just closes with "O4 B" = 197.081 mm (117.081 longer) or a =
-             280.573 mm (119.427 shorter) or "O2 O4" = 322.49 mm (222.49 longer)
-  nearest    no input value was found at which it could be assembled
+  why        loop "O2 A B O4" cannot be closed at crank = 29.7449°: near the
+             guess a gap of at least 117.081 mm remains
+  remedy     the loops just close with "O4 B" = 197.081 mm (117.081 longer) or a
+             = 280.573 mm (119.427 shorter) or "O2 O4" = 322.49 mm (222.49
+             longer)
+  nearest    no input value was found at which the mechanism can be assembled
   elsewhere  no configuration exists there
-  complete   every circuit is listed, with probability one: all dead points were
-             found, and all configurations at the guess's input (there is no
-             dead point)
+  complete   the list of circuits is complete with probability one: all dead
+             points were found, and all configurations at the guess's input
+             (there is no dead point)
 """
 
 #: Stretched out at 0 degrees, it reaches no other crank angle.
@@ -59,12 +60,12 @@ Four-bar
 No circuits driven by crank
 
   why        position found at crank = 0°, at a dead point or change point, but
-             no motion that comes by there
+             no motion passes through it
   elsewhere  1 configuration exists there (perhaps not all): double (coupler =
              0°, rocker = 180°)
-  complete   every circuit is listed, with probability one: all dead points and
-             change points were found, and all configurations at 2 input values,
-             at least one between any two of them
+  complete   the list of circuits is complete with probability one: all dead
+             points and change points were found, and all configurations at 2
+             input values, at least one between any two of them
 """
 
 NO_ROOT = """\
@@ -87,9 +88,9 @@ No root
 No circuits driven by u
 
   why        no position after the largest allowed number of iterations: start
-             from a nearer guess or allow more iterations; "f" stays at 2 at
-             best nearby
-  elsewhere  no position was found there from other guesses either
+             from a nearer guess or allow more iterations; "f" has at least the
+             residual 2 nearby
+  elsewhere  other guesses also lead to no position there
   complete   only the guess: the configurations of these equations cannot be
              listed
 """

@@ -17,9 +17,9 @@ Four-bar
   open         18.376018     64.943481  yes
   crossed     -65.202467   -111.769930  yes
 
-  complete  every configuration is listed, and that is proved: as many solutions
-            were certified as can exist at most
-  paths     2 solutions: 2 real of 2 finite
+  complete  the list is proved complete: the number of certified solutions
+            equals the largest possible number
+  paths     2 complex solutions, 2 of them real
 """
 
 SIX_LINK = """\
@@ -40,8 +40,9 @@ def test_one_row_per_configuration_then_completeness_and_paths(run: Run) -> None
 def test_paths_of_every_block_are_accounted_for(run: Run) -> None:
     run("examples", "andrews-squeezer", "-o", "seven.toml")
     text = run("configurations", "seven.toml").stdout
-    assert "paths     Θ, γ: 2 solutions: 2 real of 2 finite\n" in text
-    assert "Φ, δ: 4 solutions, for 2 positions before: 2 real of 4 finite\n" in text
+    assert "paths     Θ, γ: 2 complex solutions, 2 of them real\n" in text
+    counted = "Φ, δ: 4 complex solutions, 2 of them real, for 2 positions of\n"
+    assert counted + "            earlier blocks\n" in text
 
 
 def test_what_became_of_paths_in_words() -> None:
@@ -49,7 +50,9 @@ def test_what_became_of_paths_in_words() -> None:
         unknowns=("a",), paths=20, finite=11, real=3, at_infinity=4, multiple=4, failed=1
     )
     said = path_sentence(count, several=False)
-    assert said == "20 solutions: 3 real of 15 finite, 4 at infinity, 4 of them multiple, 1 lost"
+    assert said == (
+        "15 complex solutions, 3 of them real, 4 multiple; 20 paths: 4 to infinity, 1 lost"
+    )
     given = PathCount(unknowns=("a", "b"), solved=2, finite=2, real=2)
     assert path_sentence(given, several=True) == "a, b: follow from the others"
 
@@ -72,7 +75,7 @@ def test_no_configuration_ends_with_one(run: Run) -> None:
     done = run("configurations", "open.toml")
     assert done.exit_code == 1
     assert "\nNo configurations at crank = 29.7448813 deg\n" in done.stdout
-    assert "2 solutions: 0 real of 2 finite" in done.stdout
+    assert "2 complex solutions, 0 of them real" in done.stdout
 
 
 def test_equations_that_are_not_loops_have_no_list(run: Run) -> None:
@@ -93,7 +96,7 @@ def test_solve_and_sweep_take_a_name(run: Run) -> None:
     done = run("solve", "four-bar.toml", "--at", "60", "--configuration", "crossed")
     assert done.exit_code == 0
     assert "rocker   -111.769930 deg" in done.stdout
-    assert "certificate  proved to " in done.stdout
+    assert "certificate  true position within " in done.stdout
     swept = run("sweep", "four-bar.toml", "--configuration", "crossed", "--step", "10", "--json")
     rocker = json.loads(swept.stdout)["columns"]["rocker"]
     assert abs(rocker[6] + 111.769930) < 1e-6

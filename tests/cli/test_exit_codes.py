@@ -63,7 +63,7 @@ def test_mathematics_that_says_no_ends_with_1(run: Run, words: tuple[str, ...], 
         ),
         (
             ("solve", "rapier-drive"),
-            'Error: there is no file "rapier-drive"; to get the example of this name:\n'
+            'Error: there is no file "rapier-drive"; to copy the example of this name:\n'
             "    linkwork examples rapier-drive -o rapier-drive.toml\n",
         ),
         (
@@ -124,7 +124,7 @@ def test_mathematics_that_says_no_ends_with_1(run: Run, words: tuple[str, ...], 
         ),
         (
             ("sweep", "four-bar.toml", "--csv", "four-bar.toml"),
-            'Error: "four-bar.toml" is the mechanism itself: write to another file\n',
+            'Error: "four-bar.toml" is the mechanism file itself: write to another file\n',
         ),
         (
             ("sweep", "four-bar.toml", "--csv", "a.svg", "--draw", "a.svg"),
@@ -136,11 +136,11 @@ def test_mathematics_that_says_no_ends_with_1(run: Run, words: tuple[str, ...], 
         ),
         (
             ("sweep", "four-bar.toml", "--json", "--csv", "-"),
-            "Error: --json and --csv - both want standard output: name a file for the table\n",
+            "Error: --json and --csv - both use standard output: name a file for the table\n",
         ),
         (
             ("equations", "four-bar.toml", "--json", "--latex"),
-            "Error: --latex and --json exclude each other: choose one\n",
+            "Error: --latex and --json exclude each other: leave one out\n",
         ),
         (
             ("examples", "-o", "x.toml"),
@@ -187,9 +187,9 @@ def test_our_fault_ends_with_3_and_asks_to_report(
     assert done.exit_code == 3
     assert done.stderr == (
         "Linkwork failed: ZeroDivisionError: by nothing\n"
-        "This is a mistake in Linkwork, not in your input. Please report it, with the\n"
+        "This is an error in Linkwork, not in your input. Please report it with the\n"
         "mechanism file and the command you typed.\n"
-        "The option --debug shows where it happened.\n"
+        "Add --debug to print the traceback.\n"
     )
 
 
@@ -211,7 +211,7 @@ def test_debug_shows_the_traceback(
     ("trouble", "code", "message"),
     [
         (KeyboardInterrupt(), 130, "\nInterrupted.\n"),
-        (MemoryError(), 2, "Error: there is not enough memory: ask for fewer rows\n"),
+        (MemoryError(), 2, "Error: not enough memory: ask for fewer rows\n"),
         (OSError(28, "No space left on device"), 2, "Error: No space left on device\n"),
         (BrokenPipeError(), 141, ""),
         (LinkworkError("on purpose"), 3, "Error: on purpose\n"),
@@ -245,7 +245,7 @@ def test_nothing_is_written_when_the_input_is_wrong(run: Run, folder: Path) -> N
 def test_what_to_draw_without_a_picture_ends_with_2(run: Run) -> None:
     done = run("circuits", "four-bar.toml", "--of", "rocker")
     assert (done.exit_code, done.stdout) == (2, "")
-    assert done.stderr == "Error: --of says what --draw shows: add --draw PATH\n"
+    assert done.stderr == "Error: --of selects the curves of --draw: add --draw PATH\n"
 
 
 def test_an_unknown_quantity_is_answered_with_coordinates_too(run: Run) -> None:

@@ -16,7 +16,7 @@ import pytest
 from linkwork.api import example_text, load
 from linkwork.cli import output_file
 from linkwork.foundation.errors import InputError
-from linkwork.results.table import table_of
+from linkwork.results.motion_table import table_of
 from tests.cli.conftest import Run
 
 
@@ -69,7 +69,7 @@ def test_a_classification_as_json(run: Run) -> None:
         "chain": "four-bar chain",
         "links": 4,
         "inversion": None,
-        "type": "crank-rocker (GCRR): Grashof, s + l is 20 mm below p + q",
+        "type": "crank-rocker (GCRR): Grashof, s + l < p + q by 20 mm",
         "blocks": [],
         "loop": {
             "links": ["ground", "crank", "coupler", "rocker"],

@@ -148,10 +148,10 @@ def test_draw_takes_the_name_of_a_branch(run: Run, folder: Path) -> None:
         (
             ("double-rocker.toml", "--configuration", "open", "--at", "0"),
             1,
-            'Error: loop "O2 A B O4" cannot be closed at crank = 0°: nearest to the guess a\n'
-            '  gap of 10 mm remains; it just closes with a = 60 mm (10 shorter) or "A B" =\n'
-            '  110 mm (10 shorter) or "O4 B" = 90 mm (10 longer); nearest reachable input:\n'
-            "  crank = 18.19487234° (dead point); no configuration exists there\n",
+            'Error: loop "O2 A B O4" cannot be closed at crank = 0°: near the guess a gap of\n'
+            '  at least 10 mm remains; the loops just close with a = 60 mm (10 shorter) or "A\n'
+            '  B" = 110 mm (10 shorter) or "O4 B" = 90 mm (10 longer); nearest reachable\n'
+            "  input: crank = 18.19487234° (dead point); no configuration exists there\n",
         ),
         (
             ("five-bar.toml", "--configuration", "open", "--at", "left=90"),
@@ -299,8 +299,8 @@ def test_unknowns_that_are_left_out_are_told(
         ),
         (
             "crank",
-            "Error: --of crank: everything is drawn over the input: name an unknown, a link,\n"
-            "  an output or the coordinate of a point\n",
+            "Error: --of crank: curves are drawn over the input: name an unknown, a link, an\n"
+            "  output or the coordinate of a point\n",
         ),
     ],
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import os
 import pty
@@ -15,9 +16,13 @@ import pytest
 
 from tests.cli.conftest import Start
 from tests.interruptible import interruptible
+from tests.thinned import thinned
 
 #: Nothing is followed when the position asked for is the guess's own.
-FOR_MOTION = {f"linkwork.numerics.{name}" for name in ("curve", "proven_path", "track")}
+FOR_MOTION = {
+    f"linkwork.numerics.continuation.{name}"
+    for name in ("branch_tracking", "curve_tracing", "path_proof")
+}
 HEAVY = {"matplotlib", "networkx", "numba", "pandas", "rich", "scipy", "xarray"}
 
 
@@ -36,6 +41,7 @@ def test_solve_loads_nothing_heavy(environment: dict[str, str]) -> None:
     assert not {name.partition(".")[0] for name in loaded} & HEAVY
     assert "linkwork.numerics.proof.position_proof" in loaded
     assert not FOR_MOTION & set(loaded)
+    assert all(importlib.util.find_spec(name) for name in FOR_MOTION)
 
 
 def test_a_reader_that_goes_away_is_no_trouble(environment: dict[str, str]) -> None:
@@ -79,7 +85,7 @@ def _wait_until_it_reads(pid: int) -> None:
     pytest.skip("the kernel does not tell what the process waits for")
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "utf-8"])
+@pytest.mark.parametrize("encoding", thinned(["ascii", "latin-1", "utf-8"]))
 def test_pipes_get_utf8_whatever_the_locale(start: Start, encoding: str) -> None:
     text = start("examples", "rapier-drive").stdout
     for words in (("solve", "-"), ("sweep", "-", "--csv", "-")):
@@ -134,7 +140,7 @@ def test_progress_is_shown_on_a_terminal_after_a_second_only(
     start: Start, environment: dict[str, str]
 ) -> None:
     terminal = environment | {"TERM": "xterm"}
-    slow = ["sweep", "four-bar.toml", "--step", "0.0015"]
+    slow = ["sweep", "four-bar.toml", "--step", "0.003"]
     assert b"sweeping  [" in _in_terminal(slow, terminal)
     assert b"sweeping" not in _in_terminal(["sweep", "four-bar.toml"], terminal)
     assert start(*slow).stderr == b""

@@ -122,7 +122,7 @@ def test_a_plan_from_standard_input(run: Run) -> None:
         (("--summary", "x.zarr"), 'there is no "x.zarr"'),
         (
             ("--summary", "plan.toml"),
-            '"plan.toml" is there and is no store of a study: give another name',
+            '"plan.toml" exists and is not the store of a study: choose another name',
         ),
         (("plan.toml", "-o", "no/x.zarr"), 'cannot write "no/x.zarr": there is no folder "no"'),
         (

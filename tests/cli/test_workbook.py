@@ -13,7 +13,7 @@ def test_sweep_writes_a_workbook(run: Run) -> None:
     done = run("sweep", "four-bar.toml", "--step", "45", "--xlsx", "bar.xlsx")
     assert done.exit_code == 0, done.output
     assert done.stdout.splitlines()[-1] == (
-        "Wrote bar.xlsx: 9 rows with formulas; change a yellow cell to solve them again."
+        "Wrote bar.xlsx: 9 rows with formulas; edit a yellow cell to solve them again."
     )
     book = openpyxl.load_workbook("bar.xlsx")
     assert book.sheetnames == [
@@ -25,9 +25,7 @@ def test_sweep_writes_a_workbook(run: Run) -> None:
 def test_a_workbook_is_an_xlsx_file(run: Run) -> None:
     done = run("sweep", "four-bar.toml", "--xlsx", "bar.ods")
     assert done.exit_code == 2
-    assert done.stderr == (
-        'Error: cannot write "bar.ods": a workbook is an .xlsx file, name it so\n'
-    )
+    assert done.stderr == ('Error: cannot write "bar.ods": a workbook needs the suffix .xlsx\n')
     assert not Path("bar.ods").exists()
 
 

@@ -13,7 +13,9 @@ import pytest
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
-from linkwork.mechanism.skeleton import Bar, DrivenPart, Guide, Skeleton, Strut
+from linkwork.mechanism.figures import Guide
+from linkwork.mechanism.part.cylinder import Strut
+from linkwork.mechanism.skeleton import Bar, DrivenPart, Skeleton
 from linkwork.results.motion import Motion, Series
 from linkwork.results.position import Position
 from linkwork.results.quantities.definition import MechanismNames

@@ -16,7 +16,7 @@ __all__ = ["assert_page_is_clear", "left_title", "printed_texts", "size_in_inche
 
 def printed_texts(page: Figure) -> list[tuple[str, Bbox]]:
     """Every text of a figure but those inside drawings, with its box in pixels."""
-    page.canvas.draw()
+    page.draw_without_rendering()
     assert isinstance(page.canvas, FigureCanvasAgg)
     renderer = page.canvas.get_renderer()
     artists = [*page.texts, *(text for legend in page.legends for text in legend.get_texts())]

@@ -29,6 +29,7 @@ from linkwork.drawing.point_arrows import LONGEST
 from linkwork.drawing.rate_arrows import usual_most
 from linkwork.foundation.errors import InputError
 from linkwork.results.force import Force
+from tests.drawing.shared_area import shared_area
 
 NAMES = ["four-bar", "jansen-leg", "slider-crank", "crank-shaper", "planetary-gear"]
 _CACHE: dict[str, tuple[lw.Position, lw.Motion]] = {}
@@ -53,7 +54,7 @@ def vectors(scene: Scene, role: Role) -> dict[str, complex]:
 
 def scale_of(caption: str, word: str) -> float:
     """Length units per unit of the rate, as the caption has it."""
-    found = re.search(rf"{word}: ([\d.e+-]+) \w+ shows ([\d.e+-]+) ", caption)
+    found = re.search(rf"{word} scale: ([\d.e+-]+) \w+ = ([\d.e+-]+) ", caption)
     assert found
     return float(found[1]) / float(found[2])
 
@@ -263,7 +264,7 @@ def test_driven_lengths_and_radii_are_dimensions() -> None:
 def test_texts_cover_neither_each_other_nor_pins(name: str, shown: dict[str, Any]) -> None:
     scene = drawn(name, **shown)
     for one, other in combinations(scene.select(Text), 2):
-        assert one.box.overlap(other.box) == 0, (one.text, other.text)
+        assert shared_area(one.box, other.box) == 0, (one.text, other.text)
     for disc in scene.select(Disc, Role.PIN):
         for text in scene.select(Text):
             assert text.box.distance(disc.centre) >= 0.99 * disc.radius, (text.text, disc.of)

@@ -25,7 +25,9 @@ from linkwork.drawing import (
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.tooth_outline import tooth_outline, tooth_phases
 from linkwork.foundation.arrays import ComplexArray
-from linkwork.mechanism.contact_shapes import Disc as Wheel
+from linkwork.mechanism.figures import Contour, Disc as Wheel
+from linkwork.mechanism.part.belt import BeltRun
+from linkwork.mechanism.part.weld import RigidJoint
 
 EXAMPLES = [
     "planetary-gear", "planetary-differential", "cardan-circles", "geared-five-bar",
@@ -88,7 +90,7 @@ def test_the_runs_of_a_belt_touch_both_pulleys(
     name: str, ends: tuple[float, float], value: float
 ) -> None:
     position, scene = position_of(name, value), scene_at(name, value)
-    [belt] = position.skeleton.contacts.belts
+    [belt] = position.skeleton.of(BeltRun)
     centres = [place(position, point) for point in belt.centers]
     size = scene.measures.size
     runs = scene.select(Polyline, Role.BELT)
@@ -108,7 +110,7 @@ def test_the_runs_of_a_belt_touch_both_pulleys(
 @pytest.mark.parametrize("name", ["belt-drive", "crossed-belt"])
 def test_a_belt_is_closed_and_goes_around_the_far_sides(name: str) -> None:
     position, scene = position_of(name, 40), scene_at(name, 40)
-    centres = [place(position, point) for point in position.skeleton.contacts.belts[0].centers]
+    centres = [place(position, point) for point in position.skeleton.of(BeltRun)[0].centers]
     runs = [line_of(run) for run in scene.select(Polyline, Role.BELT)]
     arcs = scene.select(Arc, Role.BELT)
     for k, (arc, other) in enumerate(zip(arcs, (centres[1], centres[0]), strict=True)):
@@ -185,7 +187,7 @@ def test_teeth_turn_with_their_links(name: str, first: str) -> None:
 
 
 def test_a_tooth_is_half_a_pitch_wide_on_its_pitch_circle() -> None:
-    disc = position_of("planetary-gear", 0).skeleton.contacts.discs[1]
+    disc = position_of("planetary-gear", 0).skeleton.of(Wheel)[1]
     outline = tooth_outline(disc)
     per_tooth = len(outline) // teeth_of(disc)
     tooth = outline[: per_tooth // 2]
@@ -312,7 +314,7 @@ def test_a_pin_runs_in_the_middle_of_its_slot(name: str, curve: str, point: str)
         assert inside(pin, edge)
         width = scene.measures.slot
         assert distance_to_line(pin, edge) == pytest.approx(width, rel=0.01)
-        [contour] = position_of(name, value).skeleton.contacts.contours
+        [contour] = position_of(name, value).skeleton.of(Contour)
         length = float(np.abs(np.diff(contour.points)).sum())
         area = abs(float((edge.conj() * np.roll(edge, -1)).imag.sum()) / 2)
         assert area == pytest.approx(2 * width * length + math.pi * width**2, rel=0.01)
@@ -326,14 +328,14 @@ def test_the_picture_holds_everything_and_reach_holds_the_whole_motion(name: str
     for value in next(iter(motion.inputs.values()))[motion.found][:: len(motion.found) // 4]:
         position = position_of(name, None if len(motion.inputs) > 1 else float(value))
         scene = scene_of(position, motion)
-        contacts, box = position.skeleton.contacts, scene.within
+        skeleton, box = position.skeleton, scene.within
         pose = Pose.of(position, None)
         outermost = [
             place(position, disc.center) + disc.radius * 1j**k
-            for disc in contacts.discs
+            for disc in skeleton.of(Wheel)
             for k in range(4)
         ]
-        outermost += [z for contour in contacts.contours for z in pose.placed(contour)]
+        outermost += [z for contour in skeleton.of(Contour) for z in pose.placed(contour)]
         assert outermost
         for point in outermost:
             assert box.grown(1e-9).distance((point.real, point.imag)) == 0
@@ -404,7 +406,7 @@ def test_welded_links_have_their_corner_filled(name: str, turn: float) -> None:
     mechanism = lw.example(name)
     position = mechanism.solve()
     scene = mechanism.scene()
-    (joint,) = mechanism.model.skeleton.rigid
+    (joint,) = mechanism.model.skeleton.of(RigidJoint)
     (corner,) = scene.select(Polygon, Role.WELD)
     assert corner.of == " ".join(joint.links)
     place, *arc = (complex(*xy) for xy in corner.points)

@@ -24,7 +24,7 @@ from linkwork.drawing import (
 from linkwork.drawing.link_symbols import convex_outline, uncovered
 from linkwork.drawing.trace_path import drawn_once, thinned
 from linkwork.foundation.status import Status
-from linkwork.mechanism.skeleton import Strut
+from linkwork.mechanism.part.spring import SpringFigure
 from linkwork.results.position import Position
 from tests.drawing.conftest import Places, Sample
 
@@ -525,8 +525,8 @@ def test_a_scaled_mechanism_has_the_same_picture_scaled(ternary: Sample) -> None
 
 
 def test_a_spring_is_a_zigzag_from_point_to_point(four_bar: Sample) -> None:
-    spring = Strut(name="return", between=("O4", "A"))
-    skeleton = replace(four_bar.skeleton, springs=(spring,))
+    spring = SpringFigure(name="return", between=("O4", "A"))
+    skeleton = replace(four_bar.skeleton, figures=(spring,))
     lengths = []
     for angle in (20.0, 200.0):
         position = replace(four_bar.position(angle), skeleton=skeleton)

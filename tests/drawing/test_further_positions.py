@@ -37,6 +37,7 @@ from linkwork.results.position import Position
 from tests.drawing.conftest import Sample
 from tests.drawing.mechanisms import five_bar_of
 from tests.drawing.pages import svg_texts
+from tests.drawing.shared_area import shared_area
 
 MECHANISMS = [
     "four_bar", "slider_crank", "inverted_slider_crank", "collar", "six_link", "boom", "jansen",
@@ -274,7 +275,7 @@ def test_the_limits_of_a_sweep_are_named_with_their_input(name: str, told: list[
     assert [text.text for text in scene.select(Text, Role.LIMIT_NAME)] == told
     texts = scene.select(Text)
     for one, other in combinations(texts, 2):
-        assert one.box.overlap(other.box) == 0, (one.text, other.text)
+        assert shared_area(one.box, other.box) == 0, (one.text, other.text)
     pins = [d for d in scene.select(Disc) if d.role is Role.PIN and not d.fade]
     for text in texts:
         for pin in pins:

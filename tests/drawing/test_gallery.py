@@ -11,6 +11,7 @@ import linkwork as lw
 from linkwork.drawing import Disc, Role, Scene, SceneOptions, Text, scene_of
 from linkwork.drawing.obstacles import Obstacles
 from linkwork.motion import vector_loops
+from tests.drawing.shared_area import shared_area
 
 NAMES = [name for name in lw.examples() if not name.startswith("newton-")]  # those have no points
 SYMBOLS = {
@@ -28,7 +29,7 @@ def solved(name: str) -> tuple[lw.Mechanism, lw.Position]:
 
 def assert_texts_are_apart(scene: Scene) -> None:
     for one, other in combinations(scene.select(Text), 2):
-        assert one.box.overlap(other.box) == 0, (one.text, other.text)
+        assert shared_area(one.box, other.box) == 0, (one.text, other.text)
     for disc in scene.select(Disc, Role.PIN):
         for text in scene.select(Text):
             assert text.box.distance(disc.centre) >= 0.99 * disc.radius, (text.text, disc.of)

@@ -9,6 +9,7 @@ import pytest
 from linkwork.drawing import Box, Disc, Polyline, Role, SceneOptions, Text, scene_of
 from linkwork.drawing.captions import printed_name
 from tests.drawing.conftest import Places, Sample
+from tests.drawing.shared_area import shared_area
 
 MECHANISMS = [
     "four_bar", "slider_crank", "inverted_slider_crank", "collar", "six_link", "jansen", "flat",
@@ -29,7 +30,7 @@ def test_names_cover_neither_each_other_nor_pins(sample: Sample, value: float) -
     scene = scene_of(sample.position(value), sample.motion(), options=SceneOptions(link_names=True))
     texts = scene.select(Text)
     for one, other in combinations(texts, 2):
-        assert one.box.overlap(other.box) == 0, (one.of, other.of)
+        assert shared_area(one.box, other.box) == 0, (one.of, other.of)
     discs = [d for d in scene.select(Disc) if d.role in (Role.PIN, Role.POINT, Role.TRACED)]
     for text in texts:
         for disc in discs:
@@ -79,7 +80,7 @@ def test_two_points_in_one_place_get_two_places_for_their_names(four_bar: Sample
     double = type(four_bar)(four_bar.name, four_bar.skeleton, at)
     scene = scene_of(double.position(50))
     [one], [other] = (scene.select(Text, Role.LABEL, of=name) for name in "BP")
-    assert one.box.overlap(other.box) == 0
+    assert shared_area(one.box, other.box) == 0
 
 
 def test_names_are_printed_with_greek_letters_and_lowered_numbers() -> None:
@@ -91,6 +92,6 @@ def test_names_are_printed_with_greek_letters_and_lowered_numbers() -> None:
 
 def test_boxes_measure_what_they_share() -> None:
     box = Box(0, 0, 2, 1)
-    assert box.overlap(Box(1, 0.5, 3, 3)) == pytest.approx(0.5)
-    assert box.overlap(Box(2, 0, 3, 1)) == 0
+    assert shared_area(box, Box(1, 0.5, 3, 3)) == pytest.approx(0.5)
+    assert shared_area(box, Box(2, 0, 3, 1)) == 0
     assert box.distance((5, 5)) == pytest.approx(5)

@@ -358,7 +358,7 @@ def test_the_leading_input_is_the_one_that_moves() -> None:
         ),
         (
             "four-bar", ["status"], {}, InputError,
-            '"status" is text: there is nothing to plot but numbers',
+            '"status" is text and cannot be plotted',
         ),
         (
             "four-bar", ["B"], {}, InputError,
@@ -367,22 +367,22 @@ def test_the_leading_input_is_the_one_that_moves() -> None:
         ),
         (
             "rapier-drive", ["s16.velocity"], {}, UnknownNameError,
-            'there is no "s16.velocity" without a speed of the input: give it one (speed in '
-            '[input]), or ask for "s16.d1", which is by the input',
+            '"s16.velocity" needs the speed of the input: set speed in [input], or use '
+            '"s16.d1", the derivative with respect to the input',
         ),
         (
             "rapier-drive", ["E.velocity"], {}, UnknownNameError,
-            'there is no "E.velocity" without a speed of the input: give it one (speed in '
-            '[input]), or ask for "E.d1", which is by the input',
+            '"E.velocity" needs the speed of the input: set speed in [input], or use '
+            '"E.d1", the derivative with respect to the input',
         ),
         (
             "rapier-drive", ["s16"], {"against": "time"}, InputError,
-            "there is no time without a speed of the input: give θ12 one in [input], as in "
+            "a plot over time needs the speed of θ12: set it in [input], as in "
             'speed = "60 rpm", or plot against θ12',
         ),
         (
             "slider-input", ["θ2"], {"against": "time"}, InputError,
-            "there is no time without a speed of the input: give d one in [input], as in "
+            "a plot over time needs the speed of d: set it in [input], as in "
             'speed = "50 mm/s", or plot against d',
         ),
         (
@@ -400,7 +400,7 @@ def test_the_leading_input_is_the_one_that_moves() -> None:
         ),
         (
             "four-bar", ["B"], {"kind": "path", "against": "time"}, InputError,
-            'a path is drawn in the plane, over nothing: leave out "time"',
+            'a path is drawn in the plane: leave out against="time"',
         ),
     ],
 )  # fmt: skip
@@ -420,8 +420,8 @@ def test_there_is_no_time_along_several_branches() -> None:
     with pytest.raises(InputError) as raised:
         motion_chart(motion, ["s16"], against="time")
     assert str(raised.value) == (
-        "there is no time along several branches: θ12 turns back between them, so it has no "
-        "steady speed; plot against θ12, or sweep one branch"
+        "several branches have no common time: θ12 reverses between them, so its speed is not "
+        "constant; plot against θ12, or sweep one branch"
     )
 
 

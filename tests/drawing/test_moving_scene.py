@@ -12,9 +12,11 @@ from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, Scene, Text
 from linkwork.drawing.shape_corners import corners
 from linkwork.mechanism.linkage import Linkage
 from tests.described import described_as
+from tests.drawing.shared_area import shared_area
+from tests.library_mechanisms import read_example
 from tests.thinned import thinned
 
-_DRAWN = [n for n in lw.examples() if lw.example(n).model.compiled.points.names]
+_DRAWN = [n for n in lw.examples() if read_example(n).model.compiled.points.names]
 _FURTHEST = 1e-6  # of the drawn size: rows and positions agree to rounding
 
 
@@ -57,7 +59,7 @@ def _differences(one: Scene, other: Scene) -> dict[str, float]:
     return worst
 
 
-@pytest.mark.parametrize("name", thinned(_DRAWN))
+@pytest.mark.parametrize("name", thinned(_DRAWN, 9))
 def test_moving_scene_agrees_with_the_scene_of_a_row(name: str) -> None:
     mechanism = lw.example(name)
     motion = mechanism.sweep(certify=False)
@@ -114,7 +116,7 @@ def test_names_of_a_moving_scene_seldom_meet() -> None:
     meeting = 0
     for row in range(0, 360, 3):
         boxes = [text.box for text in moving.at(row).select(Text)]
-        meeting += sum(a.overlap(b) > 0 for k, a in enumerate(boxes) for b in boxes[:k])
+        meeting += sum(shared_area(a, b) > 0 for k, a in enumerate(boxes) for b in boxes[:k])
     assert meeting <= 0.05 * 120
 
 

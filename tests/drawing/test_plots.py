@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -21,8 +22,9 @@ from linkwork.drawing.charts.matplotlib_page import chart_figure
 from linkwork.drawing.charts.plotting import circuits_plot, motion_plot
 from linkwork.drawing.charts.theme import DARK_CHART, LIGHT_CHART, THEMES, ChartTheme
 from linkwork.foundation.errors import InputError, UnknownNameError
-from linkwork.foundation.showing import shower
+from linkwork.foundation.presenting import presenter
 from tests.drawing.pages import assert_page_is_clear, left_title, svg_texts
+from tests.thinned import thinned
 
 
 @pytest.fixture(autouse=True)
@@ -67,7 +69,7 @@ PLOTS = [
 
 
 @pytest.mark.parametrize(("name", "options"), PLOTS)
-@pytest.mark.parametrize("theme", THEMES.values(), ids=THEMES)
+@pytest.mark.parametrize("theme", thinned(THEMES.values()), ids=THEMES)
 def test_texts_are_on_the_page_and_keep_clear_of_each_other(
     name: str, options: dict[str, Any], theme: ChartTheme
 ) -> None:
@@ -185,9 +187,7 @@ def test_a_drawing_in_the_colours_of_a_chart_is_refused(tmp_path: Path) -> None:
     scene = scene_of(lw.example("four-bar").solve())
     with pytest.raises(InputError) as raised:
         write(scene, tmp_path / "x.png", theme=DARK_CHART)
-    assert str(raised.value) == (
-        "a drawing needs the theme of a drawing: that of a chart has no links"
-    )
+    assert str(raised.value) == ("a drawing needs a theme for drawings, not one for charts")
 
 
 # ------------------------------------------------------------------ plot
@@ -286,9 +286,16 @@ def test_an_unknown_theme_is_refused_with_those_that_exist() -> None:
     assert str(raised.value) == 'there is no theme "black" (themes: light, dark)'
 
 
-def test_nobody_shows_what_nobody_has_named() -> None:
-    with pytest.raises(LookupError, match=r'^no function is named for "Motion.sing"$'):
-        shower("Motion.sing")
+def test_a_method_without_a_registered_presenter_is_a_lookup_error() -> None:
+    with pytest.raises(LookupError, match=r"^no presenter is registered for Motion\.trace$"):
+        presenter(lw.Motion.trace)
+
+
+def test_a_motion_read_back_in_a_new_process_is_plotted(tmp_path: Path) -> None:
+    stored = tmp_path / "motion.pickle"
+    stored.write_bytes(pickle.dumps(lw.example("four-bar").sweep(step=90, certify=False)))
+    code = f"import pickle; pickle.load(open({str(stored)!r}, 'rb')).plot('B.x')"
+    subprocess.run([sys.executable, "-Wignore", "-c", code], check=True, env={"MPLBACKEND": "agg"})
 
 
 def test_matplotlib_is_loaded_by_the_first_plot_only() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import pytest
 from matplotlib.figure import Figure
@@ -36,17 +37,26 @@ def page_of(sheet: Sheet) -> Figure:
     return _sheet_figure(sheet, LIGHT)
 
 
+@cache
+def drawn(name: str) -> tuple[Sheet, Figure]:
+    """The sheet of a library mechanism, and its page: drawn once."""
+    sheet = configuration_sheet(found_of(name))
+    page = page_of(sheet)
+    page.draw_without_rendering()
+    return sheet, page
+
+
 @pytest.mark.parametrize("name", DRAWN)
 def test_every_configuration_is_a_picture_with_its_name_in_the_order_of_the_list(name: str) -> None:
     found = found_of(name)
-    sheet = configuration_sheet(found)
+    sheet, _ = drawn(name)
     assert [scene.title for scene in sheet.scenes] == list(found.names)
     assert {scene.caption for scene in sheet.scenes} == {""}
     assert sheet.title == found.mechanism
     for scene, position in zip(sheet.scenes, found, strict=True):
-        drawn = {text.of: text.anchor for text in scene.select(Text)}
-        assert drawn
-        assert all(position.points[point] == place for point, place in drawn.items())
+        names = {text.of: text.anchor for text in scene.select(Text)}
+        assert names
+        assert all(position.points[point] == place for point, place in names.items())
 
 
 def test_the_caption_counts_them_and_says_where() -> None:
@@ -99,9 +109,7 @@ def test_pictures_stand_in_rows_of_at_most_four(
 
 @pytest.mark.parametrize("name", DRAWN)
 def test_all_pictures_show_the_same_part_of_the_plane_and_nothing_is_cut_off(name: str) -> None:
-    sheet = configuration_sheet(found_of(name))
-    page = page_of(sheet)
-    page.canvas.draw()
+    sheet, page = drawn(name)
     views = {(ax.get_xlim(), ax.get_ylim()) for ax in page.axes}
     assert len(views) == 1
     [((left, right), (bottom, top))] = views
@@ -119,8 +127,7 @@ def test_all_pictures_show_the_same_part_of_the_plane_and_nothing_is_cut_off(nam
 
 @pytest.mark.parametrize("name", DRAWN)
 def test_texts_keep_clear_of_each_other_and_of_the_pictures(name: str) -> None:
-    sheet = configuration_sheet(found_of(name))
-    page = page_of(sheet)
+    sheet, page = drawn(name)
     assert_page_is_clear(page)
     texts = [text for text, _ in printed_texts(page)]
     assert texts == [sheet.title, sheet.caption, *(scene.title for scene in sheet.scenes)]
@@ -128,7 +135,7 @@ def test_texts_keep_clear_of_each_other_and_of_the_pictures(name: str) -> None:
 
 @pytest.mark.parametrize("name", DRAWN)
 def test_names_of_points_are_large_enough_to_read(name: str) -> None:
-    page = page_of(configuration_sheet(found_of(name)))
+    _, page = drawn(name)
     sizes = [float(text.get_fontsize()) for ax in page.axes for text in ax.texts]
     assert 5.5 < min(sizes) <= max(sizes) < 12  # points
 

@@ -127,5 +127,5 @@ def test_a_place_on_the_scale_is_between_its_neighbours() -> None:
 
 def test_an_unknown_theme_is_refused_with_what_exists() -> None:
     with pytest.raises(UnknownNameError) as raised:
-        theme_named("dusk")
+        theme_named("dusk", THEMES)
     assert str(raised.value) == 'there is no theme "dusk" (themes: light, dark)'

@@ -14,6 +14,7 @@ from linkwork.foundation.errors import InputError
 from linkwork.motion import vector_loops
 from linkwork.results.vector_loop import LoopVector, VectorLoop
 from tests.drawing.conftest import Sample
+from tests.drawing.shared_area import shared_area
 
 
 def drawn(name: str, at: float | None = None) -> tuple[lw.Position, tuple[VectorLoop, ...], Scene]:
@@ -115,7 +116,7 @@ def test_names_of_vectors_cover_neither_each_other_nor_vectors() -> None:
     for name in ("four-bar", "rapier-drive", "jansen-leg", "double-four-bar"):
         _, _, scene = drawn(name)
         for one, other in combinations(scene.select(Text), 2):
-            assert one.box.overlap(other.box) == 0, (name, one.text, other.text)
+            assert shared_area(one.box, other.box) == 0, (name, one.text, other.text)
 
 
 def test_a_long_loop_keeps_its_order() -> None:

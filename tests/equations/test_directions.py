@@ -40,7 +40,7 @@ def test_a_solved_position_solves_every_bilinear_system_and_comes_back(name: str
         x[len(t) : len(u)] = z
         f, _ = form.system(left[0]).residual_and_jacobian(x[None, :])
         assert np.abs(f).max() < 1e-12
-        near = v[0, block.unknowns] + np.where(form.table.turns[:n], 1.0, 0.0)
+        near = v[0, block.unknowns] + np.where(form.table.is_angle[:n], 1.0, 0.0)
         back = form.unknowns(x[None, :], known, near)
         np.testing.assert_allclose(back[0], v[0, block.unknowns], rtol=1e-12, atol=1e-12)
         assert (off >= 0).all()

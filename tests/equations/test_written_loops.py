@@ -144,19 +144,18 @@ TOO_FEW = [
     (
         FOUR_BAR,
         (),
-        "0 inputs leave 1 degree of freedom: add 1 more input or a link "
+        'one degree of freedom has no input: add an input, for example link = "crank" '
         "(free to move: crank, rocker, coupler)",
     ),
     (
         FOUR_BAR | {"coupler": "B C E", "tail": "E F"},
         both("crank"),
-        "1 input leaves 1 degree of freedom: add 1 more input or a link (free to move: tail)",
+        "one degree of freedom has no input: add an input or a link (free to move: tail)",
     ),
     (
         FOUR_BAR | {"coupler": "B C E", "tail": "E F", "tip": "F G"},
         both("crank"),
-        "1 input leaves 2 degrees of freedom: add 2 more inputs or a link "
-        "(free to move: tail, tip)",
+        "2 degrees of freedom have no input: add 2 inputs or a link (free to move: tail, tip)",
     ),
 ]
 TOO_MANY = [
@@ -199,8 +198,8 @@ def test_one_part_too_free_and_another_too_tied_are_reported_together() -> None:
     graph = FOUR_BAR | {"ground": "A D G", "rod": "B D", "pendulum": "G H"}
     assert message(graph, name="mixed") == (
         '2 problems in mechanism "mixed"\n'
-        "  input  1 input leaves 1 degree of freedom: "
-        "add 1 more input or a link (free to move: pendulum)\n"
+        "  input  one degree of freedom has no input: "
+        "add an input or a link (free to move: pendulum)\n"
         "  links  1 condition too many: remove an input or a link among crank, rod"
     )
 
@@ -266,8 +265,9 @@ def test_loops_that_cannot_close_name_the_gap_that_remains() -> None:
     assert position.status is lw.Status.CANNOT_CLOSE
     # from A = (1, 0) to C = (10, 0) rod and rocker reach 6 of 9
     assert position.message == (
-        'loop "O A B C" cannot be closed at crank = 0°: nearest to the guess a gap of 3 mm '
-        'remains; it just closes with "O A" = 4 mm (3 longer) or "A B" = 7 mm (3 longer) or '
-        '"C B" = 5 mm (3 longer); no input value was found at which it could be assembled; '
+        'loop "O A B C" cannot be closed at crank = 0°: near the guess a gap of at least 3 mm '
+        'remains; the loops just close with "O A" = 4 mm (3 longer) or "A B" = 7 mm (3 longer) or '
+        '"C B" = 5 mm (3 longer); no input value was '
+        "found at which the mechanism can be assembled; "
         "no configuration exists there"
     )

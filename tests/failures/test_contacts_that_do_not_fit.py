@@ -94,23 +94,23 @@ def test_the_cams_are_right_as_they_stand() -> None:
         ),
         (
             program("cycloidal", 40, 12, 30, 'contact = "flat"'),
-            "line 35  cams[2].segments  undercut the cam 21.75 deg after they begin: its outline "
-            "would cut into itself; take a larger base circle",
+            "line 35  cams[2].segments  undercut the cam 21.75 deg after their start: its "
+            "outline would intersect itself; use a larger base circle",
         ),
         (
             program("cycloidal", 40, 12, 25, 'contact = "roller"\nradius = 15'),
-            "line 35  cams[2].segments  undercut the cam 30.5 deg after they begin: its outline "
-            "would cut into itself; take a larger base circle or a smaller roller",
+            "line 35  cams[2].segments  undercut the cam 30.5 deg after their start: its outline "
+            "would intersect itself; use a larger base circle or a smaller roller",
         ),
         (
             f'profile = {HOLLOW}\ncontact = "flat"',
-            "line 34  cams[2].profile  is hollow at (20.01, 19.99): a flat face bridges it; round "
-            "the outline there",
+            "line 34  cams[2].profile  is concave at (20.01, 19.99), where a flat face cannot "
+            "follow: make it convex",
         ),
         (
             f'profile = {HOLLOW}\ncontact = "roller"\nradius = 60',
-            "line 34  cams[2].profile  is too hollow at (20.01, 19.99): its radius there is 42.1, "
-            "smaller than that of the roller",
+            "line 34  cams[2].profile  is too concave at (20.01, 19.99): its radius of "
+            "curvature is 42.1, smaller than that of the roller",
         ),
     ],
 )
@@ -138,8 +138,8 @@ def test_a_cam_that_cannot_move_its_slider_so_is_refused(lift: str, message: str
         ),
         (
             program("harmonic", 20, 20, 40, 'contact = "flat"'),
-            "line 28  cams[1].segments  undercut the cam 14 deg after they begin: its outline "
-            "would cut into itself; take a larger base circle",
+            "line 28  cams[1].segments  undercut the cam 14 deg after their start: its outline "
+            "would intersect itself; use a larger base circle",
         ),
     ],
 )
@@ -156,7 +156,7 @@ def test_a_cam_that_is_held_on_its_frame_is_refused() -> None:
     held = text + '[[welds]]\nlinks = ["ground", "disc"]\n'
     with pytest.raises(lw.MechanismFileError) as caught:
         lw.loads(held).equations()
-    message = '"disc" cannot turn against "ground": a slider or a weld holds its angle'
+    message = '"disc" cannot turn relative to "ground": a slider or a weld holds its angle'
     assert [problem.message for problem in caught.value.problems] == [message, message]
 
 
@@ -170,7 +170,7 @@ def test_a_link_that_is_welded_to_what_it_is_driven_against_is_refused() -> None
         ).equations()
     (problem,) = caught.value.problems
     assert problem.message == (
-        '"crank" cannot turn against "ground": a slider or a weld holds its angle'
+        '"crank" cannot turn relative to "ground": a slider or a weld holds its angle'
     )
 
 
@@ -189,7 +189,7 @@ def test_welds_around_a_ring_have_to_agree() -> None:
     (problem,) = caught.value.problems
     assert problem.key == ("welds", 2)
     assert problem.message == (
-        '"c" cannot keep its angle against "a": other joints turn it by 1° from there'
+        '"c" cannot keep its angle relative to "a": other joints turn it by 1° from there'
     )
 
 
@@ -254,3 +254,66 @@ def test_a_link_between_the_centres_of_a_rolling_wheel_is_one_too_many() -> None
     assert problem.message == (
         '"arm" carries both centres O and C already: two wheels on an arm are [[gears]]'
     )
+
+
+NONCIRCULAR = """\
+format = 1
+[points]
+O = [0, 0]
+P = [100, 0]
+[links]
+ground = ["O", "P"]
+first = ["O"]
+second = ["P"]
+[[noncircular_gears]]
+name = "mesh"
+wheels = ["first", "second"]
+centers = ["O", "P"]
+LAW
+[input]
+link = "first"
+"""
+
+
+@pytest.mark.parametrize(
+    ("law", "message"),
+    [
+        ("", "needs one of law, table and pitch_curve, it has none of them"),
+        (
+            'law = "-phi"\ntable = [[0, 0], [90, -90], [180, -180], [270, -270], [360, -360]]',
+            "needs one of law, table and pitch_curve, it has law and table",
+        ),
+        ('law = "-psi"', 'column 2: "psi" is not defined (dimensions: phi)'),
+        ('law = "phi"', "does not fall everywhere: external gears turn against each other"),
+        (
+            'law = "-phi*0.7071"',
+            "turns the second wheel by -0.7071 of a turn while the first one turns once: that is "
+            "no ratio of whole numbers up to 12, so the pitch curves do not close",
+        ),
+        (
+            'law = "-2*phi - 20*sin(phi)"',
+            "turns the second wheel 2 times while the first one turns 1 times, but not alike: its "
+            "pitch curve does not close",
+        ),
+        (
+            "table = [[0, 0], [90, -90], [180, -180], [270, -270], [350, -360]]",
+            "covers 350: one turn of the first wheel is 360",
+        ),
+        (
+            "table = [[0, 0], [90, -90], [80, -180], [270, -270], [360, -360]]",
+            "the first angle must rise, the second must fall",
+        ),
+        (
+            "pitch_curve = [[110, 0], [0, 50], [-50, 0], [0, -50]]",
+            "reaches beyond the other centre, 100 away",
+        ),
+        (
+            "pitch_curve = [[50, 0], [40, 0], [30, 10], [35, -5]]",
+            "is not seen in one direction only once from its centre",
+        ),
+    ],
+)
+def test_non_circular_gears_that_cannot_roll_are_refused(law: str, message: str) -> None:
+    with pytest.raises(lw.MechanismError) as caught:
+        _ = lw.loads(NONCIRCULAR.replace("LAW", law)).model
+    assert any(problem.message.startswith(message) for problem in caught.value.problems)

@@ -52,7 +52,7 @@ CASES = {
     "a name as angle and as length": (
         changed(RAPIER, "-s16 - i*b1", "-s16*e^(i*s16) - i*b1"),
         "1 problem in file.toml\n"
-        '  line 20  loops."C0 C D E"  "s16" stands as an angle and as a length',
+        '  line 20  loops."C0 C D E"  "s16" is used as an angle and as a length',
     ),
     "a cosine of an unknown": (
         changed(RAPIER, "-s16 - i*b1", "-s16 - b1*cos(θ13)"),
@@ -107,7 +107,7 @@ CASES = {
     "a length as input without a range": (
         changed(RAPIER, 'variable = "θ12"\nfrom = 0\nto   = 360\nstep = 1', 'variable = "s16"'),
         "1 problem in file.toml\n"
-        '  line 29  input.from  is missing: "s16" is no angle and has no natural range',
+        '  line 29  input.from  is missing: "s16" is not an angle and has no natural range',
     ),
     "an output of an unknown name": (
         changed(FOUR_BAR, '"rocker - coupler"', '"rocker - copler"'),
@@ -122,7 +122,7 @@ CASES = {
         .replace("O4 = [100, 0]", "O4 = [100, 0]\nC = [90, 60]")
         .replace('"A B"   = 120', '"A C"   = 60'),
         "1 problem in file.toml\n"
-        "  line 27  input  1 input leaves 1 degree of freedom: add 1 more input or a link "
+        "  line 27  input  one degree of freedom has no input: add an input or a link "
         "(free to move: rocker, coupler, rod)",
     ),
     "an input too many": (

@@ -31,8 +31,8 @@ def singular_jacobian() -> Reached:
     )
     return mechanism.solve(), (
         "the Jacobian became singular during the iteration: the derivative is singular at an "
-        "iterate, where Newton-Raphson has no next step: start from a guess beside it; "
-        "a damped iteration does find θ3 = 14.40014098°, θ4 = 58.22758874°; "
+        "iterate, where Newton-Raphson has no next step: start from a guess near it; "
+        "a damped iteration finds θ3 = 14.40014098°, θ4 = 58.22758874°; "
         "2 configurations exist there: open (θ3 = 14.40014098°, θ4 = 58.22758874°) or "
         "crossed (θ3 = -74.40014098°, θ4 = -118.2275887°)"
     )
@@ -40,19 +40,18 @@ def singular_jacobian() -> Reached:
 
 def diverged() -> Reached:
     return lw.example("newton-inflection").solve(), (
-        "the iteration ran away to infinity: the equations bend to the other side behind the "
-        "root (an inflection), so that every step overshoots further than the one before: start "
-        "nearer to the root; a damped iteration does find x = 0; "
-        "1 root exists there (perhaps not all): x = 0"
+        "the iteration diverged to infinity: the equations have an inflection near the root, so "
+        "that every step overshoots further than the one before: start nearer to the root; a "
+        "damped iteration finds x = 0; 1 root exists there (perhaps not all): x = 0"
     )
 
 
 def step_limit() -> Reached:
     # 0 and 1 lead to each other for ever, around the minimum of F at √(2/3)
     return plain("x^3 - 2*x + 2 = 0", x=0).solve(), (
-        "no position after the largest allowed number of iterations: the guess lies at a local "
-        "extremum of the equations, which come no nearer to zero around it: start from the other "
-        "side of it; 1 root exists there (perhaps not all): x = -1.769292354"
+        "no position after the largest allowed number of iterations: the guess is near a local "
+        "extremum of the equations, which do not reach zero there: start from the other side of "
+        "the extremum; 1 root exists there (perhaps not all): x = -1.769292354"
     )
 
 
@@ -63,8 +62,9 @@ def cannot_close() -> Reached:
     ground = math.sqrt(70**2 - 40**2)
     angle = math.degrees(math.acos((40**2 + 100**2 - 70**2) / (2 * 40 * 100)))
     return four_bar(40, 30, 40, 100).solve(), (
-        f'loop "O2 A B O4" cannot be closed at crank = 90°: nearest to the guess a gap of '
-        f'{gap:.6g} mm remains; it just closes with "A B" = {30 + gap:.6g} mm ({gap:.6g} longer) '
+        f'loop "O2 A B O4" cannot be closed at crank = 90°: near the guess a gap of at '
+        f"least {gap:.6g} mm remains; "
+        f'the loops just close with "A B" = {30 + gap:.6g} mm ({gap:.6g} longer) '
         f'or "O4 B" = {40 + gap:.6g} mm ({gap:.6g} longer) '
         f'or "O2 O4" = {ground:.6g} mm ({100 - ground:.6g} shorter); '
         f"nearest reachable input: crank = {angle:.10g}° (dead point); "
@@ -97,7 +97,7 @@ def out_of_circuit() -> Reached:
     place = 'where loop "O2 A B O4" locks (coupler and rocker in line)'
     return motion, (
         "9 of 9 positions were not found; this circuit does not reach the input value on any of "
-        "its branches: the motion turns back at the limits reported, ask for values between them; "
+        "its branches: the motion reverses at the limits reported, ask for values between them; "
         f"dead point at crank = 46.5674634422 deg, {place}; "
         f"dead point at crank = 313.432536558 deg, {place}"
     )
@@ -116,8 +116,8 @@ def start_singular() -> Reached:
     crank = math.degrees(math.acos((40**2 + 100**2 - 120**2) / (2 * 40 * 100)))
     rod = math.degrees(math.acos((120**2 + 100**2 - 40**2) / (2 * 120 * 100)))
     return mechanism.solve(at=100), (
-        "the start itself is a dead point or change point, where the motion has no direction: "
-        "start from a guess beside it (met at s = 160); "
+        "the start is a dead point or change point, where the direction of motion is undetermined: "
+        "start from a guess near it (met at s = 160); "
         f"2 configurations exist there: open (crank = {crank:.10g}°, rod = -{rod:.10g}°) or "
         f"crossed (crank = -{crank:.10g}°, rod = {rod:.10g}°)"
     )
@@ -134,9 +134,9 @@ def lost() -> Reached:
     (limit,) = mechanism.sweep().limits
     assert 0 < limit.input < 1e-12
     return mechanism.solve(at=-1), (
-        "the branch could not be followed with safety up to this input value: ask for a value "
+        "the branch could not be followed reliably up to this input value: ask for a value "
         "before the last one reached, or start from a guess beyond it "
-        f"(met at u = {limit.input:.10g}); no position was found there from other guesses either"
+        f"(met at u = {limit.input:.10g}); other guesses also lead to no position there"
     )
 
 
@@ -145,11 +145,13 @@ def no_start() -> Reached:
     gap = math.hypot(10, 100) - 20
     ground = math.sqrt(20**2 - 10**2)
     return motion, (
-        f'loop "O2 A B O4" cannot be closed at crank = 90°: nearest to the guess a gap of '
-        f'{gap:.6g} mm remains; it just closes with "A B" = {10 + gap:.6g} mm ({gap:.6g} longer) '
+        f'loop "O2 A B O4" cannot be closed at crank = 90°: near the guess a gap of at '
+        f"least {gap:.6g} mm remains; "
+        f'the loops just close with "A B" = {10 + gap:.6g} mm ({gap:.6g} longer) '
         f'or "O4 B" = {10 + gap:.6g} mm ({gap:.6g} longer) '
         f'or "O2 O4" = {ground:.6g} mm ({100 - ground:.6g} shorter); '
-        "no input value was found at which it could be assembled; no configuration exists there"
+        "no input value was found at which the mechanism can be assembled; "
+        "no configuration exists there"
     )
 
 
@@ -168,7 +170,7 @@ def does_not_fit() -> Reached:
     length = math.hypot(30 * math.cos(turned), 30 * math.sin(turned) + 20)
     return mechanism.solve(at=85), (
         "a redundant link does not fit into the position of the others: change its length, or "
-        f'leave the link out; it just closes with "Q C" = {length:.6g} mm '
+        f'leave the link out; the loops just close with "Q C" = {length:.6g} mm '
         f"({50 - length:.6g} shorter)"
     )
 

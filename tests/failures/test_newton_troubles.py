@@ -14,24 +14,23 @@ SKETCHES = {
     "newton-inflection": (
         Status.DIVERGED,
         NewtonTrouble.INFLECTION,
-        "the iteration ran away to infinity: the equations bend to the other side behind the root "
-        "(an inflection), so that every step overshoots further than the one before: start nearer "
-        "to the root; a damped iteration does find x = 0; "
-        "1 root exists there (perhaps not all): x = 0",
+        "the iteration diverged to infinity: the equations have an inflection near the root, so "
+        "that every step overshoots further than the one before: start nearer to the root; a "
+        "damped iteration finds x = 0; 1 root exists there (perhaps not all): x = 0",
     ),
     "newton-another-root": (
         Status.CONVERGED,
         NewtonTrouble.ANOTHER_ROOT,
-        "position found, but Newton-Raphson went past the root beside the guess and found another "
-        "one: start nearer to the one that is meant; the root beside the guess is x = 2; "
-        "3 roots exist there (perhaps not all): x = 1 or x = 2 or x = 3",
+        "position found, but the iteration passed the root nearest to the guess and found "
+        "another root: start nearer to the intended root; the root nearest to the guess is x = "
+        "2; 3 roots exist there (perhaps not all): x = 1 or x = 2 or x = 3",
     ),
     "newton-extremum": (
         Status.SINGULAR_JACOBIAN,
         NewtonTrouble.LOCAL_EXTREMUM,
-        "the Jacobian became singular during the iteration: the guess lies at a local extremum of "
-        "the equations, which come no nearer to zero around it: start from the other side of it; "
-        "1 root exists there (perhaps not all): x = -2.103803403",
+        "the Jacobian became singular during the iteration: the guess is near a local extremum "
+        "of the equations, which do not reach zero there: start from the other side of the "
+        "extremum; 1 root exists there (perhaps not all): x = -2.103803403",
     ),
 }
 
@@ -62,7 +61,7 @@ def test_a_flat_point_that_is_no_extremum_is_a_singular_derivative() -> None:
     assert trouble(position) is NewtonTrouble.SINGULAR_DERIVATIVE
     assert position.message == (
         "the Jacobian became singular during the iteration: the derivative is singular at an "
-        "iterate, where Newton-Raphson has no next step: start from a guess beside it; "
+        "iterate, where Newton-Raphson has no next step: start from a guess near it; "
         "1 root exists there (perhaps not all): x = 2"
     )
 
@@ -87,8 +86,8 @@ def test_without_a_root_there_is_no_reason_to_miss_it_and_the_least_value_is_tol
     assert (position.status, trouble(position)) == (Status.STEP_LIMIT, None)
     assert position.message == (
         "no position after the largest allowed number of iterations: start from a nearer guess "
-        'or allow more iterations; "f" stays at 1 at best nearby; '
-        "no position was found there from other guesses either"
+        'or allow more iterations; "f" has at least the residual 1 nearby; '
+        "other guesses also lead to no position there"
     )
 
 
@@ -98,7 +97,7 @@ def test_too_few_steps_are_no_reason_of_the_equations() -> None:
     assert (position.status, trouble(position)) == (Status.STEP_LIMIT, None)
     assert position.message == (
         "no position after the largest allowed number of iterations: start from a nearer guess "
-        "or allow more iterations; a damped iteration does find x = 2.094551482; "
+        "or allow more iterations; a damped iteration finds x = 2.094551482; "
         "1 root exists there (perhaps not all): x = 2.094551482"
     )
 

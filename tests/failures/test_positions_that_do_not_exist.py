@@ -39,10 +39,12 @@ def test_links_too_short_name_the_loop_and_the_exact_gap() -> None:
     position = four_bar(40, 30, 20, 100).solve()
     assert position.status is lw.Status.CANNOT_CLOSE
     assert position.message == (
-        f'loop "O2 A B O4" cannot be closed at crank = 90°: nearest to the guess a gap of '
-        f'{gap:.6g} mm remains; it just closes with "A B" = {30 + gap:.6g} mm ({gap:.6g} longer) '
+        f'loop "O2 A B O4" cannot be closed at crank = 90°: near the guess a gap of at '
+        f"least {gap:.6g} mm remains; "
+        f'the loops just close with "A B" = {30 + gap:.6g} mm ({gap:.6g} longer) '
         f'or "O4 B" = {20 + gap:.6g} mm ({gap:.6g} longer) or "O2 O4" = 30 mm (70 shorter); '
-        "no input value was found at which it could be assembled; no configuration exists there"
+        "no input value was found at which the mechanism can be assembled; "
+        "no configuration exists there"
     )
     assert math.isnan(position["coupler"])
 
@@ -263,7 +265,7 @@ def test_a_start_on_a_dead_point_says_so() -> None:
         ],
         inputs=lw.Input(slider="s", start=160, stop=80, step=-5),
     )
-    assert mechanism.solve().message.startswith("position found, at a dead point or change point")
+    assert mechanism.solve().message.startswith("position found at a dead point or change point")
     motion = mechanism.sweep()
     assert set(motion.status[1:]) == {lw.Status.START_SINGULAR}
 

@@ -26,7 +26,7 @@ COMPLEX = REAL + 1j * np.roll(REAL, 5)
 FUNCTIONS: dict[str, tuple[Any, ...]] = {  # a function, and arrays
     "vector": (lanes.vector, REAL, np.roll(REAL, 1)),
     "phase": (lanes.phase, COMPLEX),
-    "turn": (lanes.turn, REAL),
+    "turn": (lanes.cis, REAL),
     "rect": (lanes.rect, REAL, np.roll(REAL, 1)),
     "sqrt": (lanes.sqrt, np.abs(REAL)),
     "exponential": (lanes.exponential, COMPLEX),
@@ -74,7 +74,7 @@ def test_both_of_two_conditions_are_one_question() -> None:
 
 def test_a_settled_number_sets_others_apart_without_making_them_leave() -> None:
     consensus = Consensus(3)
-    assert lanes.settled(consensus.lanes(np.array([2.0, 2.0, 3.0]))) == 2.0
+    assert lanes.uniform_value(consensus.lanes(np.array([2.0, 2.0, 3.0]))) == 2.0
     assert consensus.apart.tolist() == [False, False, True]
     assert consensus.agreeing.all()
 
@@ -139,13 +139,13 @@ def test_what_is_not_done_goes_on_with_the_leader_and_comes_back() -> None:
     rest = lanes.rest_of(x < 2.5)
     assert rest is not None
     assert rest.lanes.tolist() == [1, 2, 3]
-    part = rest.narrowed(x)
+    part = rest.narrow(x)
     assert part < 3.5  # and the fourth
     rest.leave()
-    whole: Any = rest.widened(x, 10.0 * part)
+    whole: Any = rest.widen(x, 10.0 * part)
     assert whole.values.tolist() == [1.0, 20.0, 30.0, 40.0, 5.0]
     assert consensus.agreeing.tolist() == [True, True, True, False, False]
-    assert rest.narrowed(7.0) == 7.0
+    assert rest.narrow(7.0) == 7.0
     assert lanes.rest_of(True) is None
 
 

@@ -16,8 +16,12 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     folder = tmp_path / "lazy_things"
     folder.mkdir()
     (folder / "__init__.py").write_text(
+        "from typing import TYPE_CHECKING\n"
         "from linkwork.foundation.lazy import loader\n"
-        "__getattr__ = loader(__name__, {'one': ('one', 'first'), 'two': ('second',)})\n"
+        "if TYPE_CHECKING:\n"
+        "    from lazy_things.one import first as first, one as one\n"
+        "    from lazy_things.two import second as second\n"
+        "__getattr__ = loader(__name__)\n"
     )
     (folder / "one.py").write_text("one, first = 'the name, not the module', 1\n")
     (folder / "two.py").write_text("second = 2\n")
@@ -32,6 +36,7 @@ def test_nothing_is_loaded_before_it_is_used(package: Any) -> None:
     assert package.second == 2
     assert "lazy_things.one" not in sys.modules
     assert [name for name in dir(package) if name[0] != "_"] == ["first", "one", "second"]
+    assert package.__all__ == ["first", "one", "second"]
 
 
 def test_a_name_wins_over_the_module_of_the_same_name(package: Any) -> None:

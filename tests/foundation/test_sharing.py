@@ -6,13 +6,13 @@ import threading
 
 import pytest
 
-from linkwork.foundation.sharing import shared_out
+from linkwork.foundation.sharing import share_out
 
 
 @pytest.mark.parametrize("threads", [1, 2, 5])
 def test_everything_is_done_once(threads: int) -> None:
     done: list[int] = []
-    shared_out(done.append, range(100), threads)
+    share_out(done.append, range(100), threads)
     assert sorted(done) == list(range(100))
 
 
@@ -24,7 +24,7 @@ def test_who_asks_works_too_and_so_does_another_thread() -> None:
         who.add(threading.get_ident())
         both.wait()  # one thread alone would wait for ever
 
-    shared_out(meet, range(2), 2)
+    share_out(meet, range(2), 2)
     assert len(who) == 2
     assert threading.get_ident() in who
 
@@ -39,5 +39,5 @@ def test_what_is_raised_ends_the_work(threads: int) -> None:
             raise ValueError(item)
 
     with pytest.raises(ValueError, match="5"):
-        shared_out(work, range(10_000), threads)
+        share_out(work, range(10_000), threads)
     assert len(begun) < 10_000

@@ -181,7 +181,7 @@ def _table(
         functions=tuple(_formula(which, used) for which, used in formulas),
         equation_scale=rng.uniform(0.5, 2.0, rows),
         variable_scale=rng.uniform(0.5, 2.0, len(turns)),
-        turns=turns,
+        is_angle=turns,
     )
 
 

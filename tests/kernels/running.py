@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from linkwork.kernels.program.interpreter import LANES, run
-from linkwork.kernels.program.lowering import lowered, reserve
+from linkwork.kernels.program.lowering import lower_program, reserve
 from linkwork.kernels.program.program import Program, Registers
 from linkwork.kernels.program.recorder import Recorder
 
@@ -21,7 +21,7 @@ def with_registers(recorder: Recorder) -> tuple[Program, Registers]:
     """The program of a recording alone, with its registers."""
     registers = Registers()
     reserve(recorder, registers)
-    return lowered(recorder, registers, registers.count), registers
+    return lower_program(recorder, registers, registers.count), registers
 
 
 def ran(recorder: Recorder, given: Mapping[str, Array]) -> dict[str, Array]:

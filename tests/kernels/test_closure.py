@@ -10,7 +10,7 @@ import pytest
 
 from linkwork.foundation.arrays import BoolArray
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.kernels.march.closure import BlockPart, Closure, solved
+from linkwork.kernels.march.closure import BlockPart, Closure, solve_linear
 from linkwork.kernels.program.recorder import Recorder, Value
 from tests.campaigns.positions import random_position
 from tests.kernels.random_tables import random_example
@@ -109,7 +109,7 @@ def solutions(matrices: Array, sides: Array, structural: BoolArray) -> tuple[Arr
     def entry(i: int, k: int) -> Value | float:
         return 0.0 if structural[i, k] else rec.input(f"a{i},{k}")
 
-    answer = solved(
+    answer = solve_linear(
         rec,
         [[entry(i, k) for k in range(n)] for i in range(n)],
         [[rec.input(f"b{s},{i}") for i in range(n)] for s in range(sides.shape[2])],

@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.foundation.aligned import aligned
+from linkwork.foundation.aligned import allocate_aligned
 from linkwork.foundation.arrays import Array
 from linkwork.kernels.march import sweep_kernel
-from linkwork.kernels.march.sweep_kernel import LaneKernel, Steps
+from linkwork.kernels.march.sweep_kernel import Steps, SweepKernel
 from linkwork.kernels.program import execution
-from linkwork.kernels.program.code_cache import is_written, written
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.program.code_cache import is_cached, load_compiled
+from linkwork.kernels.program.execution import Execution
 from linkwork.kernels.program.interpreter import LANES, run
 from linkwork.kernels.program.printing import trial_source
 from linkwork.kernels.program.program import SOURCES, Op
@@ -65,7 +65,7 @@ def test_every_instruction_written_out_is_that_of_the_machine() -> None:
         source = trial_source([code[:20], code[20:]], height, set(range(height)), constants)
         number = ctypes.POINTER(ctypes.c_double)
         places = [other[k * height :].ctypes.data_as(number) for k in range(PLACES + 1)]
-        written(source, "trial").ctypes(*places, LANES)
+        load_compiled(source, "trial").ctypes(*places, LANES)
         np.testing.assert_allclose(other, space, rtol=1e-12, atol=1e-13)
 
 
@@ -92,40 +92,40 @@ def test_families_are_the_same_with_compiled_equations(
     assert np.nanmax(away) <= 1e-11 * np.nanmax(np.abs(usual.rows.v))
 
 
-def kernel() -> LaneKernel:
+def kernel() -> SweepKernel:
     model = lw.example("crank-slider").model
-    return LaneKernel(model.compiled.table, block_parts(model), frozenset(), False)
+    return SweepKernel(model.compiled.table, block_parts(model), frozenset(), False)
 
 
 def test_many_positions_are_worth_a_compilation(monkeypatch: pytest.MonkeyPatch) -> None:
     few, many = kernel(), kernel()
-    few.shift(Gear(positions=99_999_999))
+    few.shift(Execution(positions=99_999_999))
     assert few.trial == 0
-    many.shift(Gear(positions=100_000_000))
+    many.shift(Execution(positions=100_000_000))
     assert many.trial != 0
     again = kernel()
-    again.shift(Gear(positions=999_999))
+    again.shift(Execution(positions=999_999))
     assert again.trial == 0
-    again.shift(Gear(positions=1_000_000))  # what the run before has compiled
+    again.shift(Execution(positions=1_000_000))  # what the run before has compiled
     assert again.trial == many.trial
-    again.shift(Gear(specialised=False, positions=1 << 40))  # and no more
+    again.shift(Execution(specialised=False, positions=1 << 40))  # and no more
     assert again.trial == 0
     monkeypatch.setattr(execution, "_LONGEST", 10)
     long = kernel()
-    long.shift(Gear(positions=1 << 40))
+    long.shift(Execution(positions=1 << 40))
     assert long.trial == 0
 
 
 def test_a_changed_file_is_written_anew(tmp_path: Path) -> None:
     source = trial_source([np.array([[Op.NEG, 0, 1, 0, 0]], np.uint32)], 2, {0}, {})
-    assert not is_written(source)
-    written(source, "trial")
+    assert not is_cached(source)
+    load_compiled(source, "trial")
     (file,) = (tmp_path / "kernels").glob("*.py")
     assert file.read_text() == source
-    assert is_written(source)
+    assert is_cached(source)
     del sys.modules[file.stem]
     file.write_text("raise SystemExit('somebody else')")
-    written(source, "trial")
+    load_compiled(source, "trial")
     assert file.read_text() == source
     assert not list((tmp_path / "kernels").glob("*.part"))
 
@@ -133,7 +133,7 @@ def test_a_changed_file_is_written_anew(tmp_path: Path) -> None:
 def test_threads_that_want_the_same_module_wait_until_it_is_whole() -> None:
     source = "import time\n\ntime.sleep(0.2)\n\n\ndef trial():\n    return 7\n"
     with ThreadPoolExecutor(4) as pool:
-        functions = list(pool.map(lambda _: written(source, "trial"), range(4)))
+        functions = list(pool.map(lambda _: load_compiled(source, "trial"), range(4)))
     assert [function() for function in functions] == [7] * 4
     assert len(set(functions)) == 1
 
@@ -145,11 +145,11 @@ def test_threads_share_a_kernel_and_its_workspaces(monkeypatch: pytest.MonkeyPat
     others = []
 
     def meanwhile(*size: int) -> Array:
-        monkeypatch.setattr(sweep_kernel, "aligned", aligned)
+        monkeypatch.setattr(sweep_kernel, "allocate_aligned", allocate_aligned)
         others.append(shared._space(other))
-        return aligned(*size)
+        return allocate_aligned(*size)
 
-    monkeypatch.setattr(sweep_kernel, "aligned", meanwhile)
+    monkeypatch.setattr(sweep_kernel, "allocate_aligned", meanwhile)
     assert shared._space(mine)[tolerance, 0] == 1e-3
     assert others[0][tolerance, 0] == 1e-4
 
@@ -161,11 +161,11 @@ def test_without_a_folder_to_write_to_the_machine_serves(
     taken.write_text("")
     monkeypatch.setenv("LINKWORK_CACHE", str(taken))
     with pytest.raises(lw.InputError) as told:
-        kernel().shift(Gear(specialised=True))
+        kernel().shift(Execution(specialised=True))
     assert str(told.value) == (
-        f"compiled code cannot be kept in {taken} ({os.strerror(17)}): "
-        "name another folder in LINKWORK_CACHE, or ask for specialised=False"
+        f"compiled code cannot be stored in {taken} ({os.strerror(17)}): "
+        "name another folder in LINKWORK_CACHE, or use specialised=False"
     )
     mine = kernel()
-    mine.shift(Gear(positions=1 << 40))
+    mine.shift(Execution(positions=1 << 40))
     assert mine.trial == 0

@@ -35,7 +35,7 @@ def slider_crank() -> LoopTable:
         functions=(),
         equation_scale=np.full(2, L),
         variable_scale=np.array([1.0, 1.0, L]),
-        turns=np.array([True, True, False]),
+        is_angle=np.array([True, True, False]),
     )
 
 

@@ -14,7 +14,8 @@ from linkwork.equations.outline import Outline
 from linkwork.kernels.law_row import LawRow
 from linkwork.kernels.loop_table import LinearRows, LoopTable, TableSplitter
 from linkwork.kernels.phasor_rows import PhasorRows
-from linkwork.numerics.proof.kantorovich import bounds, radii
+from linkwork.numerics.proof.kantorovich import weighted_radii
+from tests.numerics.proof_bounds import bounds
 from tests.oracles.ball_laws import ball_jet
 from tests.oracles.balls import BallTable, certainly_above, exactly, newton
 
@@ -75,11 +76,17 @@ def test_second_derivative_along_a_direction_is_the_slope_of_the_gradient(seed: 
     h = 1e-6
     ahead, behind = (row.value_and_gradient(v + side * h * d)[1] for side in (1, -1))
     slope = ((ahead - behind) * d).sum(axis=1) / (2 * h)
-    joints = np.abs(row.second(v + h * d, d) - row.second(v - h * d, d)) > 1e-2 * row.bend
+    joints = (
+        np.abs(
+            row.second_directional_derivative(v + h * d, d)
+            - row.second_directional_derivative(v - h * d, d)
+        )
+        > 1e-2 * row.bend
+    )
     assert joints.mean() < 0.1
     # no fourth derivative here exceeds a thousand times the second one
     allowed = 1e-4 * row.bend * np.abs(d).max() ** 2 + 1e-8
-    assert np.abs(row.second(v, d) - slope)[~joints].max() < allowed
+    assert np.abs(row.second_directional_derivative(v, d) - slope)[~joints].max() < allowed
 
 
 def test_a_row_over_renumbered_variables_is_the_same() -> None:
@@ -119,7 +126,7 @@ def random_table(rng: np.random.Generator) -> LoopTable:
         functions=laws,
         equation_scale=np.ones(4),
         variable_scale=rng.uniform(0.5, 3.0, 5),
-        turns=np.array([True, True, False, False, True]),
+        is_angle=np.array([True, True, False, False, True]),
     )
 
 
@@ -177,7 +184,7 @@ def test_where_a_law_bends_most_the_constant_is_that_bend(seed: int) -> None:
         ),
         equation_scale=np.ones(1),
         variable_scale=np.array([scale]),
-        turns=np.array([True]),
+        is_angle=np.array([True]),
     )  # fmt: skip
     v = np.array([[0.3]])
     b = bounds(table, v, table.jacobian(v), np.array([[[a]]]), np.zeros((1, 0)))
@@ -239,7 +246,7 @@ def test_a_radius_with_laws_holds_a_root() -> None:
         jacobian = table.jacobian(v)
         matrix = np.asarray(np.linalg.inv(jacobian[:, :, :4]), dtype=float)
         shift = arb(float(v[0, 4])) - root[4]
-        found = radii(
+        found = weighted_radii(
             bounds(table, v, jacobian, matrix, np.abs([[float(shift)]])), table.variable_scale[:4]
         )
         if not found.holds[0]:
@@ -247,8 +254,10 @@ def test_a_radius_with_laws_holds_a_root() -> None:
         proved += 1
         for i in range(4):
             off = abs(root[i] - arb(float(v[0, i])))
-            assert off <= arb(float(found.each[0, i]))
-            assert off / arb(float(table.variable_scale[i])) <= arb(float(found.exists[0]))
+            assert off <= arb(float(found.error_bound[0, i]))
+            assert off / arb(float(table.variable_scale[i])) <= arb(
+                float(found.existence_radius[0])
+            )
     assert proved > 15
 
 
@@ -297,7 +306,7 @@ def test_a_law_of_what_is_known_is_straight_and_one_of_an_unknown_is_not() -> No
             functions=(law,),
             equation_scale=np.ones(1),
             variable_scale=np.ones(2),
-            turns=np.array([False, True]),
+            is_angle=np.array([False, True]),
         )
 
     assert table(1, straight).is_straight

@@ -40,7 +40,7 @@ def test_the_random_tables_have_every_feature(examples: list[Example]) -> None:
     assert {w for _, term in terms for _, w in term.phase} == {1.0, -1.0, 2.0, 0.5}
     assert any(example.lines and example.formulas for example in examples)
     kinds = [
-        bool(example.table.turns[k])
+        bool(example.table.is_angle[k])
         for example in examples
         for k in range(example.table.unknowns, example.table.variables)
     ]
@@ -71,7 +71,7 @@ def test_second_derivative_equals_a_complex_step_of_the_first(examples: list[Exa
         v, d = example.v, example.d
         wanted = example.slope(v + 1j * STEP * d, d).imag / STEP
         scale = size(example) * float(np.abs(d).max()) ** 2
-        assert agree(example.table.second(v, d), wanted, scale), seed
+        assert agree(example.table.second_directional_derivative(v, d), wanted, scale), seed
 
 
 def test_jet_of_a_curved_path_adds_the_slope_along_its_bend(examples: list[Example]) -> None:
@@ -126,11 +126,13 @@ def test_parts_of_a_table_are_the_rows_and_columns_of_the_whole(examples: list[E
         bend = np.zeros_like(example.d)
         bend[:, columns] = example.d[:, columns]
         scale = size(example) * float(np.abs(example.d).max()) ** 2
-        own_second = part.second(here, bend[:, columns])
-        assert agree(own_second, table.second(example.v, bend)[:, rows], scale), seed
+        own_second = part.second_directional_derivative(here, bend[:, columns])
+        assert agree(
+            own_second, table.second_directional_derivative(example.v, bend)[:, rows], scale
+        ), seed
         np.testing.assert_array_equal(part.equation_scale, table.equation_scale[rows])
         np.testing.assert_array_equal(part.variable_scale, table.variable_scale[columns])
-        np.testing.assert_array_equal(part.turns, table.turns[columns])
+        np.testing.assert_array_equal(part.is_angle, table.is_angle[columns])
 
 
 def test_rows_of_a_batch_equal_the_same_rows_alone(examples: list[Example]) -> None:
@@ -147,7 +149,7 @@ def test_equations_repeat_after_whole_turns_where_their_values_do(examples: list
     repeating = 0
     for seed, example in enumerate(examples):
         table = example.table
-        turns = np.where(table.turns, rng.integers(-2, 3, table.variables), 0.0)
+        turns = np.where(table.is_angle, rng.integers(-2, 3, table.variables), 0.0)
         if not turns.any() or example.formulas:
             continue
         moved = table.residual(example.v + 2.0 * np.pi * turns)
@@ -161,7 +163,7 @@ def test_functions_of_angles_are_not_known_to_repeat(examples: list[Example]) ->
     seen = 0
     for example in examples:
         used = {k for row in example.table.functions for k in row.variables}
-        turning = [k for k in used if example.table.turns[k]]
+        turning = [k for k in used if example.table.is_angle[k]]
         if turning:
             assert not example.table.repeats_after(np.eye(example.table.variables)[turning[0]])
             seen += 1

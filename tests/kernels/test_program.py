@@ -8,10 +8,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
-from linkwork.kernels.program.lowering import lowered, reserve
+from linkwork.kernels.program.lowering import lower_program, reserve
 from linkwork.kernels.program.program import Op, Program, Registers
 from linkwork.kernels.program.recorder import Recorder, Value
 from tests.kernels.running import ran, with_registers
@@ -185,7 +184,7 @@ def test_programs_share_named_registers_and_use_scratch_behind_all_of_them() -> 
     registers = Registers()
     for rec in (first, second):
         reserve(rec, registers)
-    programs = [lowered(rec, registers, registers.count) for rec in (first, second)]
+    programs = [lower_program(rec, registers, registers.count) for rec in (first, second)]
     assert set(registers.named) == {"a", "b", "c"}
     assert set(registers.constants) == {2.0, 1.0, 3.0}
     space = registers.filled(max(p.height for p in programs), 3)

@@ -10,9 +10,10 @@ import numpy.typing as npt
 import pytest
 
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.proof.kantorovich import bounds, radii
+from linkwork.numerics.proof.kantorovich import weighted_radii
 from tests.campaigns.lanes import LaneClaims, claims, judge_lane_steps, judge_lanes
 from tests.campaigns.positions import closed, random_position
+from tests.numerics.proof_bounds import bounds
 
 Array = npt.NDArray[np.float64]
 LANES = 24
@@ -58,7 +59,7 @@ def test_constants_and_radii_are_those_of_the_scalar_proof(seed: int) -> None:
         terms = table.loops.moduli(v[k : k + 1], np.ones((1, len(table.loops.row))))[1][0]
         lines = np.abs(jacobian[0, 2 * len(terms) :])
         size = np.abs(inverse[0]) @ (np.concatenate([terms, terms, lines]) @ weights) / weights[:n]
-        angles = 1.0 + np.abs(v[k]) @ table.turns
+        angles = 1.0 + np.abs(v[k]) @ table.is_angle
         loose = 2.0**-53 * 100 * n * size * angles
         for name, own, other in (
             ("y", lanes.bounds.y[k], scalar.y[0]),
@@ -70,16 +71,16 @@ def test_constants_and_radii_are_those_of_the_scalar_proof(seed: int) -> None:
             assert (own <= other * (1 + 1e-10) + room).all(), name
             if not sharper:
                 assert (own >= other * (1 - 1e-10) - 0.1 * room).all(), name
-        one = radii(scalar, weights[:n])
+        one = weighted_radii(scalar, weights[:n])
         assert lanes.radii.holds[k] == one.holds[0] or sharper
         if sharper or not one.holds[0]:
             continue
         held += 1
         for own, other in (
-            (lanes.radii.exists[k], one.exists[0]),
-            (lanes.radii.unique[k], one.unique[0]),
-            (lanes.radii.each[k], one.each[0]),
-            (lanes.radii.alone[k], one.alone[0]),
+            (lanes.radii.existence_radius[k], one.existence_radius[0]),
+            (lanes.radii.uniqueness_radius[k], one.uniqueness_radius[0]),
+            (lanes.radii.error_bound[k], one.error_bound[0]),
+            (lanes.radii.isolation_radius[k], one.isolation_radius[0]),
         ):
             np.testing.assert_allclose(own, other, rtol=1e-5)
     assert held or sharper or seed % 3 == 0

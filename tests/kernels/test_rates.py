@@ -44,7 +44,7 @@ def coefficients(model: Model) -> dict[str, Array]:
         given[f"c{term}.re"], given[f"c{term}.im"] = np.full((2, DESIGNS), [[c.real], [c.imag]])
     for row, constant in enumerate(table.linear.constant.tolist()):
         given[f"k{row}"] = np.full(DESIGNS, constant)
-    for k in np.flatnonzero(~table.turns):
+    for k in np.flatnonzero(~table.is_angle):
         given[f"scale{k}"] = np.full(DESIGNS, table.variable_scale[k])
     for j, rate in enumerate(lock_step(model.rows)[1]):
         given[f"u{j}.rate"] = np.full(DESIGNS, rate)

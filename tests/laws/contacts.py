@@ -83,6 +83,44 @@ def gear_external(rng: Rng) -> lw.Mechanism:
     return _five_bar(rng, gears=(gear,))
 
 
+def noncircular_law(rng: Rng) -> lw.Mechanism:
+    """Ellipses about their foci, or a wheel that turns twice or half as fast as the other."""
+    lobes, turns = [(1, 1), (2, 2), (2, 1), (1, 2)][int(rng.integers(4))]
+    wave = f"atan(ecc*sin({lobes}*phi)/(1 - ecc*cos({lobes}*phi)))"
+    law = f"-{lobes}/{turns}*phi - 2/{turns}*{wave}"
+    phase = float(rng.uniform(-90, 90)) if rng.random() < 0.5 else None
+    gear = lw.NoncircularGear(
+        name="mesh", wheels=("left", "right"), centers=("O", "P"), law=law, phase=phase,
+        start=float(rng.uniform(-90, 90)),
+    )  # fmt: skip
+    return _five_bar(
+        rng, noncircular_gears=(gear,), dimensions={"ecc": float(rng.uniform(0.1, 0.4))}
+    )
+
+
+def noncircular_table(rng: Rng) -> lw.Mechanism:
+    phi = np.linspace(0, 360, 25)
+    psi = -phi - rng.uniform(5, 20) * np.sin(np.radians(phi) + rng.uniform(0, 6))
+    psi[-1] = psi[0] - 360
+    table = tuple(zip(phi.tolist(), psi.tolist(), strict=True))
+    gear = lw.NoncircularGear(
+        name="mesh", wheels=("left", "right"), centers=("O", "P"), table=table, start=20
+    )
+    return _five_bar(rng, noncircular_gears=(gear,))
+
+
+def noncircular_curve(rng: Rng) -> lw.Mechanism:
+    """An ellipse about its focus, with half of the centres' distance as semi-axis."""
+    e, begin = rng.uniform(0.1, 0.4), rng.uniform(0, 6)
+    angle = 2 * np.pi * np.arange(96) / 96
+    z = 30 * (1 - e**2) / (1 - e * np.cos(angle)) * np.exp(1j * (angle + begin))
+    gear = lw.NoncircularGear(
+        name="mesh", wheels=("left", "right"), centers=("O", "P"),
+        pitch_curve=tuple((float(p.real), float(p.imag)) for p in z),
+    )  # fmt: skip
+    return _five_bar(rng, noncircular_gears=(gear,))
+
+
 def gear_internal(rng: Rng) -> lw.Mechanism:
     """A planet inside a ring that stands still; the sun drives. Its point P moves a rod."""
     start = _cis(rng.uniform(-180, 180))
@@ -336,6 +374,9 @@ KINDS: dict[str, Callable[[Rng], lw.Mechanism]] = {
     "weld": weld,
     "gear external": gear_external,
     "gear internal": gear_internal,
+    "non-circular gears by a formula": noncircular_law,
+    "non-circular gears by a table": noncircular_table,
+    "non-circular gears by a pitch curve": noncircular_curve,
     "gear on a moving arm": gear_moving_arm,
     "belt open": belt,
     "belt crossed": lambda rng: belt(rng, crossed=True),

@@ -9,6 +9,7 @@ import numpy as np
 
 import linkwork as lw
 from tests.equations.linkages import LINKAGES
+from tests.library_mechanisms import driven_examples, read_example
 from tests.oracles.four_bar import FourBar, random_crank_rockers
 
 __all__ = ["NAMES", "motion_of", "size_of"]
@@ -75,7 +76,7 @@ def _random_slider_crank(seed: int) -> lw.Mechanism:
     )  # fmt: skip
 
 
-_EXAMPLES = tuple(n for n in lw.examples() if lw.example(n).description.inputs)
+_EXAMPLES = driven_examples()
 NAMES = (
     *_EXAMPLES,
     *(f"four-bar {k}" for k in range(10)),
@@ -96,7 +97,7 @@ def mechanism_of(name: str) -> lw.Mechanism:
         case "slider-crank":
             return _random_slider_crank(200 + int(number))
         case _:
-            return lw.example(name)
+            return read_example(name)
 
 
 @cache

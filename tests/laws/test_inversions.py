@@ -71,7 +71,7 @@ def test_wheels_cams_and_curves_move_alike_whatever_is_ground(kind: str) -> None
             )
 
 
-@pytest.mark.parametrize("name", thinned(LINKED, 2))
+@pytest.mark.parametrize("name", thinned(LINKED, 4))
 def test_an_inversion_has_the_same_relative_motion(name: str) -> None:
     mechanism, motion = mechanism_of(name), motion_of(name)
     links = linkage_of(mechanism).links
@@ -212,10 +212,10 @@ def test_the_ground_itself_changes_nothing_but_the_input() -> None:
 def test_all_inversions_are_listed_with_their_names() -> None:
     told = [entry.text for entry in lw.example("four-bar").inversions()]
     assert told == [
-        "ground: crank-rocker (GCRR): Grashof, s + l is 20 mm below p + q",
-        "crank: double-crank (GCCC): Grashof, s + l is 20 mm below p + q",
-        "coupler: crank-rocker: Grashof, s + l is 20 mm below p + q",
-        "rocker: double-rocker: Grashof, s + l is 20 mm below p + q",
+        "ground: crank-rocker (GCRR): Grashof, s + l < p + q by 20 mm",
+        "crank: double-crank (GCCC): Grashof, s + l < p + q by 20 mm",
+        "coupler: crank-rocker: Grashof, s + l < p + q by 20 mm",
+        "rocker: double-rocker: Grashof, s + l < p + q by 20 mm",
     ]
     shaper = lw.example("inverted-slider-crank").inversions()
     assert [entry.like for entry in shaper] == ["ground", "ground", "lever"]
@@ -256,7 +256,7 @@ def test_what_cannot_be_inverted_is_refused_with_the_reason() -> None:
             lw.example("newton-extremum"),
             "crank",
             "Newton-Raphson starting at a local extremum is given by equations, and cannot be "
-            "inverted without links and joints: plain equations tell nothing of links and joints",
+            "inverted without links and joints: plain equations do not determine links and joints",
         ),
     ]
     for mechanism, link, message in refused:

@@ -11,12 +11,14 @@ import pytest
 
 import linkwork as lw
 from linkwork.foundation.angles import AngleUnit
-from linkwork.mechanism.linkage import PART_KINDS, Linkage
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.index import PARTS
+from linkwork.results.motion_table import table_of
 from linkwork.results.quantity import Kind
-from linkwork.results.table import table_of
 from tests.laws.agreement import CLOSE, agree, angles_of, internal, series_of
 from tests.laws.mechanisms import NAMES, mechanism_of, motion_of, size_of
 from tests.laws.transforms import mirrored, scaled, turned
+from tests.thinned import thinned
 
 Array = npt.NDArray[np.float64]
 every = pytest.mark.parametrize("name", NAMES)
@@ -62,7 +64,7 @@ def test_the_mirrored_mechanism_has_the_mirrored_motion(name: str) -> None:
 UNTURNED = frozenset(
     name
     for name in NAMES
-    if any(getattr(mechanism_of(name).description, kind, ()) for kind in PART_KINDS[3:])
+    if any(getattr(mechanism_of(name).description, kind, ()) for kind in list(PARTS)[3:])
 )
 #: The third derivative of a spline jumps; Dixon's bars change too fast for these steps.
 UNEVEN = frozenset({"curved-slot", "dixon-one", "dixon-two", "eccentric-cam", "garage-door"})
@@ -75,7 +77,7 @@ def test_the_turned_mechanism_has_the_turned_motion(name: str) -> None:
 
 
 @every
-@pytest.mark.parametrize("factor", [0.003, 2500.0])
+@pytest.mark.parametrize("factor", thinned([0.003, 2500.0]))
 def test_the_scaled_mechanism_has_the_same_angles(name: str, factor: float) -> None:
     one, other = motion_of(name), scaled(mechanism_of(name), factor).sweep()
     agree(one, other, 1.0, 0.0, factor)
@@ -125,7 +127,7 @@ def inner_rows(motion: lw.Motion, seed: int) -> list[int]:
     return [int(k) for k in rng.choice(inner, size=5, replace=False)]
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name not in UNEVEN])
+@pytest.mark.parametrize("name", thinned(name for name in NAMES if name not in UNEVEN))
 def test_derivatives_are_the_slopes_of_the_sweep(name: str) -> None:
     mechanism, motion = mechanism_of(name), motion_of(name)
     values = next(iter(motion.inputs.values()))

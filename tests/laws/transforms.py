@@ -122,6 +122,20 @@ def _changed_contacts(description: Linkage, factor: float, sign: float) -> dict[
             profile=outline(part.profile),
         )
 
+    def noncircular(part: lw.NoncircularGear) -> lw.NoncircularGear:
+        pairs = [(angle(x), angle(y)) for x, y in part.table]
+        law = part.law
+        if law is not None and sign < 0:
+            law = f"-({law.replace('phi', '(-phi)')})"
+        return replace(
+            part,
+            law=law,
+            table=tuple(pairs if sign > 0 else pairs[::-1]),
+            pitch_curve=outline(part.pitch_curve),
+            start=angle(part.start),
+            phase=angle(part.phase),
+        )
+
     return {
         "welds": tuple(replace(w, angle=angle(w.angle)) for w in description.welds),
         "gears": tuple(map(wheels, description.gears)),
@@ -131,6 +145,7 @@ def _changed_contacts(description: Linkage, factor: float, sign: float) -> dict[
             replace(r, radius=length(r.radius), circle_radius=length(r.circle_radius))
             for r in description.rolling
         ),
+        "noncircular_gears": tuple(map(noncircular, description.noncircular_gears)),
         "cams": tuple(map(cam, description.cams)),
         "curves": tuple(replace(c, through=outline(c.through)) for c in description.curves),
     }

@@ -9,6 +9,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from linkwork.mechanism.part.noncircular_gear import PitchCurve
 from tests.library.laws import degrees, law, motion_of, same
 from tests.oracles.four_bar import FourBar
 
@@ -55,6 +56,25 @@ def test_a_rim_point_of_a_rolling_wheel_draws_the_cycloid() -> None:
     t = -math.pi / 2 - degrees(motion, "wheel")
     same(motion.trace("P"), 40 * (t - np.sin(t) + 1j * (1 - np.cos(t))), 250)
     same(motion["x"], 40 * t, 250)
+
+
+@law("elliptical-gears")
+def test_elliptical_gears_roll_on_each_other_about_their_foci() -> None:
+    """tan(ψ/2) = -(1 + e)/(1 - e) tan(φ/2); the pitch curves are ellipses of semi-axis 50."""
+    motion, e = motion_of("elliptical-gears"), 0.4
+    first, second = degrees(motion, "first"), degrees(motion, "second")
+    share = (1 + e) / (1 - e)
+    same(
+        np.exp(1j * second),
+        np.exp(-2j * np.arctan2(share * np.sin(first / 2), np.cos(first / 2))),
+        1,
+        1e-11,  # pieces of degree five, a degree long
+    )
+    for curve in motion.skeleton.of(PitchCurve):
+        points = np.array(curve.points)
+        focus = 100 * e if curve.link == "first" else 100 * e * -1
+        sums = [np.abs(points) + np.abs(points - f) for f in (focus, -focus)]
+        same(min(sums, key=lambda s: float(np.ptp(s))), 100, 100, 1e-11)
 
 
 @law("geared-five-bar")

@@ -12,6 +12,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.mechanism.linkage import Linkage
 from linkwork.textfile.schema import json_schema
 from tests.library.laws import LAWS, motion_of
+from tests.library_mechanisms import driven_examples, read_example
 
 MODULES = [
     import_module(f"tests.library.{path.stem}")
@@ -24,7 +25,7 @@ JOINT_TABLES = [
     for table, entry in json_schema()["$defs"]["points_and_links"]["properties"].items()
     if entry.get("type") == "array"
 ]
-DRIVEN = [name for name in lw.examples() if lw.example(name).description.inputs]
+DRIVEN = driven_examples()
 
 
 def test_every_mechanism_has_a_law() -> None:
@@ -37,7 +38,7 @@ def test_every_law_belongs_to_a_mechanism() -> None:
 
 @pytest.mark.parametrize("name", lw.examples())
 def test_every_mechanism_tells_its_source_and_family(name: str) -> None:
-    description = lw.example(name).description
+    description = read_example(name).description
     assert len(description.source) > 20
     assert description.family
     assert description.name != "mechanism"
@@ -48,7 +49,7 @@ def test_every_kind_of_joint_works_in_two_mechanisms(kind: str) -> None:
     """A joint is a table of the file format that may be repeated, or a pin: a shared point."""
     found = []
     for name in lw.examples():
-        linkage = lw.example(name).description
+        linkage = read_example(name).description
         if isinstance(linkage, Linkage):
             pinned = any(len(bodies) > 1 for bodies in linkage.carriers().values())
             found += [name] if (pinned if kind == "pins" else getattr(linkage, kind)) else []

@@ -129,9 +129,9 @@ def test_the_margin_of_a_change_point_is_a_trillionth_of_the_longest_link() -> N
 @pytest.mark.parametrize(
     ("lengths", "text"),
     [
-        ((3, 1, 2.5, 2), "crank-rocker (GCRR): Grashof, s + l is 0.5 mm below p + q"),
-        ((5, 2, 2.5, 3), "triple-rocker (RRR1): not Grashof, s + l is 1.5 mm above p + q"),
-        ((4, 1, 3, 2), "change-point crank-rocker (SCRR): change point, s + l equals p + q "
+        ((3, 1, 2.5, 2), "crank-rocker (GCRR): Grashof, s + l < p + q by 0.5 mm"),
+        ((5, 2, 2.5, 3), "triple-rocker (RRR1): not Grashof, s + l > p + q by 1.5 mm"),
+        ((4, 1, 3, 2), "change-point crank-rocker (SCRR): change point, s + l = p + q "
                        "(margin 0 mm)"),
     ],
 )  # fmt: skip
@@ -195,16 +195,16 @@ def _slider_crank(crank: float, rod: float, offset: float, pivot: float = 0.0) -
 @pytest.mark.parametrize(
     ("crank", "rod", "offset", "pivot", "text"),
     [
-        (1, 3, 0.5, 0, "slider-crank: the driven link turns fully, s + e is 1.5 mm below l"),
-        (1, 3, 0.5, 1, "slider-crank: the driven link turns fully, s + e is 1.5 mm below l"),
+        (1, 3, 0.5, 0, "slider-crank: the driven link turns fully, s + e < l by 1.5 mm"),
+        (1, 3, 0.5, 1, "slider-crank: the driven link turns fully, s + e < l by 1.5 mm"),
         (1, 3, 2.5, 0, "slider-rocker: the driven link cannot turn fully, "
-                       "s + e is 0.5 mm above l"),
+                       "s + e > l by 0.5 mm"),
         (3, 1, 0.5, 0, "slider-rocker (hand pump): the driven link cannot turn fully, "
-                       "s + e is 1.5 mm below l"),
-        (1, 3, 4.5, 0, "no closed loop: the pins beside the slide are 0.5 mm further apart than "
+                       "s + e < l by 1.5 mm"),
+        (1, 3, 4.5, 0, "no closed loop: the offset pins are 0.5 mm further apart than "
                        "crank and rod reach"),
-        (1, 3, 2, 0, "slider-crank: change point, s + e equals l (margin 0 mm)"),
-        (2, 2, 0, 0, "isosceles slider-crank: change point, s + e equals l (margin 0 mm)"),
+        (1, 3, 2, 0, "slider-crank: change point, s + e = l (margin 0 mm)"),
+        (2, 2, 0, 0, "isosceles slider-crank: change point, s + e = l (margin 0 mm)"),
     ],
 )  # fmt: skip
 def test_slider_cranks_are_told_by_the_offset_condition(
@@ -245,11 +245,11 @@ def _inverted(crank: float, ground: float) -> lw.Mechanism:
 
 def test_the_inverted_slider_crank_is_a_shaper_or_whitworths() -> None:
     shaper = _classified(_inverted(1, 2.5))
-    assert shaper.type == "crank shaper: the driven link turns fully, s + e is 1.5 mm below l"
+    assert shaper.type == "crank shaper: the driven link turns fully, s + e < l by 1.5 mm"
     assert (shaper.chain, shaper.blocks) == ("slider-crank chain (RRRP)", ("s",))
     whitworth = _classified(_inverted(2.5, 1))
     assert whitworth.type == (
-        "Whitworth quick return: the driven link turns fully, s + e is 1.5 mm below l"
+        "Whitworth quick return: the driven link turns fully, s + e < l by 1.5 mm"
     )
 
 
@@ -275,7 +275,7 @@ def test_a_loop_of_a_larger_chain_is_told_if_the_input_drives_it() -> None:
     assert found.chain == "Watt chain"
     assert found.type == (
         "Watt II; its loop ground, crank, coupler, rocker: crank-rocker (GCRR): "
-        "Grashof, s + l is 0.5 mm below p + q"
+        "Grashof, s + l < p + q by 0.5 mm"
     )
     far = _classified(lw.example("stephenson-far-crank"))
     assert (far.chain, far.type) == ("Stephenson chain", "Stephenson III")
@@ -406,7 +406,7 @@ def test_an_input_that_holds_no_joint_leaves_no_assur_group() -> None:
     """The coupler's angle against ground is no joint of the four-bar."""
     found = _classified(_four_bar(3, 1, 2.5, 2, link="coupler"))
     assert [group.text for group in found.groups] == [
-        "no Assur group: an input holds the angle of a link that is not at its pin"
+        "not an Assur group: an input drives the angle of a link away from its pin"
     ]
     assert found.class_number is None
 
@@ -415,7 +415,7 @@ def test_plain_equations_have_no_classification() -> None:
     mechanism = lw.example("newton-extremum")
     report = mechanism.check()
     assert report.classification is None
-    assert report.unclassified == "plain equations tell nothing of links and joints"
+    assert report.unclassified == "plain equations do not determine links and joints"
     assert block_groups(mechanism.model, as_linkage(mechanism.model)) == (None,)
 
 

@@ -32,7 +32,7 @@ def test_only_where_a_turn_changes_nothing_the_input_turns_freely(kind: str) -> 
     ends = mechanism.sweep(start=0, stop=360, step=360)
     assert ends.found.all()
     first, last = ends.q
-    turning = mechanism.model.compiled.table.turns[: len(first)]
+    turning = mechanism.model.compiled.table.is_angle[: len(first)]
     back = np.where(turning, np.abs(np.exp(1j * (last - first)) - 1), np.abs(last - first))
     assert bool(back.max() < 1e-9) is FREE[kind]
 
@@ -108,7 +108,9 @@ def test_a_turn_that_a_law_does_not_repeat_is_a_change() -> None:
     assert not table.repeats_after(turns)
 
 
-NOT_LISTED = "not proved: these equations have no list of configurations; the equations of {} {}"
+NOT_LISTED = (
+    "not proved: configurations of plain equations cannot be listed; the equations of {} {}"
+)
 
 
 @pytest.mark.parametrize(
@@ -126,14 +128,20 @@ NOT_LISTED = "not proved: these equations have no list of configurations; the eq
         (
             "cam by its outline, sliding knife",
             0,
-            NOT_LISTED.format("s, law, law_x, law_y", "contain a cam or a curve"),
+            NOT_LISTED.format("s, law, law_x, law_y", "contain a law, as cams and curves do"),
         ),
         (
             "cam by its outline, sliding flat",
             0,
-            NOT_LISTED.format("law, law_dx, law_dy, law_speed", "contain a cam or a curve"),
+            NOT_LISTED.format(
+                "law, law_dx, law_dy, law_speed", "contain a law, as cams and curves do"
+            ),
         ),
-        ("curve open", 0, NOT_LISTED.format("rod, u, u_x, u_y", "contain a cam or a curve")),
+        (
+            "curve open",
+            0,
+            NOT_LISTED.format("rod, u, u_x, u_y", "contain a law, as cams and curves do"),
+        ),
     ],
 )
 def test_configurations_are_listed_or_a_reason_is_given(kind: str, count: int, reason: str) -> None:

@@ -348,7 +348,7 @@ def test_policies_and_quantities_that_do_not_exist_are_told() -> None:
     with pytest.raises(lw.InputError) as policy:
         mechanism.sweep(change_points="strait")
     assert str(policy.value) == (
-        '"strait" is no way to go on at a change point (ways: straight, stop, turn)'
+        '"strait" is not a policy at a change point (policies: straight, stop, turn)'
     )
     with pytest.raises(lw.UnknownNameError) as name:
         mechanism.sweep(limits_of=["rocker", "roker"])

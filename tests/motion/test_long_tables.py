@@ -22,14 +22,15 @@ from linkwork.kernels.program.kernel_cache import kernels_are_compiled, say_that
 from linkwork.motion import by_kernels
 from linkwork.motion.drive import Drive
 from linkwork.numerics.continuation.branch_tracking import Track
+from tests.library_mechanisms import read_example
 from tests.thinned import thinned
 
 ROWS = 2400
 SERVED = [
     name
     for name in lw.examples()
-    if by_kernels.are_served(lw.example(name).model)
-    and len(lw.example(name).description.inputs) == 1
+    if by_kernels.are_served(read_example(name).model)
+    and len(read_example(name).description.inputs) == 1
 ]
 Sweep = Callable[..., tuple[lw.Motion, lw.Motion]]
 
@@ -82,7 +83,7 @@ def _never(model: object, rows: int, certify: bool) -> bool:
 
 def fine(mechanism: lw.Mechanism, rows: int = ROWS) -> lw.Mechanism:
     """With so many steps through its own range."""
-    asked = mechanism.model.everyday_rows[:, 0]
+    asked = mechanism.model.rows_in_file_units[:, 0]
     (own,) = mechanism.description.inputs
     step = float(asked[-1] - asked[0]) / rows
     return mechanism.changed(
@@ -163,7 +164,7 @@ def test_a_table_that_falls_or_winds_is_no_other(start: float, both: Sweep) -> N
 
 def test_two_inputs_move_together(both: Sweep) -> None:
     mechanism = lw.example("five-bar-robot")
-    ranges = mechanism.model.everyday_rows
+    ranges = mechanism.model.rows_in_file_units
     inputs = tuple(
         replace(
             own,

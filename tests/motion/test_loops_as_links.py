@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 import linkwork as lw
 from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loops import Loops
 from linkwork.motion.classifying.as_linkage import Seen, as_linkage
 from tests.equations.linkages import LINKAGES
+from tests.library_mechanisms import read_example
 from tests.motion.dyad_linkages import dyad_linkage
 from tests.motion.written_loops import as_loops
 
@@ -22,7 +23,7 @@ _HIGHER = ("gears", "belts", "racks", "rolling", "cams", "curves", "welds")
 
 def _all() -> dict[str, lw.Mechanism]:
     """Linkages of pins and slides, each input the angle or the length of one part."""
-    made = {name: lw.example(name) for name in lw.examples()}
+    made = {name: read_example(name) for name in lw.examples()}
     made |= {name: make() for name, make in LINKAGES.items()}
     return {
         name: mechanism
@@ -121,7 +122,7 @@ def test_the_double_four_bar_is_called_as_by_points_and_links() -> None:
     assert one.classification == other.classification
 
 
-SEVEN = [name for name in lw.examples() if lw.example(name).check().form == "loops"]
+SEVEN = [name for name in lw.examples() if isinstance(read_example(name).description, Loops)]
 
 
 @pytest.mark.parametrize("name", SEVEN)
@@ -255,7 +256,7 @@ def test_textbook_equations_are_called_by_their_names(
         ),
         (
             _loops("a*e^(i*θ2) + b*e^(i*θ3) = c*e^(i*θ4)", unknowns="θ3 θ4", driven="θ2"),
-            "no vector keeps its direction, so that no link stands still",
+            "no vector keeps its direction, so that no link is fixed",
         ),
     ],
 )
@@ -275,7 +276,9 @@ def test_loops_without_a_common_link_are_not_counted_as_one_mechanism() -> None:
         guess={"θ2": 60, "θ3": 20, "θ4": 80, "θ5": 0, "θ6": 100, "θ7": 75},
         inputs=[lw.Input(variable="θ2"), lw.Input(variable="θ5")],
     ).check()
-    assert report.unclassified == "the equations do not tell which pins of its loops are the same"
+    assert (
+        report.unclassified == "the equations do not determine which pins of its loops are the same"
+    )
 
 
 def test_an_input_is_counted_from_the_links_own_direction() -> None:

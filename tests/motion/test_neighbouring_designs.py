@@ -7,13 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import linkwork as lw
 from linkwork.foundation.certification import Certification
 from linkwork.mechanism.linkage import Linkage
-from linkwork.motion import renewed
+from linkwork.motion import warm_started
 from tests.described import described_as
 
 
@@ -41,7 +40,7 @@ def four_bar(**lengths: float) -> lw.Mechanism:
 @given(st.floats(38.0, 42.0), st.floats(117.0, 123.0), st.floats(78.0, 82.0))
 def test_a_neighbours_cycle_is_the_one_that_following_finds(a: float, b: float, c: float) -> None:
     design = four_bar(a=a, b=b, c=c)
-    beside = renewed(design.model, four_bar().sweep())
+    beside = warm_started(design.model, four_bar().sweep())
     assert beside is not None
     followed = design.sweep()
     np.testing.assert_allclose(beside.q, followed.q, rtol=0, atol=1e-9)  # both to rounding
@@ -55,7 +54,7 @@ def test_a_neighbours_cycle_is_the_one_that_following_finds(a: float, b: float, 
 def test_the_cycle_itself_is_its_own_neighbour(name: str) -> None:
     design = lw.example(name)
     cycle = design.sweep()
-    beside = renewed(design.model, cycle)
+    beside = warm_started(design.model, cycle)
     assert beside is not None
     np.testing.assert_allclose(beside.q, cycle.q, rtol=0, atol=1e-9)
 
@@ -81,7 +80,7 @@ def test_dead_points_move_with_a_dimension_as_following_finds_them(
     bounded = 0
     for size in sizes[1:]:
         now = design(size)
-        beside, followed = renewed(now.model, cycle), now.sweep(certify=False)
+        beside, followed = warm_started(now.model, cycle), now.sweep(certify=False)
         assert beside is not None
         rows = followed.asked
         lost = followed.found[rows] & ~beside.found
@@ -105,8 +104,8 @@ def test_dead_points_move_with_a_dimension_as_following_finds_them(
 def test_nothing_is_renewed_where_a_dead_point_has_come_between() -> None:
     locked = four_bar(a=70.0)
     cycle = four_bar().sweep()
-    assert renewed(locked.model, cycle) is None
-    beside = locked.sweep_beside(cycle)
+    assert warm_started(locked.model, cycle) is None
+    beside = locked.approximate_sweep(cycle)
     followed = locked.sweep()
     assert [limit.input for limit in beside.limits] == pytest.approx(
         [limit.input for limit in followed.limits], abs=1e-6
@@ -116,16 +115,16 @@ def test_nothing_is_renewed_where_a_dead_point_has_come_between() -> None:
 
 def test_nothing_is_renewed_from_a_cycle_of_another_table() -> None:
     design = four_bar()
-    assert renewed(design.model, lw.example("slider-crank").sweep()) is None
-    assert renewed(design.model, design.sweep(step=2)) is None
-    assert design.sweep_beside().found.all()
+    assert warm_started(design.model, lw.example("slider-crank").sweep()) is None
+    assert warm_started(design.model, design.sweep(step=2)) is None
+    assert design.approximate_sweep().found.all()
 
 
 def test_a_row_that_would_jump_to_the_other_branch_is_not_renewed() -> None:
     cycle = four_bar().sweep()
     moved = np.array(cycle.q)
     moved[100:200] = -moved[100:200]  # near the crossed positions
-    assert renewed(four_bar().model, replace(cycle, q=moved)) is None
+    assert warm_started(four_bar().model, replace(cycle, q=moved)) is None
 
 
 # As near to closing as it gets

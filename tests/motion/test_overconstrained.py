@@ -93,8 +93,8 @@ def test_a_bar_of_another_length_makes_dixons_mechanism_rigid() -> None:
         dixon(**{"A2 B2": 94.0})
     text = str(raised.value)
     assert text.startswith('1 problem in mechanism "Dixon I"\n  links  1 condition too many: ')
-    assert " (as drawn it does not fit: " in text
-    assert " would have to be " in text
+    assert " (it does not fit the sketch: " in text
+    assert " needs the length " in text
 
 
 @pytest.mark.parametrize("count", [3, 4, 5])
@@ -108,7 +108,7 @@ def test_any_number_of_parallel_cranks_turn_together(count: int) -> None:
         np.testing.assert_allclose(motion[f"crank{k}"], motion["crank0"], atol=1e-10)
     report = mechanism.check()
     assert (report.mobility_count, report.mobility_rank) == (3 - count, 1)
-    assert "it is overconstrained and moves all the same" in report.mobility_why
+    assert "it is overconstrained, but it moves" in report.mobility_why
     assert f"{count - 2} condition" in report.mobility_why
     assert len(report.redundant) == count - 2
 
@@ -143,7 +143,7 @@ def test_rows_that_a_redundant_link_does_not_fit_are_told() -> None:
     assert shaky.solve(at=85).status is Status.DOES_NOT_FIT
     report = shaky.check()
     assert (report.mobility_count, report.mobility_rank) == (0, 1)
-    assert report.mobility_why.endswith("no more than infinitely little")
+    assert report.mobility_why.endswith("may be infinitesimal only")
 
 
 def test_a_flat_four_bar_is_movable_only_infinitely_little() -> None:
@@ -152,7 +152,7 @@ def test_a_flat_four_bar_is_movable_only_infinitely_little() -> None:
     flat = lw.linkage(points=points, links=links, inputs=(lw.Input(link="crank"),))
     report = flat.check()
     assert (report.mobility_count, report.mobility_rank) == (1, 2)
-    assert report.mobility_why.endswith("no more than infinitely little")
+    assert report.mobility_why.endswith("may be infinitesimal only")
 
 
 def test_a_parallelogram_in_line_has_two_freedoms_there_and_one_beside() -> None:
@@ -161,11 +161,11 @@ def test_a_parallelogram_in_line_has_two_freedoms_there_and_one_beside() -> None
     flat = lw.linkage(points=points, links=links, inputs=(lw.Input(link="crank"),))
     report = flat.check()
     assert (report.mobility_count, report.mobility_rank) == (1, 2)
-    assert report.mobility_why.endswith("beside it the rank gives 1")
+    assert report.mobility_why.endswith("near it the rank gives 1")
 
 
 def test_at_a_change_point_no_way_is_taken_that_a_redundant_link_does_not_fit() -> None:
-    """Straight on all cranks stay parallel; turned off, the third one would have another length."""
+    """Straight on all cranks stay parallel; turned, the third would have another length."""
     mechanism = lw.example("parallel-cranks")
     straight = mechanism.sweep(start=0, stop=360, step=20, change_points="straight")
     assert straight.found.all()

@@ -11,8 +11,9 @@ from typing import Any
 import linkwork as lw
 from linkwork.equations.frames import Frames
 from linkwork.equations.model import LoopEquations, Term
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Problems
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 
 __all__ = ["as_loops"]
 
@@ -89,7 +90,7 @@ def _along(linkage: Linkage, around: list[str]) -> Iterator[Term]:
         start, end = (frames.places[bodies[k]][point] for point in steps[k])
         yield from (term.negated() for term in reversed(start.sliding))
         if end.fixed != start.fixed:
-            yield frames.turned(end.fixed - start.fixed, None, bodies[k])
+            yield frames.vector_term(end.fixed - start.fixed, None, bodies[k])
         yield from end.sliding
     if GROUND in bodies:
         start, end = (frames.places[GROUND][point] for point in steps[first])

@@ -34,7 +34,7 @@ class Cubic:
         return np.ones(3)
 
     @property
-    def turns(self) -> npt.NDArray[np.bool_]:
+    def is_angle(self) -> npt.NDArray[np.bool_]:
         return np.zeros(3, dtype=bool)
 
     def residual(self, v: Array) -> Array:
@@ -51,11 +51,11 @@ class Cubic:
     def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
         return self.residual(v), self.jacobian(v)
 
-    def second(self, v: Array, d: Array) -> Array:
+    def second_directional_derivative(self, v: Array, d: Array) -> Array:
         return np.asarray((6 * v[:, 0] * d[:, 0] ** 2 + 2 * d[:, 0] * d[:, 1])[:, None])
 
     @property
-    def bends_boundedly(self) -> bool:
+    def has_curvature_bound(self) -> bool:
         return False
 
     def curvature(self, v: Array, matrix: Array) -> NoReturn:
@@ -87,7 +87,7 @@ def loop_table(terms: Sequence[Term], unknowns: int, inputs: int, scale: float) 
         functions=(),
         equation_scale=np.full(2 * loops, scale),
         variable_scale=np.ones(count),
-        turns=np.ones(count, dtype=bool),
+        is_angle=np.ones(count, dtype=bool),
     )
 
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from linkwork.numerics.homotopy import isolated_roots as roots_module
-from linkwork.numerics.homotopy.bilinear import BilinearSystem, proved_roots
+from linkwork.numerics.homotopy.bilinear import BilinearSystem, prove_roots
 from linkwork.numerics.homotopy.bilinear_family import structure_of
 from linkwork.numerics.homotopy.bilinear_homotopy import (
     ParameterHomotopy,
     StartHomotopy,
     null_space,
 )
-from linkwork.numerics.homotopy.polynomial_system import polished
+from linkwork.numerics.homotopy.polynomial_system import polish_roots
 from linkwork.numerics.homotopy.quadratic_roots import quadratic_roots
 from tests.numerics.bilinear_systems import (
     THETA_18,
@@ -84,7 +84,7 @@ def test_triads_have_six_solutions_proved_and_apart_one_of_them_known(seed: int)
     roots = roots_of(system)
     assert (len(roots.x), roots.paths, roots.expected) == (6, 6, 6)
     assert (roots.failed, roots.at_infinity, roots.singular, roots.continuum) == (0, 0, 0, False)
-    proofs = proved_roots(system, roots.x, _exact(system))
+    proofs = prove_roots(system, roots.x, _exact(system))
     assert proofs.holds.all()
     assert proofs.apart
     assert (proofs.real | proofs.unreal).all()
@@ -94,7 +94,7 @@ def test_triads_have_six_solutions_proved_and_apart_one_of_them_known(seed: int)
 def test_eighteen_of_eighteen_are_real() -> None:
     system = angles_only(*TRUSS_18)
     roots = roots_of(system)
-    proofs = proved_roots(system, roots.x, _exact(system))
+    proofs = prove_roots(system, roots.x, _exact(system))
     assert (len(roots.x), roots.expected, int(proofs.real.sum())) == (18, 18, 18)
     theta = np.sort(np.mod(np.angle(roots.x[:, 0]), 2 * np.pi))
     np.testing.assert_allclose(theta, THETA_18, rtol=0, atol=6e-11)  # ten printed decimals
@@ -103,23 +103,23 @@ def test_eighteen_of_eighteen_are_real() -> None:
 def test_a_root_that_is_wrong_is_not_proved() -> None:
     system, t = random_triad(1)
     x = real_solution(t)[None, :]
-    assert proved_roots(system, x, _exact(system)).real.all()
+    assert prove_roots(system, x, _exact(system)).real.all()
     wrong = np.asarray(x + 0.1, dtype=complex)
-    assert not proved_roots(system, wrong, _exact(system)).holds.any()
+    assert not prove_roots(system, wrong, _exact(system)).holds.any()
     # coefficients known to 1e-3 only: the root may be elsewhere
-    assert not proved_roots(system, x, _exact(system) + 1e-1).holds.any()
+    assert not prove_roots(system, x, _exact(system) + 1e-1).holds.any()
 
 
 def test_the_same_root_twice_is_not_apart() -> None:
     system, t = random_triad(1)
     x = np.stack([real_solution(t)] * 2)
     x[1] *= 1 + 1e-15
-    assert not proved_roots(system, x, _exact(system)).apart
+    assert not prove_roots(system, x, _exact(system)).apart
 
 
 def test_newton_says_how_many_steps_it_took_and_where_it_failed() -> None:
     system, t = random_triad(2)
-    x, steps = polished(system, np.stack([real_solution(t) + 1e-6, np.zeros(8)]))
+    x, steps = polish_roots(system, np.stack([real_solution(t) + 1e-6, np.zeros(8)]))
     assert 0 < steps[0] <= 3
     np.testing.assert_allclose(x[0], real_solution(t), rtol=0, atol=1e-13)
     assert steps[1] == -1
@@ -158,7 +158,7 @@ def test_lost_paths_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_solutions_missing_at_first_are_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
     system, _ = random_triad(8)
-    followed, calls = roots_module._followed, []
+    followed, calls = roots_module._follow_paths, []
 
     def careless(*arguments: Any, **options: Any) -> Any:
         ends = followed(*arguments, **options)
@@ -168,7 +168,7 @@ def test_solutions_missing_at_first_are_looked_for_again(monkeypatch: pytest.Mon
         return ends
 
     roots_of(system)
-    monkeypatch.setattr(roots_module, "_followed", careless)
+    monkeypatch.setattr(roots_module, "_follow_paths", careless)
     roots = roots_of(system)
     assert (len(roots.x), roots.at_infinity, len(calls)) == (6, 0, 2)
     assert [options["nearest"] for options in calls] == [True, False]
@@ -189,7 +189,7 @@ def test_closed_paths_find_solutions_that_were_missing() -> None:
     structure = structure_of(system)
     known = roots_module._generic(structure)
     part = roots_module._Generic(system=known.system, x=known.x[:2])
-    whole = roots_module._closed(structure, part, np.random.default_rng(0))
+    whole = roots_module._close_paths(structure, part, np.random.default_rng(0))
     assert len(whole.x) == 6
 
 
@@ -239,7 +239,7 @@ def test_a_dyad_has_two_solutions_in_closed_form() -> None:
         system = _dyad(p, q, f)
         roots = quadratic_roots(system)
         assert (len(roots.x), roots.paths, roots.at_infinity) == (2, 2, 0)
-        proofs = proved_roots(system, roots.x, _exact(system))
+        proofs = prove_roots(system, roots.x, _exact(system))
         assert proofs.holds.all()
         assert proofs.apart
         triangle = abs(f) < abs(p) + abs(q) and abs(f) > abs(abs(p) - abs(q))
@@ -260,10 +260,10 @@ def test_a_dyad_beside_its_limit_is_told_apart(beside: float) -> None:
         system = _dyad(2.5, 1.0, -3.5 * (1 + sign * beside))
         roots = quadratic_roots(system)
         assert (len(roots.x), len(roots.multiple)) == (2, 0)
-        proofs = proved_roots(system, roots.x, _exact(system))
+        proofs = prove_roots(system, roots.x, _exact(system))
         assert proofs.real.all() == real
         # with coefficients this uncertain it might as well be at its limit, or beyond
-        assert not proved_roots(system, roots.x, _exact(system) + 10 * beside).holds.any()
+        assert not prove_roots(system, roots.x, _exact(system) + 10 * beside).holds.any()
 
 
 def test_a_dyad_that_folds_onto_itself_is_a_continuum() -> None:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pytest
 
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.numerics.continuation.fold import Family, Fold, locate_fold
+from linkwork.numerics.continuation.fold import Fold, FoldFamily, locate_fold
 from linkwork.numerics.joined_blocks import JoinedBlocks
 from linkwork.numerics.least_squares import nearest_miss
 from tests.numerics.systems import blocks_of, loop_table
@@ -33,7 +33,7 @@ def fold_of(b: float, begin: float, inputs: Array) -> Fold | None:
     if begin + b > 10.0:
         start[int(begin > b)] += math.pi
     x, _ = nearest_miss(dyad(begin, b), start)
-    family = Family(
+    family = FoldFamily(
         at=at, inputs=inputs, low=at(begin - 1e-5), high=at(begin + 1e-5), step=2e-5, size=10.0
     )
     return locate_fold(family, x[:2], begin)
@@ -59,7 +59,7 @@ def test_the_length_that_just_closes_a_dyad(
 def test_a_parameter_that_changes_nothing_has_no_fold() -> None:
     system = JoinedBlocks(blocks_of(dyad(4.0, 3.0)), [0])
     x, _ = nearest_miss(dyad(4.0, 3.0), np.array([0.3, -0.2, 0.0]))
-    family = Family(
+    family = FoldFamily(
         at=lambda p: system, inputs=np.zeros(1), low=system, high=system, step=1.0, size=10.0
     )
     assert locate_fold(family, x[:2], 1.0) is None
@@ -72,7 +72,9 @@ def test_a_family_that_ends_before_its_fold_has_none() -> None:
         return JoinedBlocks(blocks_of(dyad(a, 4.0)), [0])
 
     x, _ = nearest_miss(dyad(5.0, 4.0), np.array([0.3, -0.2, 0.0]))
-    family = Family(at=at, inputs=np.zeros(1), low=at(4.99), high=at(5.01), step=0.02, size=10.0)
+    family = FoldFamily(
+        at=at, inputs=np.zeros(1), low=at(4.99), high=at(5.01), step=0.02, size=10.0
+    )
     assert locate_fold(family, x[:2], 5.0) is None
     whole = replace(family, at=lambda a: JoinedBlocks(blocks_of(dyad(a, 4.0)), [0]))
     fold = locate_fold(whole, x[:2], 5.0)

@@ -14,7 +14,7 @@ from linkwork.numerics.homotopy.path_tracking import (
     CAREFUL,
     LOST,
     SINGULAR,
-    TrackOptions,
+    PathOptions,
     track,
 )
 
@@ -42,8 +42,8 @@ def _roots(k: int) -> np.ndarray:
     return np.asarray(np.exp(2j * np.pi * np.arange(k) / k)[:, None])
 
 
-@pytest.mark.parametrize("options", [TrackOptions(), BOLD, CAREFUL])
-def test_every_path_arrives_at_its_own_root(options: TrackOptions) -> None:
+@pytest.mark.parametrize("options", [PathOptions(), BOLD, CAREFUL])
+def test_every_path_arrives_at_its_own_root(options: PathOptions) -> None:
     turn = Power(3, lambda s: (np.exp(1j * (1 - s)), -1j * np.exp(1j * (1 - s))))
     paths = track(turn, _roots(3), options)
     assert (paths.state == ARRIVED).all()

@@ -199,7 +199,7 @@ def test_turn_limit_counts_angles_and_leaves_lengths_alone() -> None:
     # e^{iφ} + 3 e^{iθ} - s = 0: a block 50 away comes back in one step that turns the rod little
     table = loop_table([(0, 1.0, 2), (0, 3.0, 0), (0, -1.0, None)], 2, 1, 3.0)
     slides = replace(table.loops, length=np.array([-1, -1, 1]))
-    table = replace(table, loops=slides, turns=np.array([True, False, True]))
+    table = replace(table, loops=slides, is_angle=np.array([True, False, True]))
     start = np.array([[-0.2, 53.0, 0.5]])
     done = newton(table, start)
     bare = newton(table, start, NewtonOptions(largest_turn=math.inf))

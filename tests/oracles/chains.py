@@ -50,7 +50,7 @@ def _partitions(total: int, parts: int, most: int | None = None) -> Iterator[tup
 
 
 def _realisations(degrees: tuple[int, ...]) -> Iterator[tuple[tuple[int, int], ...]]:
-    """Every simple labelled graph with these degrees, vertex by vertex."""
+    """Every simple graph with these degrees, vertex by vertex, some of them more than once."""
 
     def step(
         k: int, left: tuple[int, ...], edges: tuple[tuple[int, int], ...]
@@ -59,7 +59,11 @@ def _realisations(degrees: tuple[int, ...]) -> Iterator[tuple[tuple[int, int], .
             yield edges
             return
         later = [j for j in range(k + 1, len(left)) if left[j]]
+        earlier = {j: (left[j], [a for a, b in edges if b == j]) for j in later}
+        alike = [(i, j) for i, j in combinations(later, 2) if earlier[i] == earlier[j]]
         for chosen in combinations(later, left[k]):
+            if any(j in chosen and i not in chosen for i, j in alike):
+                continue  # the same graph with i and j exchanged
             rest = tuple(d - (j in chosen) for j, d in enumerate(left))
             yield from step(k + 1, rest, (*edges, *((k, j) for j in chosen)))
 

@@ -14,8 +14,8 @@ from linkwork.textfile import json_schema
 
 PAGE = (Path(__file__).parents[2] / "docs" / "file-format.md").read_text(encoding="utf-8")
 TABLES = (
-    "slots", "sliders", "cylinders", "welds", "gears", "belts", "racks", "rolling", "cams",
-    "curves", "springs",
+    "slots", "sliders", "cylinders", "welds", "gears", "noncircular_gears", "belts", "racks",
+    "rolling", "cams", "curves", "springs",
 )  # fmt: skip
 
 

@@ -38,7 +38,7 @@ def family() -> Any:
         (lambda: BAR.solve(configuration=3), NO_NAME),
         (lambda: BAR.sweep(limits_of=3), "quantities must be a name or several, got 3"),
         (lambda: BAR.sweep(limits_of=[3]), NO_NAME),
-        (lambda: BAR.sweep(change_points=3), '"3" is no way to go on at a change point'),
+        (lambda: BAR.sweep(change_points=3), '"3" is not a policy at a change point'),
         (lambda: BAR.sweep(step=90)[3], NO_NAME),
         (lambda: BAR.sweep(step=90).trace(3), NO_NAME),
         (lambda: BAR.solve()[3], NO_NAME),

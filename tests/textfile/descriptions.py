@@ -8,9 +8,13 @@ from hypothesis import strategies as st
 
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.names import canonical
+from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot, Spring
+from linkwork.mechanism.part.cylinder import Cylinder
+from linkwork.mechanism.part.slider import Slider
+from linkwork.mechanism.part.slot import Slot
+from linkwork.mechanism.part.spring import Spring
 
 __all__ = ["descriptions", "linkages", "loop_systems", "plain_systems"]
 

@@ -48,7 +48,10 @@ BAD_BYTES = {
     "deep key": (b"a." * 400_000 + b"a = 1", "a dotted key of more than 8 parts"),
     "deep header": (b"[" + b"a . " * 200_000 + b"a]", "a dotted key of more than 8 parts"),
     "quoted deep key": (b'"a".' * 200_000 + b"a = 1", "a dotted key of more than 8 parts"),
-    "huge number": (b"a = " + b"1" * 900_000, "a word of 900000 characters: at most 400 are read"),
+    "huge number": (
+        b"a = " + b"1" * 900_000,
+        "a word of 900000 characters: at most 400 are allowed",
+    ),
 }
 LINES = {"Latin-1": 2, "NUL": 2, "10 MB": None, "1.2 MB of 600 000 letters": None}
 
@@ -64,7 +67,9 @@ def test_hostile_bytes_are_refused_with_a_reason(title: str) -> None:
 
 @pytest.mark.parametrize(
     "piece",
-    thinned(['"\\"', '"', "'", "a.b ", "'''", '"""\\', "#", '"""', "[[a]]\n", "[a]\n", "a,", "\\"]),
+    thinned(
+        ['"\\"', '"', "'", "a.b ", "'''", '"""\\', "#", '"""', "[[a]]\n", "[a]\n", "a,", "\\"], 6
+    ),
 )
 def test_a_megabyte_of_anything_is_refused_in_time(piece: str) -> None:
     # Quadratic reading of a megabyte would take hours: that this test ends is the assertion.

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from linkwork.foundation.errors import MechanismError, Problem
+from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.parts import Input
 from linkwork.textfile import read_text
 from tests.textfile.samples import SAMPLES
 
@@ -36,7 +36,7 @@ def test_a_variable_is_not_measured_against_a_link() -> None:
             guess={"x": 1},
             inputs=(Input(variable="x", relative_to="a"),),
         )
-    message = 'must name a variable of the equations, only: variable = "…"'
+    message = 'must name only a variable of the equations: variable = "…"'
     assert caught.value.problems == (Problem(key=("input",), message=message),)
 
 

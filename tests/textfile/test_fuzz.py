@@ -8,8 +8,7 @@ import sys
 from collections.abc import Callable
 from functools import partial
 
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from linkwork.expression.grammar import FUNCTIONS, parse, parse_equation
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number

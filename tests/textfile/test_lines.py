@@ -7,8 +7,7 @@ from typing import Any
 
 import pytest
 import tomlkit
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from linkwork.textfile.lines import Lines, Path
 from tests.textfile.samples import SAMPLES

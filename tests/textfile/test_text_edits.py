@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import linkwork as lw
 from linkwork.mechanism.quantities import Quantity, quantities
@@ -95,9 +94,9 @@ def test_what_is_not_there_is_said_with_its_key() -> None:
         with pytest.raises(lw.UnknownNameError) as caught:
             wrong(("points", "Z Z"))
         assert str(caught.value) == 'points."Z Z" is not in the file'
-    with pytest.raises(lw.InputError, match="nothing can be put there"):
+    with pytest.raises(lw.InputError, match="no value can be written there"):
         text.put(("sliders", 5, "offset"), 1)
-    with pytest.raises(lw.InputError, match=r"is written as one table: make it \[\[input\]\]"):
+    with pytest.raises(lw.InputError, match=r"is a single table: write it as \[\[input\]\]"):
         text.append("input", {"link": "rod"})
     assert text.text == TEXT
 

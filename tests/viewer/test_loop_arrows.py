@@ -8,14 +8,16 @@ import pytest
 import linkwork as lw
 from linkwork.drawing.captions import printed_formula
 from linkwork.viewer.loop_arrows import loop_arrows
-from linkwork.viewer.packing import unpacked, unpressed
+from linkwork.viewer.packing import unpressed
 from linkwork.viewer.page_data import VectorData
+from tests.library_mechanisms import read_example
 from tests.thinned import thinned
+from tests.viewer.unpacking import unpacked
 
 LOOPED = [
     name
     for name in lw.examples()
-    if (model := lw.example(name).model).equations.loops
+    if (model := read_example(name).model).equations.loops
     and model.compiled.points.names
     and model.description.inputs
 ]
@@ -32,7 +34,7 @@ def ends_of(arrow: VectorData, motion: lw.Motion) -> tuple[np.ndarray, np.ndarra
 
 @pytest.mark.parametrize("name", thinned(LOOPED))
 def test_every_arrow_is_its_term_in_every_row(name: str) -> None:
-    mechanism = lw.example(name)
+    mechanism = read_example(name)
     motion = mechanism.sweep(certify=False)
     loops = mechanism.moving_loops(motion)
     terms = {

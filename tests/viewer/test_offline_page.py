@@ -216,7 +216,7 @@ def test_arrows_have_the_length_that_the_legend_tells(
     assert page.locator(".lw-legend").is_hidden()
     page.get_by_label({1: "Velocities", 2: "Accelerations"}[order]).check()
     told = page.locator(".lw-legend").inner_text()
-    found = re.fullmatch(rf"{label}: ([\d.]+) mm shows ([\d.]+) mm/rad(²?)", told)
+    found = re.fullmatch(rf"{label} scale: ([\d.]+) mm = ([\d.]+) mm/rad(²?)", told)
     assert found is not None, told
     assert (found[3] == "²") == (order == 2)
     rate = complex(jansen[f"F.x.{by}"][row], jansen[f"F.y.{by}"][row])
@@ -271,7 +271,7 @@ def test_a_negative_speed_turns_everything_the_other_way(open_page: Open) -> Non
     arrow = _arrow(page, "velocities", _moving(motion).index("A"))
     assert (arrow / velocity).imag == pytest.approx(0, abs=1e-3 * abs(arrow / velocity))
     found = re.fullmatch(
-        r"Velocity: ([\d.]+) mm shows ([\d.]+) mm/s", page.locator(".lw-legend").inner_text()
+        r"Velocity scale: ([\d.]+) mm = ([\d.]+) mm/s", page.locator(".lw-legend").inner_text()
     )
     assert found is not None
     assert (arrow / velocity).real == pytest.approx(float(found[1]) / float(found[2]), rel=2e-3)
@@ -297,7 +297,7 @@ def test_names_of_arrows_do_not_stand_on_each_other(open_page: Open) -> None:
 def test_forces_are_shown_at_once(open_page: Open, jansen: lw.Motion) -> None:
     page = open_page({"motion": jansen}, forces=[Force(at="F", x=30.0, y=60.0, unit="N")])
     found = re.fullmatch(
-        r"Force: ([\d.]+) mm shows ([\d.]+) N", page.locator(".lw-legend").inner_text()
+        r"Force scale: ([\d.]+) mm = ([\d.]+) N", page.locator(".lw-legend").inner_text()
     )
     assert found is not None
     arrow = _arrow(page, "forces", 0)

@@ -6,10 +6,10 @@ import base64
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
-from linkwork.viewer.packing import packed, shortened, unpacked, unpressed
+from linkwork.viewer.packing import packed, shortened, unpressed
+from tests.viewer.unpacking import unpacked
 
 _FULL = 2.0**-988  # smaller numbers have not ten digits left
 _NUMBERS = st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=60)

@@ -1,7 +1,6 @@
 // A palette of what a mechanism is made of, the input, and the text of the file.
 
-import type { DrivenInput, FileState, LiveEdit } from "../messages";
-import { PALETTE } from "../palette";
+import type { DrivenInput, FileState, LiveEdit, PalettePart } from "../messages";
 import { toggle } from "../controls";
 import { html } from "../svg";
 import type { Desk } from "./asking";
@@ -21,7 +20,7 @@ export interface Field {
 export type Entry = string | readonly string[];
 type Entries = Readonly<Record<string, Entry>>;
 
-interface Piece {
+export interface Piece {
   readonly title: string;
   readonly doc?: string;
   readonly fields: readonly Field[];
@@ -31,10 +30,10 @@ interface Piece {
 const number = (text: Entry): number => Number(String(text).replace("\u2212", "-").replace(",", "."));
 const one = (name: string, entry: string, required = true): Field => ({ name, entry, required });
 
-export const PIECES: readonly Piece[] = [
+const PLAIN: readonly Piece[] = [
   {
     title: "Point",
-    doc: "x and y are its place in the sketch of the file, where the mechanism is first put together",
+    doc: "x and y are its coordinates in the sketch of the file, from which the mechanism is first assembled",
     fields: [one("name", "text"), one("x", "plain number"), one("y", "plain number"), one("on link", "link", false)],
     edit: (v) => ({
       kind: "add_point",
@@ -54,8 +53,15 @@ export const PIECES: readonly Piece[] = [
     fields: [one("link", "link"), one("point", "point")],
     edit: (v) => ({ kind: "add_joint", link: String(v.link), point: String(v.point) }),
   },
-  ...PALETTE.map(({ table, title, doc, fields }) => ({ title, doc, fields, edit: (v: Entries): LiveEdit => partOf(table, v) })),
 ];
+
+/** Points, links and joints, and the parts that files can hold. */
+export function piecesOf(parts: readonly PalettePart[]): readonly Piece[] {
+  return [
+    ...PLAIN,
+    ...parts.map(({ table, title, doc, fields }) => ({ title, doc, fields, edit: (v: Entries): LiveEdit => partOf(table, v) })),
+  ];
+}
 
 /** Fields that may be left empty, but seldom are. */
 const USUAL = new Set(["on link", "radii", "teeth"]);
@@ -76,13 +82,14 @@ export class Build {
   private readonly collect: HTMLInputElement;
   private readonly waiting: HTMLElement;
   private collected: LiveEdit[] = [];
+  private offered: readonly Piece[] = PLAIN;
 
   constructor(private readonly desk: Desk) {
     this.input = this.group("Input", true);
     this.palette = this.group("Add", true);
-    const label = html("label", { class: "lw-toggle", title: "What stands between several changes need not be a mechanism" });
+    const label = html("label", { class: "lw-toggle", title: "The states between queued changes need not be valid mechanisms" });
     this.collect = html("input", { type: "checkbox" }, label);
-    label.append("Collect changes, then make them as one");
+    label.append("Queue changes and apply them together");
     this.waiting = html("div", { class: "lw-waiting" });
     this.palette.append(label, this.waiting);
     this.collect.addEventListener("change", () => this.pending());
@@ -92,6 +99,10 @@ export class Build {
     this.text = html("textarea", { rows: 18, spellcheck: "false", "aria-label": "Text of the file" }, box);
     const apply = html("button", { type: "button" }, box, "Use this text");
     apply.addEventListener("click", () => desk.ask({ kind: "set_text", text: this.text.value }));
+  }
+
+  offer(parts: readonly PalettePart[]): void {
+    this.offered = piecesOf(parts);
   }
 
   show(file: FileState): void {
@@ -143,14 +154,14 @@ export class Build {
     if (!this.collected.length) return;
     const list = html("ol", {}, this.waiting);
     for (const edit of this.collected) html("li", {}, list, described(edit));
-    const apply = html("button", { type: "button", class: "lw-wanted lw-save" }, this.waiting, `Make ${this.collected.length} as one`);
+    const apply = html("button", { type: "button", class: "lw-wanted lw-save" }, this.waiting, `Apply ${this.collected.length} change${this.collected.length > 1 ? "s" : ""}`);
     apply.addEventListener("click", () => {
       this.desk.ask({ kind: "together", edits: this.collected });
       this.collected = [];
       this.pending();
       this.pieces(this.desk.file());
     });
-    const drop = html("button", { type: "button" }, this.waiting, "Forget them");
+    const drop = html("button", { type: "button" }, this.waiting, "Discard");
     drop.addEventListener("click", () => {
       this.collected = [];
       this.pending();
@@ -199,8 +210,8 @@ export class Build {
     const open = Array.from(this.palette.querySelectorAll(".lw-piece[open] > summary"), (one) => one.textContent);
     this.palette.querySelectorAll("details, p").forEach((old) => old.remove());
     const sketched = file.form === "points-and-links";
-    if (!sketched) html("p", { class: "lw-empty" }, this.palette, "Equations are added in the text of the file.");
-    for (const piece of sketched ? [...PIECES].reverse() : []) {
+    if (!sketched) html("p", { class: "lw-empty" }, this.palette, "To add equations, edit the text of the file.");
+    for (const piece of sketched ? [...this.offered].reverse() : []) {
       const box = html("details", { class: "lw-piece" });
       this.palette.querySelector("summary")!.after(box);
       html("summary", {}, box, piece.title);

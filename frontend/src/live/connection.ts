@@ -34,11 +34,11 @@ export class Connection {
 
   private why(code: number): string {
     if (code === OCCUPIED) {
-      return "Another page shows this file already. Close that one, then load this one again.";
+      return "Another page shows this file already. Close that page, then reload this page.";
     }
     if (!this.heard) {
-      return "Not connected. Open the whole address that the command linkwork view printed; it is new every time.";
+      return "Not connected. Open the full address that linkwork view printed; the address changes with every start.";
     }
-    return "The connection is lost: the command linkwork view has ended, or the machine slept. What was not saved is kept; start the command again, or load this page again.";
+    return "The connection is lost: linkwork view has ended, or the computer was asleep. Unsaved changes are kept. Start the command again, or reload this page.";
   }
 }

@@ -51,7 +51,7 @@ export class Dimensions {
         box.append(row.element);
       }
     }
-    if (first) html("p", { class: "lw-empty" }, this.element, "The file has no numbers with a name.");
+    if (first) html("p", { class: "lw-empty" }, this.element, "The file has no named dimensions.");
   }
 }
 

@@ -83,6 +83,9 @@ export class LivePage {
 
   private told(event: LiveEvent): void {
     switch (event.kind) {
+      case "palette_shown":
+        this.build.offer(event.parts);
+        break;
       case "file_state":
         this.state(event);
         break;
@@ -154,7 +157,7 @@ export class LivePage {
       else this.page.update(found.page, found.live);
       this.element.dataset.live = String(found.live);
     } else if (found.missing < found.rows) {
-      this.still({}, "This mechanism has no points to draw: see its numbers with linkwork sweep.");
+      this.still({}, "This mechanism has no points to draw. The command linkwork sweep prints its numbers.");
     }
     this.notices.limits(found, unit, (input) => this.page?.goToInput(input));
     this.element.dataset.updates = String(Number(this.element.dataset.updates ?? 0) + 1);
@@ -221,24 +224,24 @@ export class LivePage {
     const gap = `${trimmed(shortNumber(event.gap, 4))} ${unit}`.trim();
     const remedies = Object.entries(event.remedies).map(([name, needed]) => {
       const now = this.file!.numbers.find((one) => one.name === name)?.value ?? needed;
-      const value = Number((needed + 0.03 * (needed - now)).toPrecision(6)); // a little beyond where it just closes
+      const value = Number((needed + 0.03 * (needed - now)).toPrecision(6)); // a little beyond where the loops just close
       const rounded = trimmed(shortNumber(value));
       const set = (): void => {
         this.connection.ask({ kind: "set_number", name, value });
       };
-      return [`${name} = ${rounded}`, "This length alone would let it close", set] as const;
+      return [`${name} = ${rounded}`, "Changing only this length closes the loops", set] as const;
     });
-    const help = remedies.length ? " Any of these alone would help:" : "";
+    const help = remedies.length ? " Any one of these changes closes the loops:" : "";
     const at = Object.entries(event.input).map(([name, value]) => `${name} = ${trimmed(shortNumber(value, 5))}${unitText(this.file!.inputs.find((one) => one.name === name)?.unit ?? "")}`);
-    const where = at.length ? `At ${at.join(", ")} it` : "It";
+    const where = at.length ? `At ${at.join(", ")} the loops` : "The loops";
     const elsewhere = Object.entries(event.elsewhere).map(([name, value]) => {
       const begin = (): void => {
         this.connection.ask({ kind: "assemble_at", at: event.elsewhere });
       };
       const unit = unitText(this.file!.inputs.find((one) => one.name === name)?.unit ?? "");
-      return [`begin at ${name} = ${trimmed(shortNumber(value, 5))}${unit}`, "It closes there: put the points of the sketch where they are then", begin] as const;
+      return [`begin at ${name} = ${trimmed(shortNumber(value, 5))}${unit}`, "The loops close at this input: move the points of the sketch to that position", begin] as const;
     });
-    const there = elsewhere.length ? (remedies.length ? " Or:" : " It can elsewhere:") : "";
+    const there = elsewhere.length ? (remedies.length ? " Or:" : " The loops close elsewhere:") : "";
     this.notices.open(`${where} cannot close: a gap of ${gap} remains.${help}${remedies.length ? "" : there}`, [...remedies, ...elsewhere]);
     this.element.dataset.updates = String(Number(this.element.dataset.updates ?? 0) + 1);
   }
@@ -253,6 +256,6 @@ export class LivePage {
     for (const input of this.tabs.element.querySelectorAll<HTMLInputElement>("input, button, select, textarea")) {
       input.disabled = true;
     }
-    this.notices.say(message, { "Load again": () => location.reload() }, false);
+    this.notices.say(message, { "Reload": () => location.reload() }, false);
   }
 }

@@ -11,10 +11,10 @@ import { drawLinks } from "./schematic";
 
 /** The four troubles, as people would say them. */
 export const TROUBLES: Readonly<Record<string, string>> = {
-  SINGULAR_DERIVATIVE: "The Jacobian is singular: a step has no end, or goes far away.",
-  INFLECTION: "It runs away or in circles about an inflection.",
-  ANOTHER_ROOT: "It went to another root than the one beside the guess.",
-  LOCAL_EXTREMUM: "It is caught at a place where |F| is least, but not zero.",
+  SINGULAR_DERIVATIVE: "The Jacobian is singular: the Newton step is undefined or very long.",
+  INFLECTION: "The iteration diverges or cycles around an inflection.",
+  ANOTHER_ROOT: "The iteration converged to another root than the one nearest to the guess.",
+  LOCAL_EXTREMUM: "The iteration is trapped at a local minimum of |F| that is not zero.",
 };
 
 export class Newton {
@@ -37,13 +37,13 @@ export class Newton {
   private on = false;
 
   constructor(private readonly desk: Desk) {
-    html("p", { class: "lw-lead" }, this.element, "Drag the guess, in the drawing or by its sliders, and watch where Newton–Raphson goes from it, step by step, at the input shown.");
+    html("p", { class: "lw-lead" }, this.element, "Drag the guess in the drawing or move its sliders, and watch the Newton–Raphson steps that start from it at the current input.");
     this.guesses = html("div", {}, this.element);
     const row = html("div", { class: "lw-newton-row" }, this.element);
     this.button(row, "Guess of the file", () => this.begin());
     this.button(row, "‹ Step", () => this.choose(this.chosen - 1));
     this.button(row, "Step ›", () => this.choose(this.chosen + 1));
-    const label = html("label", { class: "lw-toggle", title: "The textbook's bare method: a step may turn a link as far as it likes" }, row);
+    const label = html("label", { class: "lw-toggle", title: "The plain textbook method, without a limit on the length of a step" }, row);
     this.full = html("input", { type: "checkbox" }, label);
     label.append("Full steps");
     this.full.addEventListener("change", () => this.find());

@@ -13,8 +13,8 @@ export class Ways {
   private on = false;
 
   constructor(private readonly desk: Desk) {
-    html("p", { class: "lw-lead" }, this.element, "The same links, put together in every possible way at the position shown. Choose one to move it.");
-    const find = html("button", { type: "button" }, this.element, "Find again here");
+    html("p", { class: "lw-lead" }, this.element, "All assembly configurations of the links at the current input. Choose one to move it.");
+    const find = html("button", { type: "button" }, this.element, "List again at this position");
     find.addEventListener("click", () => this.find());
     this.state = html("p", { class: "lw-summary", role: "status" }, this.element);
     this.list = html("div", { class: "lw-way-list" }, this.element);
@@ -50,7 +50,7 @@ export class Ways {
   }
 
   private find(): void {
-    this.state.textContent = "Looking for all of them …";
+    this.state.textContent = "Finding all configurations …";
     this.desk.ask({ kind: "list_configurations", at: this.desk.here() });
   }
 }

@@ -1,19 +1,22 @@
-"""The everyday objects: mechanisms, made and used."""
+"""Mechanisms as Python objects: make, read, solve and show them."""
 
 from __future__ import annotations
 
-from linkwork.api.making import example, linkage, load, loads, loops, plain_equations
-from linkwork.api.mechanism import Mechanism
-from linkwork.textfile.library import example_text, examples
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "Mechanism",
-    "example",
-    "example_text",
-    "examples",
-    "linkage",
-    "load",
-    "loads",
-    "loops",
-    "plain_equations",
-]
+from linkwork.foundation.lazy import loader
+
+if TYPE_CHECKING:
+    from linkwork.api.making import (
+        example as example,
+        linkage as linkage,
+        load as load,
+        loads as loads,
+        loops as loops,
+        plain_equations as plain_equations,
+    )
+    from linkwork.api.mechanism import Mechanism as Mechanism
+    from linkwork.api.presenters import register_presenters as register_presenters
+    from linkwork.textfile.library import example_text as example_text, examples as examples
+else:
+    __getattr__ = loader(__name__)

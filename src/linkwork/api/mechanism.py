@@ -1,4 +1,4 @@
-"""The friendly face: a mechanism that can be solved, swept, checked, shown and drawn."""
+"""The main class: a mechanism that can be solved, swept, checked, drawn and exported."""
 
 from __future__ import annotations
 
@@ -17,20 +17,34 @@ __all__ = ["Mechanism"]
 
 
 class Mechanism(SolvableMechanism):
-    """A planar mechanism.
+    """A planar mechanism: solve, sweep, check, draw, animate and export it.
 
-    Made by :func:`load`, :func:`example`, :func:`linkage`, :func:`loops` or
-    :func:`plain_equations`. Immutable: changing a dimension gives a new mechanism.
+    The functions :func:`load`, :func:`loads`, :func:`example`, :func:`linkage`, :func:`loops` and
+    :func:`plain_equations` make mechanisms. A mechanism is immutable: every change returns a new
+    one.
 
     Parameters
     ----------
     description : Description
-        What is asked: points and links, loop equations, or plain equations.
+        Points and links, loop equations, or plain equations.
+    read : ReadFile, optional
+        The file that the description was read from, for line numbers in messages.
 
     Raises
     ------
     MechanismError
-        If the equations cannot be written or do not determine the motion.
+        If the equations cannot be derived, or do not determine the motion.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> bar = lw.example("four-bar")
+    >>> bar
+    <Mechanism "Four-bar linkage, open": 1 equation for coupler, rocker; driven by crank>
+    >>> round(bar.solve(at=60)["rocker"], 3)
+    64.943
+    >>> len(bar.sweep(step=30))
+    13
     """
 
     def scene(
@@ -43,18 +57,35 @@ class Mechanism(SolvableMechanism):
         options: drawing.SceneOptions | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> drawing.Scene:
-        """A picture of one position with the traces of points over the cycle.
+        """The drawing of one position, with the paths of traced points over the cycle.
 
         Parameters
         ----------
-        at, configuration
-            Which position, as in :meth:`solve`; the cycle is the one through it.
+        at : number or Mapping[str, number], optional
+            Input value(s) in file units, as in :meth:`solve`.
+        configuration : str, optional
+            The configuration or branch to draw, as in :meth:`solve`; the cycle is the one through
+            it.
         vectors : bool
-            Show the loop equations as vectors over the mechanism.
+            Whether to draw the loop equations as vectors.
         traces : sequence of str, optional
-            The points whose paths are shown; those of the file's ``[trace]`` unless given.
+            The points whose paths are drawn; by default those of the file's ``[trace]``.
         options : SceneOptions, optional
-            What else to show; see :class:`linkwork.drawing.SceneOptions`.
+            What else to draw; see :class:`linkwork.drawing.SceneOptions`.
+        progress : callable, optional
+            Called with the finished fraction of the cycle, 0 to 1.
+
+        Returns
+        -------
+        Scene
+            Primitives in the mechanism's unit of length.
+
+        Raises
+        ------
+        NotConvergedError
+            If there is no position at this input value.
+        UnknownNameError
+            If a point or configuration does not exist.
         """
         position = self.solve(at, configuration=configuration, throw=True)
         chosen = options or drawing.SceneOptions()
@@ -82,10 +113,21 @@ class Mechanism(SolvableMechanism):
 
         Parameters
         ----------
+        path : str or Path
+            The file; its suffix selects the format.
+        at, configuration, vectors, traces, options
+            As in :meth:`scene`.
         theme : str
-            Colours of the page: ``light`` or ``dark``.
+            Colours of the drawing: ``light`` or ``dark``.
+
+        Raises
+        ------
+        InputError
+            If the format is unknown, or the mechanism has no points.
+        MissingPackageError
+            If Matplotlib is not installed.
         """
-        colours = drawing.theme_named(theme)
+        colours = drawing.theme_named(theme, drawing.THEMES)
         scene = self.scene(
             at, configuration=configuration, vectors=vectors, traces=traces, options=options
         )
@@ -101,39 +143,42 @@ class Mechanism(SolvableMechanism):
         options: viewer.FilmOptions | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> None:
-        """Write the motion to a file that moves.
+        """Write the motion as an animated page or a film.
 
-        A page (.html) works offline, in any browser, without Linkwork: play, drag the crank,
-        plots, numbers with their proof. Films are .gif, .apng, .webp (with Pillow) and .mp4
-        (with ffmpeg).
+        A page (.html) works offline in any browser, without Linkwork: it plays the motion, follows
+        the dragged crank, and shows plots and certified numbers. Films are .gif, .apng, .webp (with
+        Pillow) and .mp4 (with ffmpeg).
 
         Parameters
         ----------
         path : str or Path
-            The suffix chooses the format.
+            The file; its suffix selects the format.
         motion : Motion, optional
-            A sweep of this mechanism; that of the guess around its circuit unless given.
+            A sweep of this mechanism; by default :meth:`cycle`.
         all_circuits : bool
-            Let a page show all circuits, to choose from.
+            Whether a page contains all circuits.
         forces : sequence of Force
-            Let a page show them as arrows at their points.
+            Forces that a page draws as arrows at their points.
         options : FilmOptions, optional
-            Pictures a second, rows, size of a film.
+            Frames per second, number of positions and size of a film.
+        progress : callable, optional
+            Called with the finished fraction, 0 to 1.
 
         Raises
         ------
         InputError
-            If the suffix names no known format, there is nothing to draw, or forces are not for it.
+            If the suffix is unknown, there is nothing to draw, or an option does not fit the
+            format.
         UnknownNameError
-            If there is no point that a force is at.
+            If a force is at a point that does not exist.
         MissingPackageError
-            Without what writes the format.
+            If the package that writes the format is not installed.
         """
         kind = viewer.check_animation(path, options)
         if all_circuits and (motion is not None or kind != "html"):
-            raise InputError("all circuits are shown by a page of the mechanism's own: a .html")
+            raise InputError("all circuits need the page of a mechanism: use the suffix .html")
         if forces and kind != "html":
-            raise InputError("forces are shown by a page: a .html")
+            raise InputError("only a page shows forces: use the suffix .html")
         motions = self._shown(motion, all_circuits, progress)
         content = viewer.animation(
             motions,
@@ -153,32 +198,32 @@ class Mechanism(SolvableMechanism):
         all_circuits: bool = False,
         forces: Sequence[Force] = (),
     ) -> Any:
-        """The motion in a notebook, to play and to drag; needs the extra ``notebook``.
+        """The motion as a notebook widget; needs the extra ``notebook``.
 
         Parameters
         ----------
         motion : Motion, optional
-            A sweep of this mechanism; that of the guess around its circuit unless given.
+            A sweep of this mechanism; by default :meth:`cycle`.
         all_circuits : bool
-            Show all circuits, to choose from.
+            Whether the widget contains all circuits.
         forces : sequence of Force
-            Show them as arrows at their points.
+            Forces drawn as arrows at their points.
 
         Returns
         -------
         anywidget.AnyWidget
-            ``configuration`` and ``row`` are what is shown, and can be set; see
-            :func:`linkwork.viewer.motions_widget`.
+            Its traits ``configuration`` and ``row`` select the displayed position and can be set;
+            see :func:`linkwork.viewer.motions_widget`.
 
         Raises
         ------
         InputError
-            If there is nothing to draw.
+            If there is nothing to draw, or both ``motion`` and ``all_circuits`` are given.
         MissingPackageError
-            Without anywidget.
+            If anywidget is not installed.
         """
         if all_circuits and motion is not None:
-            raise InputError("a widget shows the motion that is given, or all circuits: not both")
+            raise InputError("a widget shows either the given motion or all circuits, not both")
         motions = self._shown(motion, all_circuits)
         equations = self.equations().mathml()
         return viewer.motions_widget(
@@ -203,34 +248,45 @@ class Mechanism(SolvableMechanism):
         )
 
     def to_excel(self, path: str | Path, motion: Motion | None = None) -> tuple[str, ...]:
-        """Write a sweep as an Excel workbook whose formulas solve it again.
+        """Write a sweep as an Excel workbook whose formulas solve the cycle again.
 
         Parameters
         ----------
         path : str or Path
-            Name of the .xlsx file.
+            The .xlsx file.
         motion : Motion, optional
-            A sweep of this mechanism; :meth:`sweep` unless given.
+            A sweep of this mechanism; by default :meth:`sweep`.
 
         Returns
         -------
         tuple of str
-            What in the workbook is values only, and does not follow its dimensions.
+            The parts of the workbook that contain values only and do not recalculate.
 
         Raises
         ------
         InputError
-            If the name is no .xlsx, or the motion is not this mechanism's.
+            If the suffix is not .xlsx, or the motion belongs to another mechanism.
         MissingPackageError
-            Without XlsxWriter.
+            If XlsxWriter is not installed.
         """
         if Path(path).suffix.lower() != ".xlsx":
-            raise InputError(f'cannot write "{path}": workbooks are written as .xlsx')
+            raise InputError(f'cannot write "{path}": a workbook needs the suffix .xlsx')
         cycle = self.sweep() if motion is None else motion
         written = export.workbook_of(self.model, cycle)
         Path(path).write_bytes(written.content)
         return written.notices
 
     def save(self, path: str | Path) -> None:
-        """Write the mechanism as a TOML file."""
+        """Write the mechanism as a TOML file.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file, which is overwritten.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written.
+        """
         textfile.save(self.description, Path(path))

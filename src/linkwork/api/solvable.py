@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self
 
-from linkwork import batch, motion, textfile
-from linkwork import equations as closure
+from linkwork import batch, equations as closure, motion, textfile
+from linkwork.foundation.deprecation import former_method
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.parts import Input, Number
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.driven_input import Input
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
@@ -29,12 +30,12 @@ __all__ = ["SolvableMechanism"]
 
 
 class SolvableMechanism:
-    """A mechanism that knows no pictures: see :class:`~linkwork.api.mechanism.Mechanism`.
+    """The part of :class:`~linkwork.api.mechanism.Mechanism` that needs no drawing.
 
     Raises
     ------
     MechanismError
-        If the equations cannot be written or do not determine the motion.
+        If the equations cannot be derived, or do not determine the motion.
     """
 
     def __init__(self, description: Description, read: textfile.ReadFile | None = None) -> None:
@@ -64,7 +65,7 @@ class SolvableMechanism:
 
     @property
     def name(self) -> str:
-        """What the mechanism is called."""
+        """The name of the mechanism."""
         return self.description.name
 
     @property
@@ -73,47 +74,87 @@ class SolvableMechanism:
         return self.model.equations
 
     def with_dimensions(self, **changes: Number) -> Self:
-        """A copy with named dimensions replaced."""
+        """A copy with other values of named dimensions.
+
+        Parameters
+        ----------
+        **changes : number or formula
+            New values by name, in the unit of the file.
+
+        Raises
+        ------
+        UnknownNameError
+            If a dimension does not exist.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> lw.example("crank-shaper").with_dimensions(r=50).description.dimensions["r"]
+        50
+        """
         return type(self)(self.description.with_dimensions(changes))
 
     def changed(self, **parts: Any) -> Self:
-        """A copy with parts of the description replaced: ``changed(guess={...})``.
+        """A copy with other parts of the description.
 
-        Arguments are those the mechanism was made with: ``points``, ``lengths``, ``guess``, …
+        Parameters
+        ----------
+        **parts
+            Fields of the description, as in :func:`linkage` or :func:`loops`: ``points``,
+            ``lengths``, ``guess``, …
+
+        Raises
+        ------
+        MechanismError
+            With every problem found.
         """
         return type(self)(replace(self.description, **parts))
 
     def inversion(self, link: str, *, input: Input | None = None) -> Self:
-        """The same chain with another link as ground; the old ground becomes ``frame``.
+        """The same kinematic chain with another link as ground; the old ground becomes ``frame``.
 
         Parameters
         ----------
         link : str
-            The link that stands still from now on.
+            The link that becomes the ground.
         input : Input, optional
-            What is driven; unless given, the same relative angle or the same length as before.
+            The new input; by default the same relative angle or length as before.
 
         Raises
         ------
-        InputError, UnknownNameError
-            If there is no such link, or it cannot be ground.
+        UnknownNameError
+            If the link does not exist.
+        InputError
+            If the link cannot be the ground.
         """
         return type(self)(motion.inversion(self.model, link, input))
 
     def inversions(self) -> tuple[Inversion, ...]:
-        """Every link as ground, with what a textbook calls the mechanism then."""
+        """All inversions of the chain, each with its type."""
         return motion.inversions(self.model)
 
     def driven_by(self, **what: Any) -> Self:
-        """A copy with another input; arguments as :class:`~linkwork.mechanism.parts.Input`."""
+        """A copy with another input.
+
+        Parameters
+        ----------
+        **what
+            Fields of :class:`linkwork.Input`: ``link="rocker"``, ``start=0``, …
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> lw.example("four-bar").driven_by(link="rocker")
+        <Mechanism "Four-bar linkage, open": 1 equation for crank, coupler; driven by rocker>
+        """
         return type(self)(motion.driven_otherwise(self.model, Input(**what)))
 
     def check(self) -> CheckReport:
-        """What was understood: loops, unknowns, blocks, mobility, the start."""
+        """How the mechanism was read: equations, unknowns, blocks, mobility, start."""
         return motion.check(self.model)
 
     def equations(self) -> closure.EquationSheet:
-        """The loop equations and the Jacobian, to be shown as text or LaTeX."""
+        """The loop equations and their Jacobian as text, LaTeX or MathML."""
         return closure.EquationSheet(self.model.equations)
 
     def solve(
@@ -127,17 +168,53 @@ class SolvableMechanism:
         with_steps: bool = False,
         throw: bool = False,
     ) -> Position:
-        """The position at one input value; see :func:`linkwork.motion.solve`.
+        """The position at one input value.
+
+        Newton-Raphson finds the position at the input value of the guess; from there the branch is
+        followed to the requested value, and in the other direction if it meets a limit.
 
         Parameters
         ----------
+        at : number or Mapping[str, number], optional
+            Input value(s) in file units; by default those of the guess.
         configuration : str, optional
-            The one of this name in ``configurations(at)``, or on this branch of ``circuits()``,
-            whatever the guess is near to.
+            Take the configuration of this name in ``configurations(at)``, or the position on this
+            branch of ``circuits()``, instead of the branch of the guess.
+        from_guess : bool
+            Start Newton-Raphson from the guess at the requested value directly.
+        options : NewtonOptions, optional
+            Tolerances and the limit of a step.
+        certify : bool
+            Prove the position, and that the motion from the start to it stays on one branch.
+        with_steps : bool
+            Keep the iterates in ``position.steps``.
+        throw : bool
+            Raise an exception instead of returning a position with another status.
+
+        Returns
+        -------
+        Position
+            Its ``status`` says whether the position was found.
+
+        Raises
+        ------
+        UnknownNameError, InputError
+            If the input values or the configuration do not fit the mechanism.
+        NotConvergedError
+            With ``throw``, if no position was found.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> bar = lw.example("four-bar")
+        >>> round(bar.solve(at=60)["rocker"], 3)
+        64.943
+        >>> round(bar.solve(at=60, configuration="crossed")["rocker"], 3)
+        -111.77
         """
         if configuration is not None:
             if from_guess or with_steps:
-                raise InputError("a configuration has no steps from the guess: ask for one of both")
+                raise InputError("configuration= has no steps from a guess: leave one out")
             return motion.solve_configuration(self.model, at, configuration, throw=throw)
         return motion.solve(
             self.model,
@@ -163,30 +240,55 @@ class SolvableMechanism:
         options: NewtonOptions | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> Motion:
-        """The whole cycle; see :func:`linkwork.motion.sweep`.
+        """The positions at all rows of the input's table, on the branch of the guess.
+
+        The branch is followed in both directions from the input value of the guess, with steps that
+        do not depend on the table. A row beyond a limit is tried a whole turn away, otherwise it
+        keeps its status. Every dead point and change point on the way adds a row.
 
         Parameters
         ----------
         start, stop, step : number, optional
-            Replace the range of the (only) input, in everyday units.
+            Replace the range of the only input, in file units.
         configuration : str, optional
-            Start from the configuration of this name at the guess's own input value, or on this
+            Start from the configuration of this name at the input value of the guess, or on this
             branch of ``circuits()``.
         through : bool
-            Go on through dead points, the input turning back, around the whole circuit.
+            Continue through dead points, where the input reverses, around the whole circuit.
         change_points : str
-            ``stop`` at a change point, go ``straight`` on, or ``turn`` into the other branch.
-        limits_of : str, or several
-            Quantities whose largest and smallest values are located.
+            ``stop`` at a change point, go ``straight`` on, or ``turn`` onto the other branch.
+        limits_of : str or iterable of str
+            Quantities whose maxima and minima are located.
         certify : bool
-            Prove every position and the motion between them; without, a sweep is faster.
+            Prove every position and the motion between them; a sweep without proofs is faster.
+        options : NewtonOptions, optional
+            Tolerances and the limit of a step.
+        progress : callable, optional
+            Called with the finished fraction, 0 to 1.
+
+        Returns
+        -------
+        Motion
+            One row per input value, each with its status.
+
+        Raises
+        ------
+        UnknownNameError, InputError
+            If a range, configuration, policy or quantity does not fit the mechanism.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> motion = lw.example("four-bar").sweep(start=0, stop=360, step=90)
+        >>> motion["rocker"].round(2)
+        array([ 62.72,  80.26, 121.19, 123.86,  62.72])
         """
         asked = self.model
         if not (start is None and stop is None and step is None):
             asked = motion.model_of(self.description.with_range(start, stop, step))
             asked = asked.from_start_of(self.model)
         if configuration is not None:
-            asked = motion.started_in(asked, configuration)
+            asked = motion.start_in_configuration(asked, configuration)
         return motion.sweep(
             asked,
             through=through,
@@ -197,24 +299,39 @@ class SolvableMechanism:
             progress=progress,
         )
 
-    def sweep_beside(self, neighbour: Motion | None = None) -> Motion:
-        """The cycle of a mechanism whose numbers differ a little from another's; nothing proved.
+    def approximate_sweep(self, neighbour: Motion | None = None) -> Motion:
+        """The cycle of a slightly changed mechanism, without proofs.
 
-        Many times faster than :meth:`sweep`, for pictures while a dimension is being changed:
-        Newton-Raphson starts from the neighbour's positions, at all rows at once. Where that
-        would not be safe, the branch is followed anew; see :func:`linkwork.motion.renewed`.
+        It is many times faster than :meth:`sweep`: Newton-Raphson starts from the positions of the
+        neighbour, at all rows together. If that is not safe, the branch is followed anew; see
+        :func:`linkwork.motion.warm_started`.
+
+        Parameters
+        ----------
+        neighbour : Motion, optional
+            The cycle of a mechanism whose numbers differ a little.
         """
-        renewed = None if neighbour is None else motion.renewed(self.model, neighbour)
-        if renewed is None:
-            renewed = motion.sweep(self.model, certify=False, explained=False)
-        return renewed
+        started = None if neighbour is None else motion.warm_started(self.model, neighbour)
+        if started is None:
+            started = motion.sweep(self.model, certify=False, explained=False)
+        return started
+
+    sweep_beside = former_method("sweep_beside", approximate_sweep, removed_in="0.4")
 
     def moving_loops(self, cycle: Motion) -> tuple[MovingLoop, ...]:
-        """The loop equations over a motion, as vectors; none if there are no loops."""
+        """The loop equations over a motion as vectors; empty without loops."""
         return motion.moving_loops(self.model, cycle)
 
     def nearest_assembly(self, at: float | Mapping[str, float] | None = None) -> NearestAssembly:
-        """As near to closing as it gets; see :func:`linkwork.motion.nearest_assembly`."""
+        """The position nearest to closure, for a mechanism that does not close.
+
+        See :func:`linkwork.motion.nearest_assembly`.
+
+        Parameters
+        ----------
+        at : number or Mapping[str, number], optional
+            Input value(s) in file units; by default those of the guess.
+        """
         return motion.nearest_assembly(self.model, at)
 
     def iterates(
@@ -224,11 +341,22 @@ class SolvableMechanism:
         *,
         options: NewtonOptions | None = None,
     ) -> Iterates:
-        """Newton-Raphson from a guess, step by step; see :func:`linkwork.motion.iterates`."""
+        """The iterates of Newton-Raphson from a guess; see :func:`linkwork.motion.iterates`.
+
+        Parameters
+        ----------
+        guess : Mapping[str, number], optional
+            Values of some or all unknowns, in file units; the others keep the guess of the
+            mechanism.
+        at : number or Mapping[str, number], optional
+            Input value(s) in file units; by default those of the guess.
+        options : NewtonOptions, optional
+            Tolerances and the limit of a step.
+        """
         return motion.iterates(self.model, guess, at, options=options)
 
     def guessed_points(self) -> tuple[str, ...]:
-        """The points that a guess of the unknowns places."""
+        """The names of the points whose coordinates follow from a guess of the unknowns."""
         return motion.guessed_points(self.model)
 
     def pulled_guess(
@@ -238,27 +366,65 @@ class SolvableMechanism:
         guess: Mapping[str, float] | None = None,
         at: float | Mapping[str, float] | None = None,
     ) -> dict[str, float]:
-        """A guess that brings a point near a place; see :func:`linkwork.motion.pulled_guess`."""
+        """A guess that brings a point near given coordinates; see
+        :func:`linkwork.motion.pulled_guess`.
+
+        Parameters
+        ----------
+        point : str
+            The point.
+        place : (float, float)
+            The coordinates [length].
+        guess, at
+            As in :meth:`iterates`.
+        """
         return motion.pulled_guess(self.model, point, place, guess, at)
 
     def configurations(self, at: float | Mapping[str, float] | None = None) -> Configurations:
-        """Every way to put it together at one input; see :func:`linkwork.motion.configurations`."""
+        """All assembly configurations at one input value, each with its certificate.
+
+        Blocks of one loop are solved in closed form, larger blocks by homotopy continuation; see
+        :func:`linkwork.motion.configurations`.
+
+        Parameters
+        ----------
+        at : number or Mapping[str, number], optional
+            Input value(s) in file units; by default those of the guess.
+        """
         return motion.configurations(self.model, at)
 
     def circuits(
         self, *, certify: bool = True, progress: Callable[[float], None] | None = None
     ) -> Circuits:
-        """All circuits with their branches; see :func:`linkwork.motion.circuits`."""
-        return motion.circuits(self.model, certify=certify, progress=progress)
-
-    def family(self, dimensions: Mapping[str, object]) -> Family:
-        """Many designs of the mechanism at once; see :func:`linkwork.batch.designs_of`.
+        """All circuits with their branches; see :func:`linkwork.motion.circuits`.
 
         Parameters
         ----------
-        dimensions : Mapping[str, number or (D,)]
-            What varies, everyday units: dimensions, lengths (``"O2 A"``), angles, coordinates
-            (``"O4.x"``); a plan of :mod:`linkwork.batch`.
+        certify : bool
+            Prove the curve of every circuit.
+        progress : callable, optional
+            Called with the finished fraction, 0 to 1.
+
+        Raises
+        ------
+        InputError
+            If the mechanism has no input.
+        """
+        return motion.circuits(self.model, certify=certify, progress=progress)
+
+    def family(self, dimensions: Mapping[str, object]) -> Family:
+        """Many designs of the mechanism, solved together; see :func:`linkwork.batch.designs_of`.
+
+        Parameters
+        ----------
+        dimensions : Mapping[str, number or array (D,)]
+            The varied numbers in file units: dimensions, lengths (``"O2 A"``), angles, coordinates
+            (``"O4.x"``); or a plan of :mod:`linkwork.batch`.
+
+        Raises
+        ------
+        UnknownNameError, InputError
+            If a name does not exist, or the arrays have different lengths.
         """
         return batch.family_of(self.model, dimensions)
 
@@ -269,8 +435,15 @@ class SolvableMechanism:
         certify: bool = True,
         progress: Callable[[float], None] | None = None,
     ) -> Motion:
-        """The motion that is shown where one is wanted: :meth:`sweep`, and on through dead points
-        where the input does not reach all of its range.
+        """The motion for displays.
+
+        It is :meth:`sweep`, continued through dead points if the input does not reach its whole
+        range.
+
+        Parameters
+        ----------
+        configuration, certify, progress
+            As in :meth:`sweep`.
         """
         motion = self.sweep(configuration=configuration, certify=certify, progress=progress)
         if motion.found.all() or not motion.found.any():
@@ -282,9 +455,12 @@ class SolvableMechanism:
     def cycles(
         self, *, certify: bool = True, progress: Callable[[float], None] | None = None
     ) -> dict[str, Motion]:
-        """The motion on every circuit, by the circuit's name; that of the guess first.
+        """The motions on all circuits, by the names of the circuits, that of the guess first.
 
-        See :meth:`cycle`.
+        Parameters
+        ----------
+        certify, progress
+            As in :meth:`sweep`.
         """
         found = {}
         circuits = self.circuits(certify=False)

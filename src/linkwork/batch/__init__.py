@@ -1,4 +1,4 @@
-"""Many designs of one mechanism at once: what varies, and the coefficients of their equations."""
+"""Families: many designs of one mechanism at once."""
 
 from __future__ import annotations
 
@@ -7,40 +7,29 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
-    from linkwork.batch.designs import Designs, designs_of
-    from linkwork.batch.family import Family, family_of
-    from linkwork.batch.family_motion import FamilyMotion
-    from linkwork.batch.limits import FamilyLimits
-    from linkwork.batch.sampling import Plan, from_table, grid, latin_hypercube, random
-    from linkwork.batch.study import Study, Summary, read_plan, run_study, summary_of
-else:
-    __getattr__ = loader(
-        __name__,
-        {
-            "designs": ("Designs", "designs_of"),
-            "family": ("Family", "family_of"),
-            "family_motion": ("FamilyMotion",),
-            "limits": ("FamilyLimits",),
-            "sampling": ("Plan", "from_table", "grid", "latin_hypercube", "random"),
-            "study": ("Study", "Summary", "read_plan", "run_study", "summary_of"),
-        },
+    from linkwork.batch.designs import (
+        Designs as Designs,
+        designs_of as designs_of,
     )
-
-__all__ = [
-    "Designs",
-    "Family",
-    "FamilyLimits",
-    "FamilyMotion",
-    "Plan",
-    "Study",
-    "Summary",
-    "designs_of",
-    "family_of",
-    "from_table",
-    "grid",
-    "latin_hypercube",
-    "random",
-    "read_plan",
-    "run_study",
-    "summary_of",
-]
+    from linkwork.batch.family import (
+        Family as Family,
+        family_of as family_of,
+    )
+    from linkwork.batch.family_motion import FamilyMotion as FamilyMotion
+    from linkwork.batch.limits import FamilyLimits as FamilyLimits
+    from linkwork.batch.sampling import (
+        Plan as Plan,
+        from_table as from_table,
+        grid as grid,
+        latin_hypercube as latin_hypercube,
+        random as random,
+    )
+    from linkwork.batch.study import (
+        Study as Study,
+        Summary as Summary,
+        read_plan as read_plan,
+        run_study as run_study,
+        summary_of as summary_of,
+    )
+else:
+    __getattr__ = loader(__name__)

@@ -1,4 +1,4 @@
-"""The equations of many designs: the builder of one design, run on lanes.
+"""Build the equations of many designs by running the builder of one design on arrays.
 
 A pass builds all designs that are left, with one of them in the lead (the mechanism itself in the
 first pass); what it finds holds for the designs in which every decision is the leader's. Most
@@ -20,21 +20,21 @@ from linkwork.equations.from_loops import read_loops, read_plain_equations
 from linkwork.equations.model import LoopEquations, Term
 from linkwork.foundation.arrays import AnyArray, Array, IndexArray
 from linkwork.foundation.errors import LinkworkError
-from linkwork.foundation.lanes import Consensus, NotElementwise, many
+from linkwork.foundation.lanes import Consensus, NotElementwise, is_batched
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.quantities import Quantity, with_numbers
 from linkwork.motion.model import Model, model_of
 
-__all__ = ["Builder", "built", "family_base", "written_equations"]
+__all__ = ["Builder", "build_design", "family_base", "write_equations"]
 
 _BLOCK = 1 << 14  # designs built together: their lanes stay in the processor's cache
 _MOST_PASSES = 100
 _COMPLEX = ("loops", "points")
 
 
-def written_equations(description: Description) -> LoopEquations:
+def write_equations(description: Description) -> LoopEquations:
     """The equations of a description, whose numbers may be lanes."""
     match description:
         case Linkage():
@@ -56,7 +56,7 @@ class Builder:
     base : Model
         The family's structure; see :func:`family_base`.
     values : Mapping[Quantity, (B,)]
-        What varies, everyday units.
+        What varies, in file units.
     together : bool
         Whether designs can be built in passes; else one at a time.
 
@@ -116,7 +116,7 @@ class Builder:
         alone = False
         with np.errstate(all="ignore"):
             try:
-                equations = written_equations(with_numbers(self.base.description, numbers))
+                equations = write_equations(with_numbers(self.base.description, numbers))
                 found = self.pattern.coefficients(equations)
             except NotElementwise:
                 alone = True
@@ -138,7 +138,7 @@ class Builder:
         numbers = {quantity: float(values[k]) for quantity, values in self.values.items()}
         rows = np.array([k])
         try:
-            model = built(with_numbers(self.base.description, numbers))
+            model = build_design(with_numbers(self.base.description, numbers))
         except (LinkworkError, ArithmeticError) as error:
             self._mark(rows, str(error))
             return
@@ -155,7 +155,7 @@ class Builder:
         for name, values in _named(found).items():
             columns = self.arrays[name].T
             for column, value in zip(columns, values, strict=True):
-                if not many(value):
+                if not is_batched(value):
                     column[at] = value
                 else:
                     own = value.values[1:]
@@ -197,7 +197,7 @@ def _named(found: Coefficients) -> dict[str, Sequence[object]]:
     return {part.name: getattr(found, part.name) for part in fields(found)}
 
 
-def built(description: Description) -> Model:
+def build_design(description: Description) -> Model:
     """The model of one design, as for any mechanism."""
     return model_of(description)
 
@@ -216,7 +216,7 @@ def family_base(model: Model, varied: Sequence[Quantity]) -> tuple[Model, bool]:
     numbers = {q: consensus.lanes(np.array([q.of(description)])) for q in varied}
     try:
         with np.errstate(all="ignore"):
-            equations = written_equations(with_numbers(description, numbers))
+            equations = write_equations(with_numbers(description, numbers))
     except NotElementwise:
         return model, True
     own, wider = Pattern.of(model.equations), Pattern.of(equations)
@@ -246,4 +246,4 @@ def _plain_terms(terms: Sequence[Term]) -> tuple[Term, ...]:
 
 
 def _first(number: complex) -> complex:
-    return number.values[0].item() if many(number) else number
+    return number.values[0].item() if is_batched(number) else number

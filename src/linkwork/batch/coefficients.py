@@ -19,7 +19,7 @@ def loop_coefficients(designs: Designs) -> dict[str, Array]:
         found[f"c{term}.im"] = np.ascontiguousarray(column.imag)
     for row in range(designs.linear.shape[1]):
         found[f"k{row}"] = np.ascontiguousarray(designs.linear[:, row])
-    for k, turns in enumerate(designs.base.compiled.table.turns):
+    for k, turns in enumerate(designs.base.compiled.table.is_angle):
         if not turns:
             found[f"scale{k}"] = designs.length_scale
     return found

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from linkwork.batch.building import Builder, built, family_base
+from linkwork.batch.building import Builder, build_design, family_base
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.foundation.frozen import FrozenDict
@@ -38,7 +38,7 @@ class Designs:
         The mechanism itself: structure, blocks, names. What varies keeps its term even where it is
         0 in the mechanism, as the offset of a slider.
     dimensions : Mapping[str, (B,)]
-        What varies, everyday units, by the name asked.
+        What varies, in file units, by the name asked.
     quantities : tuple of Quantity
         The same as numbers of the description, in the same order.
     loops : (B, T) complex
@@ -52,7 +52,7 @@ class Designs:
     start : (B, N)
         Guess of the unknowns, then the inputs that it belongs to, [rad] or [length].
     numbers : (B, D)
-        All named dimensions, in the order of ``base.equations.dimensions``, everyday units: for
+        All named dimensions, in the order of ``base.equations.dimensions``, in file units: for
         outputs, and the constants of plain equations.
     redundant : (B, r)
         Lengths of ``base.equations.redundant``.
@@ -120,7 +120,7 @@ class Designs:
         MechanismError
             If it has a problem.
         """
-        return built(self.description(k))
+        return build_design(self.description(k))
 
     def message(self, k: int) -> str:
         """What is wrong with the k-th design, with its own numbers; empty for nothing."""
@@ -140,7 +140,7 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
     ----------
     mechanism : Model, or an object with one
     dimensions : Mapping[str, number or (B,)]
-        What varies, everyday units: a name of ``[dimensions]``; an entry of ``[lengths]``
+        What varies, in file units: a name of ``[dimensions]``; an entry of ``[lengths]``
         (``"O2 A"``) or ``[angles]`` (``"B A P"``); a coordinate (``"O4.x"``); the offset of a
         slider (``"s16.offset"``); in loops and plain equations a name of ``[guess]``. A plain
         number holds for all designs.
@@ -192,7 +192,7 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
 
 def _check_different(named: Mapping[str, Quantity]) -> None:
     if not named:
-        raise InputError("a family needs something that varies: name a dimension and its values")
+        raise InputError("nothing varies in this family: give a dimension and its values")
     first: dict[Quantity, str] = {}
     for name, quantity in named.items():
         if first.setdefault(quantity, name) != name:

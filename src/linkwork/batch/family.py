@@ -17,7 +17,7 @@ from linkwork.foundation.names import as_name
 from linkwork.foundation.plain_numbers import whole_number
 from linkwork.foundation.sharing import cores
 from linkwork.kernels.gpu.compiling import graphics_card
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.program.execution import Execution
 from linkwork.motion.model import Model
 
 __all__ = ["Family", "Reduction", "family_of"]
@@ -51,7 +51,7 @@ class Family:
 
     @property
     def dimensions(self) -> Mapping[str, Array]:
-        """What varies, (D,) each, everyday units."""
+        """What varies, (D,) each, in file units."""
         return self.designs.dimensions
 
     def take(self, index: Sequence[int] | IndexArray | BoolArray | slice) -> Family:
@@ -91,27 +91,27 @@ class Family:
         MissingPackageError
             If ``gpu`` is not installed.
         """
-        gear = self._gear(specialised, device)
-        return self._swept(certify, _workers(threads), gear)
+        execution = self._execution(specialised, device)
+        return self._sweep(certify, _workers(threads), execution)
 
-    def _gear(self, specialised: bool | None, device: str) -> Gear:
+    def _execution(self, specialised: bool | None, device: str) -> Execution:
         positions = len(self) * len(self.designs.base.rows)
-        gear = Gear(specialised=specialised, positions=positions, device=device)
-        if gear.device == "gpu":
+        execution = Execution(specialised=specialised, positions=positions, device=device)
+        if execution.device == "gpu":
             graphics_card()  # or the reason why there is none, before anything is computed
-        return gear
+        return execution
 
-    def _swept(self, certify: bool, threads: int, gear: Gear) -> FamilyMotion:
+    def _sweep(self, certify: bool, threads: int, execution: Execution) -> FamilyMotion:
         model = self.designs.base
         count = len(self) * len(model.rows) * (len(model.equations.unknowns) + 1)
         if 8 * count > _MOST_BYTES:
             raise InputError(
                 f"{len(self)} designs × {len(model.rows)} rows take {8 * count / 2**30:.0f} GiB: "
-                "go through family.parts(), or ask for family.reduced({...})"
+                "use family.parts() or family.reduced({...})"
             )
-        rows = design_rows(self.designs, certify=certify, threads=threads, gear=gear)
+        rows = design_rows(self.designs, certify=certify, threads=threads, execution=execution)
         return FamilyMotion(
-            designs=self.designs, inputs=model.everyday_rows, rows=rows, threads=threads
+            designs=self.designs, inputs=model.rows_in_file_units, rows=rows, threads=threads
         )
 
     def parts(
@@ -126,8 +126,8 @@ class Family:
         """The motions of so many designs at a time, in order; memory stays bounded."""
         designs, workers = whole_number("designs", designs, least=1), _workers(threads)
         parts = (self.take(slice(k, k + designs)) for k in range(0, len(self), designs))
-        gear = self._gear(specialised, device)
-        return (part._swept(certify, workers, gear) for part in parts)
+        execution = self._execution(specialised, device)
+        return (part._sweep(certify, workers, execution) for part in parts)
 
     def _part(self) -> int:
         """How many designs are reduced at a time, rates included."""

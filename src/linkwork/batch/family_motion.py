@@ -21,7 +21,7 @@ from linkwork.batch.rates import (
     design_speeds,
 )
 from linkwork.batch.rows import DesignRows
-from linkwork.batch.single_sweep import message_alone
+from linkwork.batch.single_sweep import message_single
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import (
@@ -30,7 +30,7 @@ from linkwork.foundation.errors import (
     UnknownNameError,
     choices,
 )
-from linkwork.foundation.names import spelled
+from linkwork.foundation.names import find_spelling
 from linkwork.foundation.status import Status
 from linkwork.motion.lock_step import lock_step
 from linkwork.results.motion import Series
@@ -52,7 +52,7 @@ class FamilyMotion:
     ----------
     designs : Designs
     inputs : (R, p)
-        What was asked, everyday units.
+        What was asked, in file units.
     rows : DesignRows
         Unknowns, statuses and proofs, internal units.
     threads : int
@@ -186,7 +186,7 @@ class FamilyMotion:
         """The path of a point as x + iy, (D, R); ``trace("B.velocity")`` its velocity likewise."""
         own, rate = Rate.split(point)
         points = self.quantities.names.points
-        own = spelled(own, points)
+        own = find_spelling(own, points)
         if own not in points:
             raise UnknownNameError(f'there is no point "{own}" {choices("points", points, own)}')
         if rate is None:
@@ -219,7 +219,7 @@ class FamilyMotion:
 
     @property
     def dimensions(self) -> Mapping[str, Array]:
-        """What varies from design to design, (D,) each, everyday units."""
+        """What varies from design to design, (D,) each, in file units."""
         return self.designs.dimensions
 
     @property
@@ -263,7 +263,7 @@ class FamilyMotion:
         """
         if self.found[k].all():
             return ""
-        return self.designs.message(k) or message_alone(self.designs, k)
+        return self.designs.message(k) or message_single(self.designs, k)
 
     def to_xarray(self, *names: str) -> Any:
         """An xarray Dataset over designs and inputs, with units.
@@ -315,7 +315,7 @@ class FamilyMotion:
         if needed > _MOST_BYTES:
             raise InputError(
                 f"{len(names)} quantities and rates of {len(self)} designs take "
-                f"{needed / 2**30:.0f} GiB: name those that are wanted"
+                f"{needed / 2**30:.0f} GiB: name the ones that you need"
             )
         return names
 

@@ -1,4 +1,4 @@
-"""Designs over a table of inputs by the compiled march; what it leaves open, one by one."""
+"""Solve designs over a table of inputs by compiled kernels, and the rest one by one."""
 
 from __future__ import annotations
 
@@ -9,16 +9,17 @@ import numpy as np
 from linkwork.batch.coefficients import loop_coefficients, zero_coefficients
 from linkwork.batch.designs import Designs
 from linkwork.batch.limits import LIMIT_KINDS
-from linkwork.batch.path_entry import led_to_rows
+from linkwork.batch.path_entry import lead_to_rows
 from linkwork.batch.rows import DesignRows
-from linkwork.batch.single_sweep import sweep_alone
+from linkwork.batch.single_sweep import sweep_single
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.foundation.status import Status
 from linkwork.kernels.march.dead_points import dead_points
-from linkwork.kernels.march.sweep_kernel import LaneRows, RowsOfOne, Steps
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.march.sweep_kernel import LaneRows, Steps
+from linkwork.kernels.program.execution import Execution
 from linkwork.motion.by_kernels import are_served, kernel_of
 from linkwork.motion.drive import Drive
 from linkwork.motion.lock_step import lock_step
@@ -30,11 +31,10 @@ __all__ = ["March", "Path", "design_rows"]
 
 _ON_PATH = 1e-12
 _FINEST = 1e-8  # step, of a radian or a length, where a row lies right in front of a dead point
-_UNIT = float(np.finfo(float).eps) / 2.0
 
 
 def design_rows(
-    designs: Designs, *, certify: bool, threads: int = 1, gear: Gear | None = None
+    designs: Designs, *, certify: bool, threads: int = 1, execution: Execution | None = None
 ) -> DesignRows:
     """Every design over the rows of the mechanism's table, on the branch of its own start.
 
@@ -55,9 +55,9 @@ def design_rows(
     if march is None:
         found.clear(np.ones(found.status.shape, dtype=bool), certify)
     else:
-        left &= ~march.fill(designs, found, certify, threads, gear or Gear())
+        left &= ~march.fill(designs, found, certify, threads, execution or Execution())
     for k in np.flatnonzero(left):
-        sweep_alone(designs, int(k), found, certify)
+        sweep_single(designs, int(k), found, certify)
     return found
 
 
@@ -87,21 +87,21 @@ class Path:
         t = self.model.rows[:, self.lead]
         return bool(t[-1] < t[0])
 
-    def spread(self, start: Array) -> Array:
+    def input_radius(self, start: Array) -> Array:
         """How far inputs asked for, or computed on the way from ``start`` (D,), are off, (p,)."""
         t = self.model.rows[:, self.lead]
         gap = np.abs(self.model.rows - (self.origin + np.outer(t, self.rate))).max(axis=0)
         farthest = max(np.abs(t).max(), np.abs(start[np.isfinite(start)]).max(initial=0.0))
         rounds = (self.origin != 0.0) & (self.rate != 0.0)
         size = np.abs(self.origin) + np.abs(self.rate) * farthest
-        spread: Array = gap + np.where(rounds, 4.0 * _UNIT * size, 0.0)
-        return spread
+        input_radius: Array = gap + np.where(rounds, 4.0 * UNIT_ROUNDOFF * size, 0.0)
+        return input_radius
 
     def fill(
-        self, designs: Designs, found: DesignRows, certify: bool, threads: int, gear: Gear
+        self, designs: Designs, found: DesignRows, certify: bool, threads: int, execution: Execution
     ) -> BoolArray:
         """Designs that went through all rows are filled in; which they are, (D,)."""
-        march = self.march(designs, certify, threads, gear)
+        march = self.march(designs, certify, threads, execution)
         t = self.model.rows[:, self.lead]
         way = slice(None, None, -1 if self.falling else 1)
         whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
@@ -111,13 +111,13 @@ class Path:
         march.note_limits(found, whole)
         return whole
 
-    def march(self, designs: Designs, certify: bool, threads: int, gear: Gear) -> March:
+    def march(self, designs: Designs, certify: bool, threads: int, execution: Execution) -> March:
         """The march of designs whose start lies on the path, or can be led to it."""
         inputs = designs.start[:, self.model.compiled.solver.unknowns :]
         start = inputs[:, self.lead]
         away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
         served: BoolArray = np.all(away <= _ON_PATH * np.maximum(1.0, np.abs(inputs)), axis=1)
-        return March(self, designs, served, certify, threads, gear)
+        return March(self, designs, served, certify, threads, execution)
 
     def _note(self, found: DesignRows, reached: BoolArray, whole: BoolArray, certify: bool) -> None:
         """Statuses of rows that were reached, and of the others of designs that are done."""
@@ -141,7 +141,7 @@ class March:
         served: BoolArray,
         certify: bool,
         threads: int,
-        gear: Gear,
+        execution: Execution,
     ) -> None:
         self.path, self.certify, self.threads = path, certify, threads
         compiled, model = path.model.compiled, path.model
@@ -149,8 +149,8 @@ class March:
         fine = designs.problem == 0
         self.coefficients = _coefficients(path, designs)
         self.zeros = zero_coefficients(designs, self.coefficients)
-        self.kernel = kernel_of(model, frozenset(self.zeros), certify, gear.device)
-        self.kernel.shift(gear)
+        self.kernel = kernel_of(model, frozenset(self.zeros), certify, execution.device)
+        self.kernel.shift(execution)
         self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # else not found
         self.start = designs.start[:, n + path.lead].copy()
         self._enter(designs, np.flatnonzero(fine & ~served))
@@ -165,7 +165,7 @@ class March:
             return
         t = self.path.model.rows[:, self.path.lead]
         rows = self.path.origin + np.outer(t, self.path.rate)
-        v, nearest = led_to_rows(
+        v, nearest = lead_to_rows(
             designs, rows, self.kernel, self.coefficients, beside, self.threads
         )
         self.guess[:, beside], self.start[beside] = v, t[nearest]
@@ -184,7 +184,7 @@ class March:
         done, reached : (D,), (R, D)
             Which designs need nothing more: each row is reached, or lies beyond a dead point.
         """
-        rows = self._marched(t, v, radius, slice(None))
+        rows = self._march(t, v, radius, slice(None))
         reached = rows.reached
         if reached.all():  # as a rule, and quicker to tell than of each design
             return np.ones(len(rows.found), dtype=bool), reached
@@ -200,21 +200,11 @@ class March:
         for turns in (0, *around):  # rows right in front of dead points
             self._wind(t, turns, v, radius, reached, stopped, limits, _FINEST)
         self.limits[:, stopped] = limits
-        settled = self._settled(t, reached[:, stopped], limits)
+        settled = self._find_complete(t, reached[:, stopped], limits)
         done[stopped[settled]] = True
         return done, reached
 
-    def of_one(self, t: Array) -> RowsOfOne:
-        """The rows of a family of one design, to be computed again and again."""
-        return self.kernel.alone(
-            self.coefficients,
-            self.guess[:, 0],
-            float(self.start[0]),
-            t,
-            Steps().times(self.path.size),
-        )
-
-    def _marched(
+    def _march(
         self,
         t: Array,
         v: Array,
@@ -281,8 +271,12 @@ class March:
         mine = stopped[those]
         own, radii = np.empty((len(v), len(t), len(mine))), np.empty((len(radius), len(mine)))
         # neither 2π nor the sum is exact
-        apart = 4.0 * _UNIT * (float(np.abs(t).max()) + abs(turns) * FULL_TURN) if turns else 0.0
-        further = self._marched(moved, own, radii, mine, apart, smallest)
+        apart = (
+            4.0 * UNIT_ROUNDOFF * (float(np.abs(t).max()) + abs(turns) * FULL_TURN)
+            if turns
+            else 0.0
+        )
+        further = self._march(moved, own, radii, mine, apart, smallest)
         row, column = np.nonzero(further.reached & ~reached[:, mine])
         v[:, row, mine[column]] = own[:, row, column]
         if self.certify:
@@ -294,7 +288,7 @@ class March:
         self._limit(known, further, mine)
         limits[:, those] = known
 
-    def _settled(self, t: Array, reached: BoolArray, limits: Array) -> BoolArray:
+    def _find_complete(self, t: Array, reached: BoolArray, limits: Array) -> BoolArray:
         """Designs of which no row is missing that lies within their limits, (S,)."""
         low, high = limits
         settled: BoolArray = np.logical_not(np.isnan(limits).any(axis=0))
@@ -308,9 +302,11 @@ class March:
 def _coefficients(path: Path, designs: Designs) -> dict[str, Array]:
     """What the programs of a family read, by register, (D,) each."""
     found = loop_coefficients(designs)
-    spread = path.spread(designs.start[:, path.model.compiled.solver.unknowns + path.lead])
+    input_radius = path.input_radius(
+        designs.start[:, path.model.compiled.solver.unknowns + path.lead]
+    )
     for j, (origin, rate) in enumerate(zip(path.origin, path.rate, strict=True)):
         found[f"u{j}.origin"] = np.full(len(designs), origin)
         found[f"u{j}.rate"] = np.full(len(designs), rate)
-        found[f"u{j}.spread"] = np.full(len(designs), spread[j])
+        found[f"u{j}.spread"] = np.full(len(designs), input_radius[j])
     return found

@@ -1,4 +1,4 @@
-"""Between which inputs every design of a family can move."""
+"""The input limits of every design of a family."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class FamilyLimits:
     Parameters
     ----------
     lower, upper : (D,)
-        The leading input there, everyday units, around the input of the design's own start: -∞, ∞
+        The leading input there, in file units, around the input of the design's own start: -∞, ∞
         where nothing ended the branch on the way to the rows of the table; NaN where an end was
         met and not located, or the design has no position.
     lower_kind, upper_kind : (D,) text
@@ -41,7 +41,7 @@ class FamilyLimits:
 
     @classmethod
     def of(cls, limits: Array, kinds: StatusArray, unit: float) -> FamilyLimits:
-        """From values (2, D) and codes (2, D); ``unit``: internal units per everyday unit."""
+        """From values (2, D) and codes (2, D); ``unit``: internal units per file unit."""
         words = np.array(["" if kind is None else kind.word for kind in LIMIT_KINDS])
         lower, upper = limits / unit
         lower_kind, upper_kind = words[kinds]

@@ -1,4 +1,4 @@
-"""Designs whose start lies beside the table's path of inputs: led to it first, all together."""
+"""Move designs whose start is off the table's path of inputs to that path."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ import numpy as np
 
 from linkwork.batch.designs import Designs
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.kernels.march.sweep_kernel import LaneKernel, LaneRows, Steps
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.kernels.march.sweep_kernel import LaneRows, Steps, SweepKernel
 
-__all__ = ["led_to_rows"]
+__all__ = ["lead_to_rows"]
 
-_UNIT = float(np.finfo(float).eps) / 2.0
 _CHUNK = 1 << 22  # distances held at a time
 
 
-def led_to_rows(
+def lead_to_rows(
     designs: Designs,
     rows: Array,
-    kernel: LaneKernel,
+    kernel: SweepKernel,
     coefficients: Mapping[str, Array],
     which: IndexArray,
     threads: int,
@@ -49,7 +49,7 @@ def led_to_rows(
     given = {name: values[which] for name, values in coefficients.items()}
     for j in range(own.shape[1]):
         given[f"u{j}.origin"], given[f"u{j}.rate"] = own[:, j].copy(), rate[:, j].copy()
-        given[f"u{j}.spread"] = 4.0 * _UNIT * (np.abs(own[:, j]) + np.abs(rate[:, j]))
+        given[f"u{j}.spread"] = 4.0 * UNIT_ROUNDOFF * (np.abs(own[:, j]) + np.abs(rate[:, j]))
     v, radius = np.empty((n, 2, count)), np.empty((2 if kernel.certified else 0, count))
     found = LaneRows.over(v, radius, kernel)
     ends = np.array([0.0, 1.0])
@@ -60,7 +60,7 @@ def led_to_rows(
 def _nearest(designs: Designs, rows: Array, which: IndexArray) -> IndexArray:
     """The row whose inputs differ least, lengths relative to the longest link, (M,)."""
     n = designs.base.compiled.solver.unknowns
-    turns = designs.base.compiled.table.turns[n:]
+    turns = designs.base.compiled.table.is_angle[n:]
     found = np.empty(len(which), dtype=np.intp)
     step = max(1, _CHUNK // rows.size)
     for begin in range(0, len(which), step):

@@ -1,4 +1,4 @@
-"""The structure of equations without their coefficients: what all designs of a family share."""
+"""The structure of equations without coefficients, which all designs of a family share."""
 
 from __future__ import annotations
 

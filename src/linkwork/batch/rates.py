@@ -12,7 +12,7 @@ from linkwork.batch.designs import Designs
 from linkwork.batch.rows import DesignRows
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError, LinkworkError
-from linkwork.foundation.lanes import Consensus, NotElementwise, many
+from linkwork.foundation.lanes import Consensus, NotElementwise, is_batched
 from linkwork.foundation.status import Status
 from linkwork.kernels.march.closure import BlockPart
 from linkwork.kernels.march.position_programs import at_places
@@ -72,7 +72,7 @@ def design_rates(designs: Designs, rows: DesignRows, threads: int = 1) -> Design
     if 2 * rows.v.nbytes > _MOST_BYTES:
         raise InputError(
             f"the rates of {width} designs × {count} rows take {2 * rows.v.nbytes / 2**30:.0f} "
-            "GiB: go through family.parts(), or ask for family.reduced({...})"
+            "GiB: use family.parts() or family.reduced({...})"
         )
     both = np.full((2, n, count, width), np.nan)
     if _together(designs, rows):
@@ -168,5 +168,5 @@ def _speeds_together(designs: Designs, fine: IndexArray, found: Array) -> BoolAr
         speed = _speed_of(designs, with_numbers(designs.base.description, numbers))
     except (NotElementwise, LinkworkError):
         return np.ones(len(fine), dtype=bool)
-    found[fine] = speed.values if many(speed) else speed
+    found[fine] = speed.values if is_batched(speed) else speed
     return ~consensus.agreeing

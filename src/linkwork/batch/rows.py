@@ -1,4 +1,4 @@
-"""What is known of designs over the rows of a table."""
+"""The solved rows of all designs, with their evidence."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from linkwork.batch.single_rows import OwnRows
-from linkwork.foundation.aligned import aligned
+from linkwork.batch.single_rows import SingleRows
+from linkwork.foundation.aligned import allocate_aligned
 from linkwork.foundation.arrays import Array, BoolArray, StatusArray, TurnArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
@@ -34,7 +34,7 @@ class DesignRows:
     limits: Array
     limit_kinds: StatusArray
     alone: BoolArray
-    own: dict[int, OwnRows] = field(default_factory=dict)
+    own: dict[int, SingleRows] = field(default_factory=dict)
 
     @classmethod
     def blank(
@@ -47,10 +47,10 @@ class DesignRows:
         """
         way = slice(None, None, -1 if falling else 1)
         return cls(
-            v=aligned(unknowns, rows, designs)[:, way],
+            v=allocate_aligned(unknowns, rows, designs)[:, way],
             status=np.empty((rows, designs), dtype=np.int8),
             certification=np.empty((rows, designs), dtype=np.int8),
-            radius=aligned(rows if certify else 0, designs)[way],
+            radius=allocate_aligned(rows if certify else 0, designs)[way],
             limits=np.full((2, designs), np.nan),
             limit_kinds=np.zeros((2, designs), dtype=np.int8),
             alone=np.zeros(designs, dtype=bool),

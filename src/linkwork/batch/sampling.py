@@ -1,4 +1,4 @@
-"""Plans: which values the dimensions of a family take.
+"""Plans: the values of the varied dimensions of a family.
 
 A plan is a mapping of arrays, as :func:`linkwork.batch.designs_of` takes, that can also be made
 piece by piece: ``plan.chunk(k)`` needs no other chunk, so a study can be spread over any number of
@@ -181,13 +181,13 @@ class _LatinHypercube(Plan):
 
     def _column(self, column: int, k: int) -> Array:
         rows, (low, high) = self._rows(k), self.ranges[column]
-        stratum = _shuffled(np.arange(rows.start, rows.stop), self.count, (self.seed, column))
+        stratum = _shuffle(np.arange(rows.start, rows.stop), self.count, (self.seed, column))
         within = _generator(self.seed, column, k).random(len(rows))
         values: Array = low + (high - low) * ((stratum + within) / self.count)
         return values
 
 
-class _Table(Plan):
+class _FromTable(Plan):
     def __init__(self, columns: Mapping[str, Array]) -> None:
         self.columns = [read_only(values) for values in columns.values()]
         super().__init__(list(columns), len(self.columns[0]))
@@ -276,12 +276,14 @@ def from_table(table: object, columns: Sequence[str] | None = None) -> Plan:
     """
     found = _read_csv(Path(table), columns) if isinstance(table, str | PathLike) else None
     if found is None:
-        found = {name: _numbers(name, cells) for name, cells in _picked(table, columns).items()}
+        found = {
+            name: _numbers(name, cells) for name, cells in _pick_columns(table, columns).items()
+        }
     lengths = {name: len(values) for name, values in _some(found).items()}
     if len(set(lengths.values())) > 1:
         told = ", ".join(f"{name}: {length}" for name, length in lengths.items())
         raise InputError(f"columns of a table need equal lengths, got {told}")
-    return _Table(found)
+    return _FromTable(found)
 
 
 def _generator(seed: int, column: int, k: int) -> np.random.Generator:
@@ -291,28 +293,28 @@ def _generator(seed: int, column: int, k: int) -> np.random.Generator:
     return np.random.Generator(np.random.Philox(key=key, counter=counter))
 
 
-def _shuffled(numbers: AnyArray, count: int, seed: tuple[int, int]) -> AnyArray:
+def _shuffle(numbers: AnyArray, count: int, seed: tuple[int, int]) -> AnyArray:
     """A permutation of 0 … count - 1 at some numbers.
 
     A Feistel network over 2h bits, repeated until the number is below the count again.
     """
     half = np.uint64(max(1, -(-max(count - 1, 1).bit_length() // 2)))
     keys = np.random.SeedSequence(seed[0], spawn_key=(seed[1],)).generate_state(_ROUNDS, np.uint64)
-    found = _enciphered(numbers.astype(np.uint64), half, keys)
+    found = _encipher(numbers.astype(np.uint64), half, keys)
     while (outside := np.flatnonzero(found >= count)).size:
-        found[outside] = _enciphered(found[outside], half, keys)
+        found[outside] = _encipher(found[outside], half, keys)
     return found.astype(np.int64)
 
 
-def _enciphered(numbers: AnyArray, half: np.uint64, keys: AnyArray) -> AnyArray:
+def _encipher(numbers: AnyArray, half: np.uint64, keys: AnyArray) -> AnyArray:
     mask = (np.uint64(1) << half) - np.uint64(1)
     left, right = numbers >> half, numbers & mask
     for key in keys:
-        left, right = right, left ^ (_mixed(right + key) & mask)
+        left, right = right, left ^ (_mix_bits(right + key) & mask)
     return (left << half) | right
 
 
-def _mixed(x: AnyArray) -> AnyArray:
+def _mix_bits(x: AnyArray) -> AnyArray:
     """The finalizer of SplitMix64: every bit of the result depends on every bit of x (uint64)."""
     x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
@@ -327,7 +329,7 @@ def _some(given: Mapping[str, Any]) -> Mapping[str, Any]:
     if not isinstance(given, Mapping):
         raise InputError(f"a plan needs a mapping of names and values, got {as_told(given)}")
     if not given:
-        raise InputError("a plan needs something that varies: name a dimension and its values")
+        raise InputError("nothing varies in this plan: give a dimension and its values")
     return given
 
 
@@ -355,7 +357,7 @@ def _numbers(name: str, cells: object) -> Array:
     return array.astype(np.float64)
 
 
-def _picked(table: Any, columns: Sequence[str] | None) -> dict[str, object]:
+def _pick_columns(table: Any, columns: Sequence[str] | None) -> dict[str, object]:
     """The columns of a table in memory."""
     if isinstance(table, np.ndarray) and table.dtype.names is not None:
         names = list(table.dtype.names)

@@ -1,4 +1,4 @@
-"""What one design says of its rows and limits that is kept when it was swept by itself."""
+"""Rows and limits of a design that was swept alone."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from linkwork.foundation.arrays import Array, BoolArray, StatusArray
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.rows import SolvedRows
 
-__all__ = ["OwnRows", "ends_as_limits"]
+__all__ = ["SingleRows", "ends_as_limits"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class OwnRows:
+class SingleRows:
     """Derivatives of the unknowns by the leading input, (n, R) each; ``driven`` (2, R): whether the
     inputs have both (not at a dead point); ``condition``, ``residual`` (R,).
     """
@@ -28,7 +28,7 @@ class OwnRows:
     residual: Array
 
     @classmethod
-    def of(cls, rows: SolvedRows, unknowns: int) -> OwnRows:
+    def of(cls, rows: SolvedRows, unknowns: int) -> SingleRows:
         """What solved rows hold."""
         return cls(
             first=rows.first[:, :unknowns].T.copy(),

@@ -1,4 +1,4 @@
-"""Designs that go alone: by the ordinary sweep, one after the other."""
+"""Sweep single designs one after the other."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ import numpy as np
 
 from linkwork.batch.designs import Designs
 from linkwork.batch.rows import DesignRows
-from linkwork.batch.single_rows import OwnRows, ends_as_limits
+from linkwork.batch.single_rows import SingleRows, ends_as_limits
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.status import Status
-from linkwork.mechanism.parts import Input
+from linkwork.mechanism.driven_input import Input
 from linkwork.motion import sweep
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.model import Model
 from linkwork.motion.rows import SolvedRows
-from linkwork.motion.sweeping import swept_rows
+from linkwork.motion.sweeping import sweep_rows
 
-__all__ = ["message_alone", "sweep_alone"]
+__all__ = ["message_single", "sweep_single"]
 
 
 def _at_shared_inputs(designs: Designs, k: int) -> Model:
     """A design by itself with the family's table, should its own depend on what varies."""
     base, model = designs.base, designs.design(k)
-    if np.array_equal(model.everyday_rows, base.everyday_rows):
+    if np.array_equal(model.rows_in_file_units, base.rows_in_file_units):
         return model
     inputs = tuple(_with_plain_range(base, which) for which in base.description.inputs)
     description = replace(model.description, inputs=inputs)
@@ -41,12 +41,12 @@ def _with_plain_range(base: Model, which: Input) -> Input:
     return replace(which, start=start, stop=stop, step=step)
 
 
-def sweep_alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
+def sweep_single(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
     """One design by the ordinary sweep."""
     found.alone[k] = True
     try:
-        rows, ends = swept_rows(_at_shared_inputs(designs, k), certify=certify)
-    except LinkworkError:  # told by ``message_alone``
+        rows, ends = sweep_rows(_at_shared_inputs(designs, k), certify=certify)
+    except LinkworkError:  # told by ``message_single``
         found.v[:, :, k] = found.radius[:, k] = np.nan
         found.status[:, k] = Status.NO_START.code
         none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
@@ -57,7 +57,7 @@ def sweep_alone(designs: Designs, k: int, found: DesignRows, certify: bool) -> N
     found.status[:, k], found.certification[:, k] = rows.status, rows.certification
     if certify:
         found.radius[:, k] = rows.radius
-    found.own[k] = OwnRows.of(rows, n)
+    found.own[k] = SingleRows.of(rows, n)
     _note_way(designs.base, k, rows, ends, found)
 
 
@@ -73,7 +73,7 @@ def _note_way(
         found.turns[:, k] = np.round(np.where(np.isnan(gap), 0.0, gap))
 
 
-def message_alone(designs: Designs, k: int) -> str:
+def message_single(designs: Designs, k: int) -> str:
     """What a design has to say of its own motion, or why it has none."""
     try:
         return sweep(_at_shared_inputs(designs, k), certify=False).message

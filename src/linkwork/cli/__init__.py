@@ -1,1 +1,1 @@
-"""The command line: the verbs of the library, typed in a terminal."""
+"""The command line: one command per task, with the words of the library."""

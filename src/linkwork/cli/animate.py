@@ -31,14 +31,14 @@ __all__ = ["animate"]
     "--output",
     metavar="PATH",
     required=True,
-    help="Page .html, or film: .gif, .mp4, .apng, .webp.",
+    help="Page (.html) or film (.gif, .mp4, .apng, .webp).",
 )
-@click.option("--all", "every", is_flag=True, help="A page with all circuits to choose from.")
+@click.option("--all", "every", is_flag=True, help="Write a page with all circuits.")
 @click.option(
-    "--fps", type=float, default=25.0, show_default=True, help="Pictures of a film per second."
+    "--fps", type=float, default=25.0, show_default=True, help="Frames per second of a film."
 )
-@click.option("--rows", type=int, help="Positions of the cycle that a film shows.")
-@click.option("--no-certificates", is_flag=True, help="Prove nothing: faster.")
+@click.option("--rows", type=int, help="Number of positions in a film.")
+@click.option("--no-certificates", is_flag=True, help="Skip the proofs (faster).")
 @force_option
 @configuration_option
 @set_option
@@ -56,10 +56,11 @@ def animate(
     configuration: str | None,
     changes: tuple[str, ...],
 ) -> None:
-    """Write the motion to one file that moves.
+    """Write the motion as an animated page or a film.
 
-    A page works offline in any browser: play, drag the crank, plots, the
-    numbers of every position with their proof.
+    The page works offline in any browser. It plays the motion, follows the
+    crank as you drag it, and shows plots and the certified numbers of every
+    position.
 
     \b
       linkwork animate jansen.toml -o jansen.html --all
@@ -69,13 +70,13 @@ def animate(
     options = FilmOptions(fps=fps, rows=rows)
     kind = check_animation(output, options)
     if every and kind != "html":
-        raise InputError("--all is for a page: a film shows one circuit, name it .html")
+        raise InputError("--all needs a page: use the suffix .html")
     if every and configuration is not None:
         raise InputError("--all shows every circuit: leave out --configuration")
     if rows is not None and kind == "html":
-        raise InputError("--rows is for films: a page shows all rows")
+        raise InputError("--rows is for films only: a page shows all rows")
     if forces and kind != "html":
-        raise InputError("--force is for a page: name it .html")
+        raise InputError("--force needs a page: use the suffix .html")
     check_outputs(file, output)
     mechanism = read_mechanism(file, changes)
     picture.check_points(mechanism)

@@ -24,7 +24,7 @@ __all__ = ["check", "check_lines"]
 @debug_option
 @click.pass_context
 def check(context: click.Context, file: str, changes: tuple[str, ...], as_json: bool) -> None:
-    """Tell what was understood: loops, unknowns, mobility, problems.
+    """Report how the file was read: loops, unknowns, mobility, problems.
 
     \b
       linkwork check rapier.toml
@@ -45,7 +45,7 @@ def check_lines(report: CheckReport, length: str) -> list[str]:
     lines = [*title_lines(report.mechanism), *fields(_understood(report)), "", *_start(report)]
     if report.measured:
         links, points, values = zip(*report.measured, strict=True)
-        lines += ["", "Lengths measured between [points], because [lengths] leaves them open"]
+        lines += ["", "Lengths measured between [points], because [lengths] does not give them"]
         lines += table_lines(
             [
                 Column(header="link", cells=links),

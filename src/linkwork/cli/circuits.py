@@ -42,9 +42,9 @@ __all__ = ["circuits", "circuits_lines"]
     "names",
     metavar="NAME",
     multiple=True,
-    help="Draw NAME over the input, with --draw; repeatable. Left out: the unknowns.",
+    help="Draw NAME over the input, with --draw; may be repeated. Default: all unknowns.",
 )
-@click.option("--no-certificates", is_flag=True, help="Prove nothing: faster.")
+@click.option("--no-certificates", is_flag=True, help="Skip the proofs (faster).")
 @set_option
 @json_option
 @debug_option
@@ -60,16 +60,16 @@ def circuits(
 ) -> None:
     """Find every circuit, its branches, dead points and change points.
 
-    A circuit is all that can be reached without taking the mechanism apart;
-    a branch is a piece of it between dead points. Their names can be given
-    to solve and sweep.
+    A circuit is the set of all positions that the mechanism can reach without
+    disassembly; a branch is a part of it between dead points. The commands
+    solve and sweep accept their names.
 
     \b
       linkwork circuits rapier.toml --draw circuits.png --of s16
       linkwork sweep rapier.toml --configuration "circuit 3 branch 1"
     """
     if names and draw is None:
-        raise InputError("--of says what --draw shows: add --draw PATH")
+        raise InputError("--of selects the curves of --draw: add --draw PATH")
     if draw is not None:
         picture.check_picture(draw)
     check_outputs(file, draw)
@@ -87,18 +87,18 @@ def circuits(
 
 
 def _check_quantities(mechanism: Mechanism, names: tuple[str, ...]) -> None:
-    """Refuse what cannot be drawn over the input before anything is computed."""
+    """Reject names that cannot be drawn over the input, before any computation."""
     for name in names:
         if canonical(name) in [canonical(v.name) for v in mechanism.loop_equations.inputs]:
             raise InputError(
-                f"--of {name}: everything is drawn over the input: name an unknown, a link, "
+                f"--of {name}: curves are drawn over the input: name an unknown, a link, "
                 "an output or the coordinate of a point"
             )
     check_quantities(mechanism.model, names)
 
 
 def _drawn(mechanism: Mechanism, found: Circuits, names: tuple[str, ...], draw: str) -> str:
-    """Draw all circuits, if there are any, and say so."""
+    """Draw all circuits, if there are any; returns a line about the file."""
     if not len(found):
         return f"Did not write {draw}: there is nothing to draw."
     picture.write(circuit_chart(found, names), draw)
@@ -109,7 +109,7 @@ def _drawn(mechanism: Mechanism, found: Circuits, names: tuple[str, ...], draw: 
 
 
 def circuits_lines(found: Circuits) -> list[str]:
-    """The page: branches of every circuit, how it ends, what turns, its limits."""
+    """The page: branches of every circuit, how it ends, which links turn, its limits."""
     count = len(found)
     what = "1 circuit" if count == 1 else f"{count or 'No'} circuits"
     lines = [
@@ -166,16 +166,16 @@ def _facts(found: Circuits, circuit: Circuit) -> Iterator[tuple[str, str]]:
     if not (circuit.dead_points or circuit.change_points):
         where = f"{found.input} = {circuit.weakest:.3g} {found.input_unit}".rstrip()
         yield (
-            "weakest",
-            f"smallest singular value {circuit.smallest_singular_value:.3g}, near {where}",
+            "closest to a dead point",
+            f"σ_min = {circuit.smallest_singular_value:.3g}, near {where}",
         )
 
 
 def _turning(circuit: Circuit) -> Iterator[tuple[str, str]]:
-    """What turns fully and what rocks while the circuit is passed once."""
+    """Which links turn fully and which rock during one pass of the circuit."""
     if circuit.turns:
         times = "once" if circuit.turns == 1 else f"{circuit.turns} times"
-        yield "input", f"turns {times} until the circuit closes"
+        yield "input", f"turns {times} before the circuit closes"
     elif circuit.turns == 0:
         yield "input", "turns back at the dead points"
     turns = [f"{link} ({n:+d})" if abs(n) > 1 else link for link, n in circuit.turning.items() if n]

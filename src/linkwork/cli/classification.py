@@ -1,4 +1,4 @@
-"""What a textbook calls a mechanism, as lines of a page."""
+"""The classification of a mechanism as lines of a page."""
 
 from __future__ import annotations
 

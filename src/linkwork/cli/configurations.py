@@ -32,7 +32,7 @@ from linkwork.cli.terminal import (
 from linkwork.cli.text_table import Column, short, table_lines
 from linkwork.drawing.sheet import configuration_sheet
 from linkwork.foundation.certification import Certification
-from linkwork.results.configurations import Configurations, PathCount
+from linkwork.results.configurations import Configurations, PathCount, solution_counts
 from linkwork.results.position import Certificate
 from linkwork.results.quantity import Kind
 
@@ -42,7 +42,7 @@ __all__ = ["configurations", "configurations_lines"]
 @click.command
 @file_argument
 @at_option
-@click.option("--draw", metavar="PATH", help="Draw all of them: .png, .svg or .pdf.")
+@click.option("--draw", metavar="PATH", help="Draw all configurations as .png, .svg or .pdf.")
 @set_option
 @json_option
 @debug_option
@@ -55,13 +55,13 @@ def configurations(
     changes: tuple[str, ...],
     as_json: bool,
 ) -> None:
-    """List every way to put the mechanism together at one input.
+    """List all assembly configurations at one input value.
 
-    Tells how sure it is that none is missing. A name in the list can be
-    given to solve and sweep.
+    States whether the list is proved complete. The commands solve and sweep
+    accept the names in the list.
 
     \b
-      linkwork configurations rapier.toml --at 60 --draw ways.png
+      linkwork configurations rapier.toml --at 60 --draw list.png
       linkwork solve fourbar.toml --at 60 --configuration crossed
     """
     if draw is not None:
@@ -84,10 +84,10 @@ def configurations(
 
 
 def _reason(file: str, found: Configurations) -> list[str]:
-    """Where to ask why there is none."""
+    """The command that explains why there is no configuration."""
     asked = [f"{name}={short(value)}" for name, value in found.input.items()]
     at = "".join(f" --at {text if len(asked) > 1 else text.partition('=')[2]}" for text in asked)
-    return ["", *wrapped(f"What is in the way: linkwork solve {file}{at}")]
+    return ["", *wrapped(f"For the reason: linkwork solve {file}{at}")]
 
 
 def _written(draw: str | None, count: int) -> list[str]:
@@ -97,7 +97,7 @@ def _written(draw: str | None, count: int) -> list[str]:
 
 
 def configurations_lines(mechanism: Mechanism, found: Configurations) -> list[str]:
-    """The page: one row per configuration, completeness, what became of the paths."""
+    """The page: one row per configuration, then completeness and the counts of solutions."""
     lines = title_lines(found.mechanism)
     count = len(found)
     what = "1 configuration" if count == 1 else f"{count or 'No'} configurations"
@@ -135,22 +135,19 @@ def _evidence(found: Configurations) -> Iterator[tuple[str, str]]:
 
 
 def path_sentence(count: PathCount, *, several: bool) -> str:
-    """What became of the paths of one block, in words."""
-    who = f"{', '.join(count.unknowns)}: " if several else ""
+    """The counts of solutions of one block in words."""
+    block = f"{', '.join(count.unknowns)}: " if several else ""
     if not count.paths:
-        return f"{who}follow from the others"
-    parts = [f"{count.real} real of {count.finite + count.multiple} finite"]
-    parts += [
-        f"{number} {what}"
-        for number, what in (
-            (count.at_infinity, "at infinity"),
-            (count.multiple, "of them multiple"),
-            (count.failed, "lost"),
-        )
+        return f"{block}follow from the others"
+    text = solution_counts(count)
+    text += f", {count.multiple} multiple" if count.multiple else ""
+    text += f", for {count.solved} positions of earlier blocks" if count.solved > 1 else ""
+    others = [
+        f"{number} {end}"
+        for number, end in ((count.at_infinity, "to infinity"), (count.failed, "lost"))
         if number
     ]
-    times = f", for {count.solved} positions before" if count.solved > 1 else ""
-    return f"{who}{count.paths} solutions{times}: {', '.join(parts)}"
+    return f"{block}{text}" + (f"; {count.paths} paths: {', '.join(others)}" if others else "")
 
 
 def _certified(certificate: Certificate) -> str:

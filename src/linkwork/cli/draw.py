@@ -28,34 +28,36 @@ __all__ = ["draw"]
 
 @click.command
 @file_argument
-@click.option("-o", "--output", metavar="PATH", required=True, help="Picture: .png, .svg or .pdf.")
+@click.option(
+    "-o", "--output", metavar="PATH", required=True, help="Picture file: .png, .svg or .pdf."
+)
 @at_option
 @configuration_option
 @set_option
-@click.option("--vectors", is_flag=True, help="The loop equations as vectors, head to tail.")
-@click.option("--velocities", is_flag=True, help="Arrows of the points' velocities.")
-@click.option("--accelerations", is_flag=True, help="Arrows of the points' accelerations.")
+@click.option("--vectors", is_flag=True, help="Draw the loop equations as vectors, head to tail.")
+@click.option("--velocities", is_flag=True, help="Draw the velocities of the points.")
+@click.option("--accelerations", is_flag=True, help="Draw the accelerations of the points.")
 @force_option
-@click.option("--centres", is_flag=True, help="The instant centres of all pairs of links.")
+@click.option("--centres", is_flag=True, help="Draw the instant centres of all pairs of links.")
 @click.option(
     "--centrodes",
     "centrodes",
     metavar="LINK",
     multiple=True,
-    help="The fixed and the moving centrode of a link; may be repeated.",
+    help="Draw the fixed and the moving centrode of a link; may be repeated.",
 )
 @click.option(
-    "--dimensions", is_flag=True, help="Lengths, radii and the input, as dimension lines."
+    "--dimensions", is_flag=True, help="Draw dimension lines of lengths, radii and the input."
 )
 @click.option(
     "--trace",
     "traces",
     metavar="POINT",
     multiple=True,
-    help="The path of this point instead of those in the file's [trace]; may be repeated.",
+    help="Draw the path of this point instead of those in the file's [trace]; may be repeated.",
 )
 @click.option("--speed", is_flag=True, help="Colour the paths by the points' speed.")
-@click.option("--link-names", is_flag=True, help="Write the names of links beside them.")
+@click.option("--link-names", is_flag=True, help="Label the links with their names.")
 @click.option(
     "--theme",
     type=click.Choice(tuple(THEMES)),

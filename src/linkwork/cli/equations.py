@@ -22,14 +22,15 @@ __all__ = ["equations"]
 def equations(file: str, as_latex: bool, changes: tuple[str, ...], as_json: bool) -> None:
     """Show the loop-closure equations and the Jacobian.
 
-    Linkwork writes them from the points and links of the file, or reads them from it.
+    Linkwork derives the equations from the points and links of the file, or
+    reads them from the file.
 
     \b
       linkwork equations rapier.toml
       linkwork equations rapier.toml --latex > equations.tex
     """
     if as_latex and as_json:
-        raise InputError("--latex and --json exclude each other: choose one")
+        raise InputError("--latex and --json exclude each other: leave one out")
     mechanism = read_mechanism(file, changes)
     sheet = mechanism.equations()
     if as_json:

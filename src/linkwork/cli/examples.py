@@ -7,8 +7,7 @@ from pathlib import Path
 
 import click
 
-from linkwork.api import example_text
-from linkwork.api import examples as example_names
+from linkwork.api import example_text, examples as example_names
 from linkwork.cli.options import debug_option
 from linkwork.cli.output_file import check_outputs, write_text
 from linkwork.cli.terminal import fields, print_lines, title_lines
@@ -25,7 +24,7 @@ _NO_FAMILY = "other"
 @click.option("--force", is_flag=True, help="Overwrite the file if it exists.")
 @debug_option
 def examples(name: str | None, output: str | None, force: bool) -> None:
-    """List the mechanisms of the library, or get one.
+    """List the mechanisms of the library, or copy one to a file.
 
     \b
       linkwork examples
@@ -58,4 +57,4 @@ def _listing() -> list[str]:
     lines: list[str] = []
     for family in sorted(titles, key=lambda family: (family == _NO_FAMILY, family.casefold())):
         lines += [*title_lines(family), *fields(titles[family].items()), ""]
-    return [*lines, "To start from one: linkwork examples NAME -o FILE.toml"]
+    return [*lines, "To copy an example: linkwork examples NAME -o FILE.toml"]

@@ -1,4 +1,4 @@
-"""The program ``linkwork``: its commands, and how every run of it ends."""
+"""The program ``linkwork``: its commands, and how errors become messages and exit codes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwork.foundation.errors import LinkworkError
 
 __all__ = ["linkwork", "main"]
 
-#: Each is a function of the same name in a module of the same name.
+#: Each command is a function of this name in the module of this name.
 _COMMANDS = (
     "check",
     "equations",
@@ -34,26 +34,26 @@ _COMMANDS = (
 
 _WRONG_INPUT = 2
 _OUR_FAULT = 3
-_INTERRUPTED = 128 + 2  # as a shell says of a program that SIGINT ended
-_READER_GONE = 128 + 13  # and of one that SIGPIPE ended
+_INTERRUPTED = 128 + 2  # the shell's exit code after SIGINT
+_READER_GONE = 128 + 13  # the shell's exit code after SIGPIPE
 
 
 class _Program(click.Group):
-    """The commands in the order of work; every way a run can end, in one place."""
+    """The group of commands; it turns every error into a message and an exit code."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """The commands in the order of work."""
+        """The commands in the order in which they are usually needed."""
         return list(_COMMANDS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """A command, loaded only when it is wanted: most of a run's time is loading."""
+        """A command, imported only when it is called: imports take most of a short run."""
         if cmd_name not in _COMMANDS:
             return None
         command: click.Command = getattr(import_module(f"linkwork.cli.{cmd_name}"), cmd_name)
         return command
 
     def invoke(self, ctx: click.Context) -> object:
-        """Run a command and turn what goes wrong into a message and an exit code."""
+        """Run a command; turn an error into a message and an exit code."""
         try:
             return super().invoke(ctx)
         except (click.ClickException, click.exceptions.Exit, click.Abort):
@@ -63,7 +63,7 @@ class _Program(click.Group):
 
 
 def _ended_by(error: BaseException, debug: bool) -> int:
-    """Tell what went wrong; returns the exit code."""
+    """Print the message of an error; returns the exit code."""
     if isinstance(error, BrokenPipeError):
         abandon_output()
         return _READER_GONE
@@ -75,9 +75,9 @@ def _ended_by(error: BaseException, debug: bool) -> int:
         case LinkworkError():
             lines, code = problem_lines(error), error.exit_code
         case MemoryError():
-            lines, code = ["Error: there is not enough memory: ask for fewer rows"], _WRONG_INPUT
+            lines, code = ["Error: not enough memory: ask for fewer rows"], _WRONG_INPUT
         case OSError():
-            abandon_output()  # a full disk must not fail a second time at the end
+            abandon_output()  # otherwise a full disk fails a second time at exit
             lines, code = [f"Error: {error.strerror or error}"], _WRONG_INPUT
         case _:
             lines, code = _apology(error, debug), _OUR_FAULT
@@ -88,10 +88,10 @@ def _ended_by(error: BaseException, debug: bool) -> int:
 def _apology(error: BaseException, debug: bool) -> list[str]:
     lines = [
         f"Linkwork failed: {type(error).__name__}: {error}",
-        "This is a mistake in Linkwork, not in your input. Please report it, with the",
+        "This is an error in Linkwork, not in your input. Please report it with the",
         "mechanism file and the command you typed.",
     ]
-    return lines if debug else [*lines, "The option --debug shows where it happened."]
+    return lines if debug else [*lines, "Add --debug to print the traceback."]
 
 
 @click.group(cls=_Program, invoke_without_command=True)
@@ -107,10 +107,10 @@ def linkwork(context: click.Context) -> None:
       linkwork examples rapier-drive -o rapier.toml
       linkwork sweep rapier.toml --csv rapier.csv --draw rapier.png
 
-    Then change rapier.toml into a mechanism of your own.
+    Then edit rapier.toml to describe your own mechanism.
 
-    Wherever a command wants a FILE, a dash reads standard input. Exit codes:
-    0 done, 1 a position was not found, 2 wrong input, 3 our mistake.
+    Every command that takes a FILE reads standard input for "-". Exit codes:
+    0 done, 1 a position was not found, 2 wrong input, 3 internal error (please report).
     """
     if context.invoked_subcommand is None:
         click.echo(context.get_help())

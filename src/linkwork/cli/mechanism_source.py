@@ -1,4 +1,4 @@
-"""Where a command's mechanism comes from: a file, standard input, and changed dimensions."""
+"""The mechanism of a command: read from a file or standard input, with changed dimensions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from linkwork.api import Mechanism, examples
 from linkwork.cli.options import number_or_formula
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.foundation.names import canonical
-from linkwork.mechanism.parts import Number
+from linkwork.mechanism.dimensions import Number
 from linkwork.textfile.reader import ReadFile, read_bytes, read_file
 
 __all__ = ["read_mechanism"]
@@ -21,7 +21,7 @@ def read_mechanism(file: str, changes: tuple[str, ...] = ()) -> Mechanism:
     Raises
     ------
     InputError
-        If there is no such file, it cannot be understood, or a dimension does not exist.
+        If the file does not exist or has errors, or a dimension does not exist.
     """
     read = _read(file)
     if not changes:
@@ -42,7 +42,7 @@ def _read(file: str) -> ReadFile:
     path = Path(file)
     if not path.exists() and path.parent == Path() and path.stem in examples():
         raise InputError(
-            f'there is no file "{file}"; to get the example of this name:\n'
+            f'there is no file "{file}"; to copy the example of this name:\n'
             f"    linkwork examples {path.stem} -o {path.stem}.toml"
         )
     return read_file(path)

@@ -1,4 +1,4 @@
-"""A motion as a page of text: how many positions, where it ends, how good it is, its ranges."""
+"""A motion as a page of text: counts of positions, limits, evidence, ranges."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["failure_line", "motion_lines"]
 
-_MOST_RUNS = 4  # stretches of failed rows that are named
+_MOST_RUNS = 4  # ranges of failed rows that are listed
 
 
 def motion_lines(
     motion: Motion, measure: str, columns: Sequence[str] = (), numbers: Sequence[str] = ()
 ) -> list[str]:
-    """The summary of a motion; ``measure`` stands behind residuals.
+    """The summary of a motion; ``measure`` is printed after residuals.
 
     ``columns`` instead of unknowns, outputs and traced points; ``numbers`` of the whole motion.
     """
@@ -71,7 +71,7 @@ def _range_text(motion: Motion) -> str:
 
 
 def _counts(motion: Motion) -> Iterator[tuple[str, str]]:
-    """How many rows ended in which status; those that failed with their rows and the reason."""
+    """The number of rows with each status; for failures, also the input values and the reason."""
     counts = motion.counts
     yield "found", str(counts[Status.CONVERGED])
     for status in Status:
@@ -100,7 +100,7 @@ def _runs(motion: Motion, status: Status) -> str:
         short(values[a]) if a == b else f"{short(values[a])} to {short(values[b])}"
         for a, b in runs[:_MOST_RUNS]
     ]
-    more = f" and {len(runs) - _MOST_RUNS} more stretches" if len(runs) > _MOST_RUNS else ""
+    more = f" and {len(runs) - _MOST_RUNS} more ranges" if len(runs) > _MOST_RUNS else ""
     return f"{', '.join(shown)} {motion.input_units[name]}".rstrip() + more
 
 
@@ -108,7 +108,7 @@ def _limits(motion: Motion) -> Iterator[tuple[str, str]]:
     """Dead points and other ends of the branch, one to a line."""
     name, _ = _lead(motion)
     unit = motion.input_units[name]
-    # two ends of a branch may be one place
+    # two ends of a branch may coincide
     told = ((limit.kind.word, limit.told(name, unit)) for limit in motion.limits)
     yield from dict.fromkeys(told)
     for extreme in motion.output_limits:
@@ -166,7 +166,7 @@ class _Range:
     value: Array
 
 
-_STILL = 1e-10  # relative range of what does not move: its extremes have no place
+_STILL = 1e-10  # relative range below which a value counts as constant: its extremes have no place
 
 
 def _ranges(motion: Motion, columns: Sequence[str]) -> list[str]:
@@ -184,7 +184,7 @@ def _ranges(motion: Motion, columns: Sequence[str]) -> list[str]:
         for rows in (low, high)
         for s, row in zip(found, rows, strict=True)
     ]
-    cells = value_cells(numbers)  # of both columns at once: with the same decimals
+    cells = value_cells(numbers)  # both columns together, for the same number of decimals
 
     def places(rows: list[int]) -> Column:
         moving = [
@@ -211,10 +211,10 @@ def _kind(asked: Asked) -> Kind:
 
 
 def _filled(values: Array, filling: float) -> Array:
-    """The values with another number for those that are missing."""
+    """The values with ``filling`` for those that are missing."""
     return np.where(np.isnan(values), filling, values)
 
 
 def _lead(motion: Motion) -> tuple[str, Array]:
-    """The first input: rows are named by its values."""
+    """The first input, whose values name the rows."""
     return next(iter(motion.inputs.items()))

@@ -32,14 +32,14 @@ __all__ = [
     "through_option",
 ]
 
-#: Key of ``click.Context.meta`` under which ``--debug`` is noted.
+#: Key of ``click.Context.meta`` that stores ``--debug``.
 DEBUG = "linkwork.debug"
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
 def number_or_formula(text: str) -> float | str:
-    """The number that a text is, or the text itself as a formula."""
+    """The number in a text; if it is not a number, the text itself as a formula."""
     try:
         return float(text)
     except ValueError:
@@ -52,7 +52,7 @@ class _Number(click.ParamType):  # type: ignore[type-arg]  # generic since click
     name = "number"
 
     def convert(self, value: Any, param: Any, ctx: Any) -> float | str:
-        """A number where the text is one; formulas are judged with the mechanism at hand."""
+        """A number, or the text of a formula, which is checked once the mechanism is read."""
         return number_or_formula(value) if isinstance(value, str) else float(value)
 
 
@@ -91,7 +91,7 @@ at_option: Decorator = click.option(
     metavar="VALUE",
     multiple=True,
     help="Input value in the file's unit; NAME=VALUE for each of several inputs. "
-    "Left out: where the file's guess or sketch stands.",
+    "Default: the input value of the file's guess or sketch.",
 )
 
 
@@ -104,7 +104,7 @@ configuration_option: Decorator = click.option(
 
 
 through_option: Decorator = click.option(
-    "--through", is_flag=True, help="Go on through dead points around the circuit."
+    "--through", is_flag=True, help="Continue through dead points around the circuit."
 )
 
 change_points_option: Decorator = click.option(
@@ -112,7 +112,7 @@ change_points_option: Decorator = click.option(
     type=click.Choice([policy.value for policy in ChangePointPolicy]),
     default=ChangePointPolicy.STOP.value,
     show_default=True,
-    help="At a change point: stop, straight on, or turn into the other branch.",
+    help="At a change point: stop, go straight on, or turn onto the other branch.",
 )
 
 
@@ -121,7 +121,7 @@ force_option: Decorator = click.option(
     "forces",
     metavar='POINT="X,Y N"',
     multiple=True,
-    help="Show a force on a point: its components and their unit; may be repeated.",
+    help="Draw a force at a point, given by components and unit; may be repeated.",
 )
 
 
@@ -133,7 +133,7 @@ def columns_option(about: str) -> Decorator:
 
 def range_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """``--from``, ``--to`` and ``--step`` of a sweep."""
-    command = click.option("--step", type=NUMBER, help="Distance between input values.")(command)
+    command = click.option("--step", type=NUMBER, help="Step between input values.")(command)
     command = click.option("--to", "stop", type=NUMBER, help="Last input value.")(command)
     first = "First input value, in the file's unit."
     return click.option("--from", "start", type=NUMBER, help=first)(command)
@@ -145,7 +145,7 @@ def input_values(mechanism: Mechanism, asked: tuple[str, ...]) -> dict[str, floa
     Raises
     ------
     InputError
-        If one is no number, given twice, or does not say which input it is for.
+        If a value is not a number, is given twice, or does not name one of several inputs.
     """
     if not asked:
         return None
@@ -176,9 +176,9 @@ def forces_of(mechanism: Mechanism, asked: tuple[str, ...]) -> tuple[Force, ...]
     Raises
     ------
     InputError
-        If one is not a point with two components, or units differ.
+        If a force is not a point with two components, or units differ.
     UnknownNameError
-        If there is no such point.
+        If the mechanism has no such point.
     """
     forces = tuple(map(_force, asked))
     check_forces(forces, mechanism.model.compiled.points.names)

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all, and never in place of the mechanism."""
+"""Output files: written completely or not at all, and never over the mechanism file."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ __all__ = ["check_outputs", "write_bytes", "write_text"]
 
 
 def check_outputs(source: str, *outputs: str | None, workbook: str | None = None) -> None:
-    """Refuse files that cannot be written, before anything is computed.
+    """Reject files that cannot be written, before any computation.
 
     Raises
     ------
     InputError
-        If a folder is missing, two outputs are one file, one is the mechanism file itself, or a
-        name ends as that of another kind of file.
+        If a folder is missing, two outputs are the same file, an output is the mechanism file
+        itself, or the suffix belongs to another kind of file.
     """
     if workbook is not None and Path(workbook).suffix.lower() != ".xlsx":
-        raise InputError(f'cannot write "{workbook}": a workbook is an .xlsx file, name it so')
-    taken = {} if source == "-" else {_real(source): f'"{source}" is the mechanism itself'}
+        raise InputError(f'cannot write "{workbook}": a workbook needs the suffix .xlsx')
+    taken = {} if source == "-" else {_real(source): f'"{source}" is the mechanism file itself'}
     for name in (*outputs, workbook):
         if name is None or name == "-":
             continue
         path = Path(name)
         if name is not workbook and path.suffix.lower() in (".xlsx", ".xls", ".ods"):
             raise InputError(
-                f'cannot write "{name}": tables are written as CSV, name it .csv; '
+                f'cannot write "{name}": tables are CSV files, use the suffix .csv; '
                 "linkwork sweep writes workbooks with --xlsx"
             )
         if path.is_dir():
@@ -43,23 +43,23 @@ def check_outputs(source: str, *outputs: str | None, workbook: str | None = None
 
 
 def write_text(name: str, pieces: Iterable[str]) -> None:
-    """Write UTF-8 text to a file; a link is followed, a device is written to.
+    """Write UTF-8 text to a file; follow links, write to devices.
 
     Raises
     ------
     InputError
-        If the file cannot be written; what was there before is kept.
+        If the file cannot be written; its former content is kept.
     """
     write_bytes(name, (piece.encode() for piece in pieces))
 
 
 def write_bytes(name: str, pieces: Iterable[bytes]) -> None:
-    """Write a file; a link is followed, a device is written to.
+    """Write bytes to a file; follow links, write to devices.
 
     Raises
     ------
     InputError
-        If the file cannot be written; what was there before is kept.
+        If the file cannot be written; its former content is kept.
     """
     target = Path(_real(name))
     regular = target.is_file() or not target.exists()

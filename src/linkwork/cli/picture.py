@@ -1,4 +1,4 @@
-"""Pictures, as the commands write them."""
+"""Picture files of the commands."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from linkwork.results.position import Position
 
 __all__ = ["check_picture", "check_points", "sweep_scene", "write"]
 
-_FURTHER = 7  # positions of a sweep drawn besides its start: every eighth of a crank's turn
+_FURTHER = 7  # further positions drawn in a sweep: every eighth of a crank's turn
 
 
 def check_picture(path: str) -> None:
-    """Refuse a picture of an unknown format before anything is computed.
+    """Reject a picture file of unknown format before any computation.
 
     Raises
     ------
     InputError
-        If the suffix names no known format.
+        If the suffix is not of a known format.
     """
     suffix = Path(path).suffix
     if suffix.lower().removeprefix(".") not in FORMATS:
@@ -33,19 +33,19 @@ def check_picture(path: str) -> None:
 
 
 def check_points(mechanism: Mechanism) -> None:
-    """Refuse a mechanism without points before anything is computed.
+    """Reject a mechanism without points before any computation.
 
     Raises
     ------
     InputError
-        If there is nothing to draw.
+        If the mechanism has no points.
     """
     if not mechanism.model.compiled.points.names:
         raise no_points(mechanism.name)
 
 
 def sweep_scene(position: Position, motion: Motion) -> Scene:
-    """The start of a sweep, faint positions on the way, its limits and the traced paths."""
+    """The start position of a sweep, faint further positions, its limits and the traced paths."""
     if not motion.found.any():
         return scene_of(position)
     return scene_of(position, motion, options=SceneOptions(further=_FURTHER))

@@ -28,7 +28,8 @@ from linkwork.drawing.charts.plotting import (
     circuits_plot,
     motion_plot,
 )
-from linkwork.drawing.charts.theme import THEMES, chart_theme
+from linkwork.drawing.charts.theme import THEMES
+from linkwork.drawing.theme import theme_named
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.results.circuits import Circuits
@@ -38,20 +39,22 @@ __all__ = ["plot"]
 
 @click.command
 @file_argument
-@click.option("-o", "--output", metavar="PATH", required=True, help="Picture: .png, .svg or .pdf.")
+@click.option(
+    "-o", "--output", metavar="PATH", required=True, help="Picture file: .png, .svg or .pdf."
+)
 @columns_option(
-    "What to plot: a column of the table; a point for path and hodograph; a pin for "
-    "transmission. Left out: unknowns and outputs, traced points, all pins."
+    "Column of the table to plot; a point for path and hodograph; a pin for transmission. "
+    "Default: unknowns and outputs, traced points, all pins."
 )
 @click.option(
     "--kind",
     type=click.Choice([kind.value for kind in PlotKind]),
     default=PlotKind.CURVES.value,
     show_default=True,
-    help="Which plot.",
+    help="Kind of plot.",
 )
-@click.option("--against", metavar="NAME", default="", help="Plot over this column, or over time.")
-@click.option("--wrapped", is_flag=True, help="Show angles over one turn.")
+@click.option("--against", metavar="NAME", default="", help="Plot over this column or over time.")
+@click.option("--wrapped", is_flag=True, help="Reduce angles to one turn.")
 @click.option(
     "--theme", type=click.Choice(list(THEMES)), default="light", show_default=True, help="Colours."
 )
@@ -75,16 +78,16 @@ def plot(
     changes: tuple[str, ...],
     **sweeping: Any,
 ) -> None:
-    """Plot columns over the input, paths, hodographs, circuits.
+    """Plot columns, paths, hodographs, transmission angles or circuits.
 
     \b
-    curves        columns over the input, over time or over each other
-    polar         columns as radii over the input
+    curves        columns over the input, over time or over another column
+    polar         columns as radii over the input angle
     path          paths of points in the plane
-    hodograph     velocities and accelerations of a point as vectors
+    hodograph     tips of the velocity and acceleration vectors of a point
     transmission  transmission angles with the band of 40 to 140 degrees
-    circuits      unknowns over the input: every circuit, limits marked
-    branches      the same branch by branch, side by side
+    circuits      unknowns over the input for every circuit, limits marked
+    branches      as circuits, with one panel for each branch
 
     \b
       linkwork plot rapier.toml -o s16.png --columns s16 --columns s16.d1
@@ -95,7 +98,7 @@ def plot(
     picture.check_picture(output)
     check_outputs(file, output)
     mechanism = read_mechanism(file, changes)
-    colours = chart_theme(theme)
+    colours = theme_named(theme, THEMES)
     if kind in [which.value for which in CIRCUIT_KINDS]:
         found = _circuits(mechanism, kind, {"against": against, "wrapped": wrapped, **sweeping})
         picture.write(circuits_plot(found, names, kind=kind), output, theme=colours)
@@ -113,7 +116,7 @@ def plot(
 
 
 def _circuits(mechanism: Mechanism, kind: str, options: dict[str, Any]) -> Circuits:
-    """Circuits are followed as far as they go: what a sweep is asked for would be ignored."""
+    """Find the circuits; reject options of a sweep, which have no effect on whole circuits."""
     options["change_points"] = options["change_points"] != ChangePointPolicy.STOP.value
     spelled = {"start": "from", "stop": "to"}
     ignored = [

@@ -24,13 +24,13 @@ __all__ = [
     "value_cells",
 ]
 
-_NOISE = 1e-13  # of the largest derivative: rounding, shown as 0
-_NUMBER_DIGITS = 10  # of a plain number, of which nothing is known
+_NOISE = 1e-13  # relative to the largest derivative: rounding, printed as 0
+_NUMBER_DIGITS = 10  # for a number without a unit
 
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """One named number of a table and what it measures."""
+    """One named number of a table and its kind (length, angle, number)."""
 
     name: str
     kind: Kind
@@ -38,7 +38,7 @@ class Row:
 
 
 def position_lines(mechanism: Mechanism, position: Position, *, from_guess: bool) -> list[str]:
-    """The lines of a position: values, derivatives, points, evidence, and the steps if kept."""
+    """The lines of a position: values, derivatives, points, evidence, and recorded steps."""
     where = inputs_text(position.input, position.input_units)
     lines = title_lines(position.mechanism)
     if not position.status.ok:
@@ -72,7 +72,7 @@ def value_cells(rows: Sequence[Row]) -> list[str]:
 
 
 def _tables(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, list[Row]]]:
-    """The numbers of a position, by what they are."""
+    """The numbers of a position under their headings: unknowns, links, outputs."""
     equations = mechanism.loop_equations
     unknowns = {v.name: Kind(v.kind) for v in equations.unknowns if v.name in position.unknowns}
     outputs = {name: Kind(output.kind) for name, output in equations.outputs.items()}
@@ -88,7 +88,7 @@ def _tables(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, lis
 
 
 def _quantities(mechanism: Mechanism, position: Position) -> Iterator[str]:
-    """Values with derivatives by the input, and by time if the input has a speed."""
+    """Values with derivatives with respect to the input, and to time if the input has a speed."""
     by, units = position.derivative_unit, position.units
     for title, rows in _tables(mechanism, position):
         if not rows:
@@ -141,42 +141,43 @@ def _evidence(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, s
     if inputs:
         lead = inputs[lock_step(mechanism.model.rows)[0]]
         others = ", the other inputs in lock-step" if len(inputs) > 1 else ""
-        yield "derivatives", f"by {lead} in {position.derivative_unit}{others}"
+        unit = f" ({position.derivative_unit})" if position.derivative_unit else ""
+        yield "derivatives", f"with respect to {lead}{unit}{others}"
     yield "residual", significant(position.residual, 2) + residual_measure(mechanism)
     yield "iterations", str(position.iterations)
     yield "condition", significant(position.condition, 3)
     without = ""
     if position.certificate.certification is Certification.SUBSET_CERTIFIED:
         without = f"; without {listed_links(position.redundant)}"
-    yield "certificate", _certificate(position.certificate) + without
+    yield "certificate", _certificate(position.certificate, residual_measure(mechanism)) + without
     yield from redundant_lines(position.redundant)
 
 
 def listed_links(redundant: Mapping[str, float]) -> str:
-    """The redundant links as they are called in a sentence."""
+    """``the redundant links a, b``."""
     return f"the redundant link{'s' if len(redundant) > 1 else ''} {', '.join(redundant)}"
 
 
 def redundant_lines(redundant: Mapping[str, float]) -> Iterator[tuple[str, str]]:
-    """How well redundant links fit."""
+    """How far the length of each redundant link is from its given value."""
     for link, gap in redundant.items():
         size = significant(gap, 2)
         yield "redundant", f"{link}: its length holds to {size} of the longest link, not proved"
 
 
-def _certificate(certificate: Certificate) -> str:
-    """What is proved of the position, in a line, or why nothing is."""
+def _certificate(certificate: Certificate, measure: str) -> str:
+    """The certificate of the position in one line, or why there is none."""
     proved = certificate.certified or (certificate.certification is Certification.SUBSET_CERTIFIED)
     if not proved or certificate.radius is None:
         return f"none: {certificate.certification.value}"
     radius = significant(certificate.radius, 2)
     alone = certificate.unique_within or 0.0
     where = "anywhere" if math.isinf(alone) else f"within {significant(alone, 2)}"
-    return f"proved to {radius}, the only position {where}"
+    return f"true position within {radius}{measure}; no other {where}"
 
 
 def residual_measure(mechanism: Mechanism) -> str:
-    """What residuals are measured by, to stand behind the number."""
+    """The measure of residuals and radii, printed after the number."""
     return " of the longest link" if mechanism.loop_equations.loops else ""
 
 
@@ -187,7 +188,7 @@ def inputs_text(values: Mapping[str, float], units: Mapping[str, str]) -> str:
 
 
 def _steps(mechanism: Mechanism, position: Position, from_guess: bool) -> Iterator[str]:
-    """The iterations of every block, and where they were made."""
+    """The iterations of every block, and the input value at which they ran."""
     if not position.steps:
         return
     model = mechanism.model

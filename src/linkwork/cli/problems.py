@@ -1,4 +1,4 @@
-"""What went wrong, as lines for a terminal."""
+"""Error messages as lines for a terminal."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from linkwork.foundation.errors import LinkworkError, MechanismError, Problem, k
 
 __all__ = ["problem_lines"]
 
-_WIDEST_KEY = 28  # longer keys have a line to themselves
-_FORMULA = "    "  # what is indented so much is a formula with a caret below: never wrapped
+_WIDEST_KEY = 28  # longer keys are printed on a separate line
+_FORMULA = "    "  # lines with this indent are formulas with a caret below, never wrapped
 
 
 def problem_lines(error: LinkworkError) -> list[str]:

@@ -12,12 +12,12 @@ __all__ = ["schema"]
 
 
 @click.command
-@click.option("--plan", is_flag=True, help="The schema of study plans instead.")
+@click.option("--plan", is_flag=True, help="Print the schema of study plans instead.")
 @debug_option
 def schema(plan: bool) -> None:
     """Print the JSON Schema of mechanism files.
 
-    Editors that know it complete keys and mark mistakes while you type.
+    With it, editors complete keys and mark errors while you type.
 
     \b
       linkwork schema > linkwork.schema.json

@@ -28,10 +28,10 @@ _DEFAULT = NewtonOptions()
 
 
 class _Tolerance(click.FloatRange):
-    """A positive number; not a number is none."""
+    """A positive number; NaN is rejected."""
 
     def convert(self, value: Any, param: Any, ctx: Any) -> float:
-        """The number that a text is."""
+        """The number in a text."""
         number = float(super().convert(value, param, ctx))
         if math.isnan(number):
             self.fail(f"{value} is not a number", param, ctx)
@@ -48,8 +48,8 @@ _POSITIVE = _Tolerance(min=0.0, min_open=True, max=math.inf, max_open=True)
 @click.option(
     "--from-guess",
     is_flag=True,
-    help="Start Newton-Raphson from the guess at the asked value, instead of solving at the "
-    "guess's own value and following the motion from there.",
+    help="Start Newton-Raphson from the guess at the requested input value. Default: solve at "
+    "the input value of the guess, then follow the branch.",
 )
 @click.option("--show-steps", is_flag=True, help="Show every Newton-Raphson iteration.")
 @click.option(
@@ -58,7 +58,7 @@ _POSITIVE = _Tolerance(min=0.0, min_open=True, max=math.inf, max_open=True)
     type=_POSITIVE,
     default=_DEFAULT.equation_tolerance,
     show_default=True,
-    help="Stop when every equation is satisfied to this.",
+    help="Stop when the residual of every equation is below this.",
 )
 @click.option(
     "--solution-tolerance",
@@ -74,9 +74,9 @@ _POSITIVE = _Tolerance(min=0.0, min_open=True, max=math.inf, max_open=True)
     type=click.IntRange(1),
     default=_DEFAULT.max_steps,
     show_default=True,
-    help="Stop without a position after so many iterations.",
+    help="Give up after so many iterations.",
 )
-@click.option("--full-steps", is_flag=True, help="Do not shorten steps that turn a link far.")
+@click.option("--full-steps", is_flag=True, help="Take full Newton steps, however far links turn.")
 @set_option
 @json_option
 @debug_option

@@ -19,20 +19,20 @@ from linkwork.foundation.errors import InputError
 
 __all__ = ["study", "study_progress"]
 
-_PATIENCE = 1.0  # seconds before the line of progress appears
+_PATIENCE = 1.0  # seconds before the progress line appears
 
 
 @click.command
 @click.argument("plan", metavar="PLAN", required=False)
-@click.option("-o", "--output", metavar="STORE", help="Folder of the results: a Zarr store.")
-@columns_option("Keep this at every row, besides what the plan keeps.")
+@click.option("-o", "--output", metavar="STORE", help="Folder for the results (a Zarr store).")
+@columns_option("Keep this quantity at every row, in addition to those of the plan.")
 @click.option(
-    "--workers", metavar="N", type=int, help="Processes on this machine; all cores if left out."
+    "--workers", metavar="N", type=int, help="Processes on this machine. Default: one per core."
 )
-@click.option("--scheduler", metavar="ADDRESS", help="Let a Dask cluster compute: tcp://host:8786.")
-@click.option("--fresh", is_flag=True, help="Take away the study in STORE and begin again.")
-@click.option("--summary", metavar="STORE", help="Only print what a store holds.")
-@click.option("--quiet", is_flag=True, help="No line of progress.")
+@click.option("--scheduler", metavar="ADDRESS", help="Compute on a Dask cluster: tcp://host:8786.")
+@click.option("--fresh", is_flag=True, help="Delete the study in STORE and start over.")
+@click.option("--summary", metavar="STORE", help="Only print the summary of a store.")
+@click.option("--quiet", is_flag=True, help="Do not show the progress line.")
 @json_option
 @debug_option
 def study(
@@ -46,10 +46,10 @@ def study(
     quiet: bool,
     as_json: bool,
 ) -> None:
-    """Compute very many designs of a mechanism by a plan.
+    """Compute many designs of a mechanism from a plan file.
 
-    Designs are stored in chunks as they are computed. A study that was
-    interrupted, or killed, goes on when the same command is given again.
+    Results are stored in chunks. To resume an interrupted study, repeat the
+    same command.
 
     \b
       linkwork study plan.toml -o out.zarr
@@ -98,19 +98,19 @@ def _print(found: Summary, store: str, as_json: bool) -> None:
 
 
 def _how_to_go_on(store: str) -> list[str]:
-    """What is stored of an interrupted study."""
+    """How many designs of an interrupted study are stored, and how to resume it."""
     if not Path(store).exists():
         return []
     found = summary_of(store)
     return wrapped(
         f"{found.computed} of {found.designs} designs are stored in {store}. "
-        "The same command goes on from there."
+        "To resume, repeat the same command."
     )
 
 
 @contextmanager
 def study_progress(quiet: bool) -> Iterator[Callable[[Progress], None] | None]:
-    """One line that is written over and over, on the error stream of a terminal only."""
+    """A progress line that rewrites itself, on the error stream of a terminal only."""
     if quiet or not sys.stderr.isatty():
         yield None
         return

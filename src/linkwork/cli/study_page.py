@@ -1,4 +1,4 @@
-"""A study as a page of text: how many designs, which passed, ranges and histograms."""
+"""A study as a page of text: counts of designs, filters, ranges and histograms."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _GAP = 2  # between columns
 
 
 def progress_line(progress: Progress) -> str:
-    """How far a run is, its rate and the time that is left."""
+    """The finished fraction of a run, its rate and the remaining time."""
     share = math.floor(100 * progress.done / progress.total)
     line = f"{share:3d} %  {progress.done:,} of {progress.total:,} designs"
     if progress.left is None:
@@ -47,7 +47,7 @@ def summary_lines(found: Summary, store: str) -> list[str]:
 
 
 def _counts(found: Summary) -> Iterator[tuple[str, str]]:
-    """How many designs were computed, built, and passed which filter."""
+    """The numbers of designs that were computed, were built, and passed each filter."""
     missing = found.designs - found.computed
     if missing:
         yield "not computed", f"{missing:,}: the study is not finished"
@@ -99,7 +99,7 @@ def _ranges(outputs: list[OutputSummary]) -> list[str]:
 
 
 def _histogram(output: OutputSummary) -> list[str]:
-    """Counts of values in equal parts of the range, as bars."""
+    """A histogram over equal parts of the range, as bars of text."""
     bins = len(output.histogram)
     edges = [output.least + k * (output.most - output.least) / bins for k in range(bins)]
     unit = f" [{output.unit}]" if output.unit else ""

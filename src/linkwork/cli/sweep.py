@@ -30,9 +30,10 @@ from linkwork.drawing.charts.plotting import motion_plot
 from linkwork.drawing.scene import Scene
 from linkwork.export import csv_lines, workbook_of
 from linkwork.foundation.errors import InputError
-from linkwork.mechanism.parts import Number
+from linkwork.mechanism.dimensions import Number
 from linkwork.results.motion import Motion
-from linkwork.results.table import Table, table_of
+from linkwork.results.motion_table import table_of
+from linkwork.results.table import Table
 
 __all__ = ["sweep"]
 
@@ -47,13 +48,13 @@ __all__ = ["sweep"]
     "--limits-of",
     metavar="NAME",
     multiple=True,
-    help="Locate where NAME is largest and smallest; repeatable.",
+    help="Locate the maxima and minima of NAME; may be repeated.",
 )
 @columns_option("Write and plot only this column; a number such as stroke(s16) is printed.")
-@click.option("--no-certificates", is_flag=True, help="Prove nothing: faster.")
-@click.option("--csv", metavar="PATH", help="Write the whole table; - is standard output.")
-@click.option("--xlsx", metavar="PATH", help="Write a workbook whose formulas solve it again.")
-@click.option("--draw", metavar="PATH", help="Draw the motion: .png, .svg or .pdf.")
+@click.option("--no-certificates", is_flag=True, help="Skip the proofs (faster).")
+@click.option("--csv", metavar="PATH", help="Write the table of all rows; - is standard output.")
+@click.option("--xlsx", metavar="PATH", help="Write a workbook whose formulas solve the cycle.")
+@click.option("--draw", metavar="PATH", help="Draw the motion as .png, .svg or .pdf.")
 @click.option("--plot", metavar="PATH", help="Plot unknowns and outputs over the input.")
 @set_option
 @json_option
@@ -78,10 +79,10 @@ def sweep(
     changes: tuple[str, ...],
     as_json: bool,
 ) -> None:
-    """Solve the whole cycle, following the motion of the guess.
+    """Solve the whole cycle, following the branch of the initial guess.
 
-    Prints a summary; rows that were not found are kept in the table, with
-    the reason.
+    Prints a summary. Rows without a position stay in the table with the
+    reason.
 
     \b
       linkwork sweep rapier.toml
@@ -92,7 +93,7 @@ def sweep(
       linkwork sweep rapier.toml --columns s16.d1 --columns "stroke(s16)"
     """
     if as_json and csv == "-":
-        raise InputError("--json and --csv - both want standard output: name a file for the table")
+        raise InputError("--json and --csv - both use standard output: name a file for the table")
     for name in (draw, plot):
         if name is not None:
             picture.check_picture(name)
@@ -114,7 +115,7 @@ def sweep(
             progress=tell,
         )
     page = None if draw is None else _scene(mechanism, motion, configuration)
-    table = table_of(motion, columns)
+    table = table_of(motion, *columns)
     written = _written(motion, table, page, csv, draw)
     if plot is not None:
         written.append(_plotted(motion, columns, plot))
@@ -152,7 +153,7 @@ def _asked(mechanism: Mechanism, names: tuple[str, ...]) -> tuple[list[str], lis
 def _written(
     motion: Motion, table: Table, page: Scene | None, csv: str | None, draw: str | None
 ) -> list[str]:
-    """Write the files that were asked for and say so."""
+    """Write the requested files; returns one line about each."""
     said = []
     if csv == "-":
         for line in csv_lines(table):
@@ -170,7 +171,7 @@ def _written(
 
 
 def _plotted(motion: Motion, columns: list[str], path: str) -> str:
-    """Plot columns, or unknowns and outputs, if there are positions, and say so."""
+    """Plot columns, or unknowns and outputs, if there are positions; returns a line about it."""
     if not motion.found.any():
         return f"Did not write {path}: there is no position to plot."
     picture.write(motion_plot(motion, columns), path)
@@ -180,22 +181,22 @@ def _plotted(motion: Motion, columns: list[str], path: str) -> str:
 def _written_workbook(
     mechanism: Mechanism, motion: Motion, columns: list[str], path: str
 ) -> list[str]:
-    """Write the workbook, and say so with what in it is values only."""
+    """Write the workbook; returns lines about it, with everything that does not recalculate."""
     found = workbook_of(mechanism.model, motion, columns)
     write_bytes(path, [found.content])
     rows = int(motion.asked.sum())
-    said = [f"Wrote {path}: {rows} rows with formulas; change a yellow cell to solve them again."]
+    said = [f"Wrote {path}: {rows} rows with formulas; edit a yellow cell to solve them again."]
     for notice in found.notices:
         said += wrapped(f"  {notice}.")
     return said
 
 
 def _hint(file: str, motion: Motion) -> list[str]:
-    """What to do next."""
+    """A suggestion of the next command."""
     if not motion.found.any():
-        return wrapped(f"How it went: linkwork solve {file} --show-steps")
+        return wrapped(f"To see the iterations: linkwork solve {file} --show-steps")
     stem = "cycle" if file == "-" else Path(file).stem
-    return wrapped(f"The whole table: --csv {stem}.csv. A picture: --draw {stem}.png.")
+    return wrapped(f"For the table add --csv {stem}.csv, for a picture --draw {stem}.png.")
 
 
 def _data(motion: Motion, table: Table, numbers: list[str]) -> dict[str, Any]:

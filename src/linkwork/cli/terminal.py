@@ -1,4 +1,4 @@
-"""The terminal: streams that can write Greek, sparse colour, wrapped text, progress."""
+"""Output to the terminal: UTF-8 streams, colour, wrapped text, progress bars."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ __all__ = [
 
 Style = Callable[[str], str]
 
-JSON_SCHEMA = 1  # counts up when a key of the JSON output changes its meaning
+JSON_SCHEMA = 1  # increases when a key of the JSON output changes its meaning
 
 _PATIENCE = 1.0  # seconds before a progress bar appears
 _BAR_STEPS = 1000
 
 
 def ready_streams() -> None:
-    """Files and pipes get UTF-8; a terminal shows ? for letters that it does not have.
+    """Use UTF-8 for files and pipes; a terminal shows ? for letters outside its encoding.
 
-    A stream that was closed before we started is replaced by one that goes nowhere.
+    A stream that was closed before the start is replaced by the null device.
     """
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
@@ -57,22 +57,22 @@ def ready_streams() -> None:
 
 
 def abandon_output() -> None:
-    """Write to nowhere from now on: whoever read our output has gone away."""
+    """Discard all further output: the reader of the pipe has closed it."""
     try:
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())
         os.close(nowhere)
-    except (OSError, ValueError):  # a stream without a file: nothing can break
+    except (OSError, ValueError):  # a stream without a file cannot fail
         return
 
 
 def print_lines(lines: Iterable[str], err: bool = False) -> None:
-    """Lines of text to the output, or to the error stream."""
+    """Print lines of text to the output, or to the error stream."""
     click.echo("\n".join(lines), err=err)
 
 
 def print_json(data: dict[str, Any]) -> None:
-    """Data as JSON: the version of its keys first, null for numbers that there are not."""
+    """Print data as JSON: the version of the keys first, null for missing numbers."""
     versioned = {"schema": JSON_SCHEMA, **_finite(data)}
     click.echo(json.dumps(versioned, indent=2, ensure_ascii=False, allow_nan=False))
 
@@ -90,35 +90,35 @@ def _finite(data: Any) -> Any:
 
 
 def title_lines(text: str) -> list[str]:
-    """The title of what follows."""
+    """A title line."""
     return [bold(line) for line in wrapped(text)]
 
 
 def bold(text: str) -> str:
-    """Something to find again at a glance."""
+    """Text in the style of titles."""
     return _styled(text, bold=True)
 
 
 def good(text: str) -> str:
-    """Something that succeeded."""
+    """Text in the style of success."""
     return _styled(text, fg="green")
 
 
 def bad(text: str) -> str:
-    """Something that needs attention."""
+    """Text in the style of failure."""
     return _styled(text, fg="red")
 
 
 def _styled(text: str, **style: Any) -> str:
-    """Styled on a terminal (elsewhere click takes the style off again), if colour is welcome."""
+    """Styled text, unless colour is switched off (click removes styles outside a terminal)."""
     welcome = not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
     return click.style(text, **style) if welcome else text
 
 
 def wrapped(text: str, first: str = "", rest: str | None = None) -> list[str]:
-    """Text in lines of the output's width behind ``first``, the later ones behind ``rest``.
+    """Text wrapped to the output's width: ``first`` before line 1, ``rest`` before the others.
 
-    Control characters, which a file may carry into a terminal, become ?.
+    Control characters, which could come from a file, become ?.
     """
     printable = "".join(c if c.isprintable() or c.isspace() else "?" for c in text)
     return textwrap.wrap(
@@ -154,12 +154,12 @@ def fields(
 
 @contextmanager
 def progress(label: str) -> Iterator[Callable[[float], None]]:
-    """A bar for what takes longer than a second, on the error stream of a terminal only.
+    """A progress bar for tasks over one second, on the error stream of a terminal only.
 
     Yields
     ------
     callable
-        To be told the finished fraction, 0 to 1.
+        A function to call with the finished fraction, 0 to 1.
     """
     if not sys.stderr.isatty():
         yield lambda fraction: None

@@ -16,14 +16,14 @@ _GAP = 2
 _INDENT = 2
 _ANGLE_DECIMALS = 6
 _LENGTH_DIGITS = 6
-_NOTHING = "-"  # stands for a number that there is not
+_NOTHING = "-"  # printed for a missing number
 
 
 @dataclass(frozen=True, kw_only=True)
 class Column:
     """A column of text; ``align`` is ``left``, ``right`` or ``point`` (the decimal point).
 
-    ``units``, if given, stand behind the cells, one for each.
+    ``units``, if given, are printed after the cells, one for each cell.
     """
 
     header: str
@@ -33,7 +33,7 @@ class Column:
 
     @property
     def lines(self) -> list[str]:
-        """The header and the cells, all of one width."""
+        """The header and the cells, padded to one width."""
         cells = _at_point(self.cells) if self.align == "point" else list(self.cells)
         width = max(map(_width, (self.header, *cells)))
         lines = [_padded(cell, width, self.align != "left") for cell in (self.header, *cells)]
@@ -47,8 +47,8 @@ class Column:
 def table_lines(columns: Sequence[Column], width: int = WIDTH) -> list[str]:
     """The lines of a table, header first.
 
-    Columns that do not fit the width follow below with the first column repeated. Where even
-    the first and another column are too wide, the cells of the first one are shortened.
+    Columns that do not fit the width follow below, after the first column repeated. If even
+    two columns are too wide, the cells of the first column are shortened.
     """
     first, *others = columns
     lines: list[str] = []
@@ -101,7 +101,7 @@ def significant(value: float, digits: int = 6, noise: float = 0.0) -> str:
 
 
 def short(value: float) -> str:
-    """A number as a person would write it: ten significant digits, no trailing zeros."""
+    """A number with at most ten significant digits, without trailing zeros."""
     return f"{value:.10g}" if math.isfinite(value) else _NOTHING
 
 
@@ -111,7 +111,7 @@ def _exponent(value: float) -> int:
 
 
 def _at_point(cells: Sequence[str]) -> list[str]:
-    """Cells padded on both sides so that decimal points stand below each other."""
+    """Cells padded on both sides so that decimal points align."""
     wholes = [cell.partition(".")[0] for cell in cells]
     parts = [cell[len(whole) :] for cell, whole in zip(cells, wholes, strict=True)]
     left = max(map(len, wholes), default=0)
@@ -138,7 +138,7 @@ def _padded(text: str, width: int, right: bool) -> str:
 
 
 def _width(text: str) -> int:
-    """Cells of a terminal that the text takes."""
+    """The number of terminal cells that the text occupies."""
     return sum(
         0 if unicodedata.combining(c) else 2 if unicodedata.east_asian_width(c) in "WF" else 1
         for c in text

@@ -25,9 +25,9 @@ __all__ = ["view"]
     metavar="NUMBER",
     type=click.IntRange(0, 65535),
     default=0,
-    help="Listen at this port; left out, at any that is free.",
+    help="Port of the page. Default: any free port.",
 )
-@click.option("--no-browser", is_flag=True, help="Print the address only.")
+@click.option("--no-browser", is_flag=True, help="Print the address, but do not open a browser.")
 @debug_option
 def view(file: str, port: int, no_browser: bool) -> None:
     """Show and edit a mechanism in a browser until Ctrl-C.
@@ -36,20 +36,20 @@ def view(file: str, port: int, no_browser: bool) -> None:
       linkwork view rapier.toml
       linkwork view rapier.toml --port 8123 --no-browser
 
-    The page is served on this machine only, to whoever knows the address
-    printed. What was not saved is kept in a file beside FILE at the end.
+    Only programs on this machine that know the printed address can open the
+    page. At the end, unsaved changes are written to a file next to FILE.
     """
     if file == "-":
-        raise InputError("the page edits a file: name one, standard input cannot be saved back")
+        raise InputError("standard input cannot be edited and saved: give the name of a file")
     workbench = Workbench(MechanismFile(file), loads)
     server = LiveServer(workbench, port)
 
     def tell() -> None:
         print_lines(
             [
-                *title_lines(f"{file} is shown at"),
+                *title_lines(f"{file} is open at"),
                 f"  {server.address}",
-                "Whoever knows this address can edit the file. Ctrl-C ends.",
+                "Anyone who knows this address can edit the file. Stop with Ctrl-C.",
             ]
         )
         if not no_browser:
@@ -60,4 +60,4 @@ def view(file: str, port: int, no_browser: bool) -> None:
     finally:
         kept = workbench.keep_unsaved()
         if kept is not None:
-            print_lines([f"There were changes that were not saved. They are kept in {kept}."])
+            print_lines([f"Unsaved changes were written to {kept}."])

@@ -7,63 +7,44 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
-    from linkwork.drawing.charts.chart import Chart
-    from linkwork.drawing.charts.circuit_chart import circuit_chart
-    from linkwork.drawing.drawn_box import reach_of
-    from linkwork.drawing.matplotlib_writer import figure, render, write
-    from linkwork.drawing.mechanism_scene import SceneOptions, scene_of
-    from linkwork.drawing.scene import Arc, Box, Disc, Hatch, Polygon, Polyline, Role, Scene, Text
-    from linkwork.drawing.sheet import Sheet, configuration_sheet
-    from linkwork.drawing.theme import DARK, LIGHT, THEMES, Style, Theme, theme_named
-else:
-    __getattr__ = loader(
-        __name__,
-        {
-            "charts.chart": ("Chart",),
-            "charts.circuit_chart": ("circuit_chart",),
-            "drawn_box": ("reach_of",),
-            "matplotlib_writer": ("figure", "render", "write"),
-            "mechanism_scene": ("SceneOptions", "scene_of"),
-            "scene": (
-                "Arc",
-                "Box",
-                "Disc",
-                "Hatch",
-                "Polygon",
-                "Polyline",
-                "Role",
-                "Scene",
-                "Text",
-            ),
-            "sheet": ("Sheet", "configuration_sheet"),
-            "theme": ("DARK", "LIGHT", "THEMES", "Style", "Theme", "theme_named"),
-        },
+    from linkwork.drawing.charts.chart import Chart as Chart
+    from linkwork.drawing.charts.circuit_chart import circuit_chart as circuit_chart
+    from linkwork.drawing.charts.matplotlib_plot import (
+        plot_circuits as plot_circuits,
+        plot_motion as plot_motion,
     )
-
-__all__ = [
-    "DARK",
-    "LIGHT",
-    "THEMES",
-    "Arc",
-    "Box",
-    "Chart",
-    "Disc",
-    "Hatch",
-    "Polygon",
-    "Polyline",
-    "Role",
-    "Scene",
-    "SceneOptions",
-    "Sheet",
-    "Style",
-    "Text",
-    "Theme",
-    "circuit_chart",
-    "configuration_sheet",
-    "figure",
-    "reach_of",
-    "render",
-    "scene_of",
-    "theme_named",
-    "write",
-]
+    from linkwork.drawing.drawn_box import reach_of as reach_of
+    from linkwork.drawing.matplotlib_writer import (
+        figure as figure,
+        render as render,
+        write as write,
+    )
+    from linkwork.drawing.mechanism_scene import (
+        SceneOptions as SceneOptions,
+        scene_of as scene_of,
+    )
+    from linkwork.drawing.scene import (
+        Arc as Arc,
+        Box as Box,
+        Disc as Disc,
+        Hatch as Hatch,
+        Polygon as Polygon,
+        Polyline as Polyline,
+        Role as Role,
+        Scene as Scene,
+        Text as Text,
+    )
+    from linkwork.drawing.sheet import (
+        Sheet as Sheet,
+        configuration_sheet as configuration_sheet,
+    )
+    from linkwork.drawing.theme import (
+        DARK as DARK,
+        LIGHT as LIGHT,
+        THEMES as THEMES,
+        Style as Style,
+        Theme as Theme,
+        theme_named as theme_named,
+    )
+else:
+    __getattr__ = loader(__name__)

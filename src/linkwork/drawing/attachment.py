@@ -137,7 +137,7 @@ def _turns(motion: Motion, pose: Pose) -> Iterator[tuple[str, Array]]:
             yield bar.name, _direction(pose.paths[end] - pose.paths[start])
     lines = [strut.between for strut in skeleton.struts]
     lines += [guide.line for guide in skeleton.guides if not pose.on_ground(guide)]
-    lines += [belt.centers for belt in skeleton.contacts.belts]
+    lines += [figure.turns_with for figure in skeleton.figures if figure.turns_with]
     for start, end in dict.fromkeys(lines):
         yield f"{start}>{end}", _direction(pose.paths[end] - pose.paths[start])
 

@@ -56,12 +56,6 @@ class Box:
         """The smallest box that holds both."""
         return Box.around((*self.corners, *other.corners))
 
-    def overlap(self, other: Box) -> float:
-        """The area the two boxes share; zero if they only touch."""
-        width = min(self.right, other.right) - max(self.left, other.left)
-        height = min(self.top, other.top) - max(self.bottom, other.bottom)
-        return max(width, 0.0) * max(height, 0.0)
-
     def distance(self, point: XY) -> float:
         """How far a point is from the box; zero inside."""
         x, y = point

@@ -21,6 +21,7 @@ from linkwork.drawing.measures import Measures
 from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, Text, text_width, xy
+from linkwork.mechanism.figures import Disc
 from linkwork.mechanism.skeleton import DrivenPart
 from linkwork.results.position import Position
 
@@ -121,7 +122,7 @@ def _inputs(position: Position, pose: Pose) -> Iterator[_Span]:
 def _radii(pose: Pose, measures: Measures) -> Iterator[Polyline]:
     """From the centre of every wheel to its rim, up and to the right."""
     way = cmath.exp(0.25j * cmath.pi)
-    for disc in pose.skeleton.contacts.discs:
+    for disc in pose.skeleton.of(Disc):
         centre = pose.points[disc.center]
         yield Polyline(
             role=Role.DIMENSION,

@@ -8,12 +8,13 @@ from itertools import chain
 import numpy as np
 
 from linkwork.drawing.box import Box
-from linkwork.drawing.follower_symbols import stems
+from linkwork.drawing.follower_stems import stems
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError
-from linkwork.mechanism.linkage import GROUND
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.figures import Contour, Disc
 from linkwork.results.motion import Motion
 
 __all__ = ["drawn_box", "reach_of"]
@@ -27,7 +28,7 @@ def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Bo
     drawn = [name for name in pose.points if name not in pose.construction]
     places = (one.points[name] for one in poses for name in drawn)
     along = {guide.point for guide in pose.skeleton.guides if pose.on_ground(guide)}
-    along |= {track.center for track in pose.skeleton.contacts.rolling}
+    along |= {point for figure in pose.skeleton.figures for point in figure.travelling}
     paths = [pose.paths[name] for name in (*traces, *along) if name in pose.paths]
     travelled = chain.from_iterable(path[np.isfinite(path)] for path in paths)
     rounds = chain.from_iterable(map(_round_parts, poses))
@@ -44,11 +45,11 @@ def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Bo
 def _round_parts(pose: Pose) -> Iterator[complex]:
     """Outermost points of wheels, cams and curves; lines to roll on that no motion tells."""
     if not pose.paths:
-        for track in pose.skeleton.contacts.rolling:
-            yield from (pose.points[name] for name in track.line)
-    for disc in pose.skeleton.contacts.discs:
+        for figure in pose.skeleton.figures:
+            yield from (pose.points[name] for name in figure.extent)
+    for disc in pose.skeleton.of(Disc):
         yield from (pose.points[disc.center] + disc.radius * 1j**k for k in range(4))
-    for contour in pose.skeleton.contacts.contours:
+    for contour in pose.skeleton.of(Contour):
         yield from map(complex, pose.placed(contour))
 
 
@@ -66,12 +67,12 @@ def reach_of(motion: Motion) -> Box:
             f'the motion of "{motion.mechanism}" has nothing to draw: '
             f"{int(rows.sum())} positions, {len(motion.points)} points"
         )
-    shapes = motion.skeleton.contacts
+    skeleton = motion.skeleton
     places = [motion.trace(name)[rows] for name in motion.points]
-    for disc in shapes.discs:
+    for disc in skeleton.of(Disc):
         centre = motion.trace(disc.center)[rows]
         places += [centre + disc.radius * 1j**k for k in range(4)]
-    for contour in shapes.contours:
+    for contour in skeleton.of(Contour):
         points = np.array(contour.points)
         points = points[:: max(1, len(points) // _OF_OUTLINE)]
         turned: ComplexArray = np.ones(int(rows.sum()), dtype=complex)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from linkwork.drawing.captions import lines_within
-from linkwork.drawing.matplotlib_writer import Brush, house_settings
+from linkwork.drawing.matplotlib_settings import house_settings
+from linkwork.drawing.matplotlib_writer import Brush
 from linkwork.drawing.moving_scene import MovingScene
 from linkwork.drawing.scene import Box
 from linkwork.drawing.theme import LIGHT, Theme

@@ -8,13 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.drawing.captions import lead_text
-from linkwork.drawing.contour_symbols import cam_symbols, curve_symbols
-from linkwork.drawing.cylinder_symbol import cylinder_symbols
-from linkwork.drawing.follower_symbols import follower_symbols
 from linkwork.drawing.guide_symbols import guide_symbols, track_gaps, tracks
 from linkwork.drawing.label_placement import Choice, places_beside
 from linkwork.drawing.link_symbols import link_symbols, pin_symbols, tones
 from linkwork.drawing.measures import Measures
+from linkwork.drawing.part.index import part_symbols
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Polygon, Polyline, Primitive, Role, xy
 from linkwork.drawing.wheel_symbols import wheel_symbols
@@ -95,12 +93,10 @@ def faint_symbols(shown: Sequence[Further], measures: Measures) -> Iterator[Prim
         still = set(pose.skeleton.fixed)
         moving = [
             *wheel_symbols(pose, measures, moving=True),
-            *cam_symbols(pose, measures),
-            *curve_symbols(pose, measures),
-            *follower_symbols(pose, measures),
+            *part_symbols((f for f in pose.skeleton.figures if f.shown_again), pose, measures),
             *link_symbols(pose, track_gaps(found, measures)),
             *guide_symbols(found, measures),
-            *cylinder_symbols(pose, measures),
+            *part_symbols(pose.skeleton.struts, pose, measures),
             *(p for p in pin_symbols(pose, measures) if p.role is Role.PIN and p.of not in still),
         ]
         lying = (Role.GROUND, Role.HATCH, Role.FRAME, Role.MARK)

@@ -22,7 +22,7 @@ def ground_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
     skeleton = pose.skeleton
     carried = {point for bar in skeleton.bars for point in bar.points}
     carried |= {point for strut in skeleton.struts for point in strut.between}
-    held = {point for spring in skeleton.springs for point in spring.between}
+    held = {point for figure in skeleton.figures for point in figure.ends}
     carried |= held - {guide.point for guide in skeleton.guides}  # a slot's pin is held already
     for name in skeleton.fixed:
         if name in carried:

@@ -8,14 +8,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.drawing.follower_symbols import stems
+from linkwork.drawing.follower_stems import stems
 from linkwork.drawing.ground_symbols import hatching
 from linkwork.drawing.link_symbols import Gap, uncovered
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose, travel_along
 from linkwork.drawing.scene import Polygon, Polyline, Primitive, Role, xy
-from linkwork.mechanism.linkage import GROUND
-from linkwork.mechanism.skeleton import Guide, Rail
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.figures import Guide
+from linkwork.mechanism.skeleton import Rail
 
 __all__ = ["Track", "guide_symbols", "track_gaps", "tracks"]
 

@@ -22,8 +22,9 @@ from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, xy
 from linkwork.drawing.wheel_symbols import outer_radius
-from linkwork.mechanism.contact_shapes import Disc
-from linkwork.mechanism.skeleton import Bar, DrivenPart, Strut
+from linkwork.mechanism.figures import Disc
+from linkwork.mechanism.part.cylinder import Strut
+from linkwork.mechanism.skeleton import Bar, DrivenPart
 
 __all__ = ["input_arrows"]
 
@@ -138,7 +139,7 @@ def _around_pivot(
     # A wheel of one point shows its angle by a mark; an arrow stands ahead of that.
     reach = reach or measures.size * cmath.exp(1j * pose.angle(bar.name))
     radius = max(2.2 * measures.pin, min(4.6 * measures.pin, 0.6 * abs(reach)))
-    discs = [d for d in pose.skeleton.contacts.discs if (d.link, d.center) == (bar.name, name)]
+    discs = [d for d in pose.skeleton.of(Disc) if (d.link, d.center) == (bar.name, name)]
     if discs:
         radius = _around_wheel(discs, measures)
     usual = cmath.phase(reach) + math.radians(75) * turn

@@ -22,6 +22,7 @@ from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Primitive, Role, Text, text_width, xy
 from linkwork.foundation.arrays import Array
+from linkwork.mechanism.figures import Contour, Disc
 
 __all__ = [
     "Choice",
@@ -172,12 +173,12 @@ def places_at(
 
 def _rounds(pose: Pose, link: str) -> list[tuple[complex, float]]:
     """Centres and radii of a link's wheels and cams, the largest first."""
-    contacts = pose.skeleton.contacts
-    found = [(d.center, d.radius) for d in contacts.discs if d.link == link and d.kind != "roller"]
+    of = pose.skeleton.of
+    found = [(d.center, d.radius) for d in of(Disc) if d.link == link and d.kind != "roller"]
     found += [
         (c.center, float(np.abs(np.array(c.points)).max()))
-        for c in contacts.contours
-        if c.link == link and not c.slot
+        for c in of(Contour)
+        if c.link == link and c.filled
     ]
     return [(pose.points[name], radius) for name, radius in sorted(found, key=lambda r: -r[1])]
 

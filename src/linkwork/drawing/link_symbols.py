@@ -8,6 +8,7 @@ from itertools import product
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Disc, Polygon, Polyline, Primitive, Role, xy
+from linkwork.mechanism.figures import Disc as Wheel
 from linkwork.mechanism.skeleton import Bar
 
 __all__ = [
@@ -56,7 +57,7 @@ def _link(pose: Pose, bar: Bar, tone: int, gaps: list[Gap]) -> Iterator[Primitiv
 
 def pin_radius(pose: Pose, name: str, measures: Measures) -> float:
     """The radius of a pin: smaller than usual in the middle of a small wheel."""
-    discs = pose.skeleton.contacts.discs
+    discs = pose.skeleton.of(Wheel)
     return min([measures.pin, *(0.4 * d.radius for d in discs if d.center == name)])
 
 

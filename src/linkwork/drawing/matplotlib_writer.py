@@ -9,8 +9,6 @@ from __future__ import annotations
 import io
 import math
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +16,7 @@ from linkwork.drawing.captions import lines_within
 from linkwork.drawing.charts.chart import Chart
 from linkwork.drawing.charts.matplotlib_page import chart_figure
 from linkwork.drawing.charts.theme import ChartTheme
+from linkwork.drawing.matplotlib_settings import house_settings
 from linkwork.drawing.scene import (
     XY,
     Arc,
@@ -32,13 +31,13 @@ from linkwork.drawing.scene import (
 )
 from linkwork.drawing.sheet import TALLEST, Sheet
 from linkwork.drawing.theme import LIGHT, Theme
-from linkwork.foundation.errors import InputError, MissingPackageError
+from linkwork.foundation.errors import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["FORMATS", "Brush", "figure", "house_settings", "render", "write"]
+__all__ = ["FORMATS", "Brush", "figure", "render", "write"]
 
 #: File formats by suffix.
 FORMATS = ("png", "svg", "pdf")
@@ -112,7 +111,7 @@ def render(
         if isinstance(scene, Chart):
             page = chart_figure(scene, theme)
         elif isinstance(theme, ChartTheme):
-            raise InputError("a drawing needs the theme of a drawing: that of a chart has no links")
+            raise InputError("a drawing needs a theme for drawings, not one for charts")
         elif isinstance(scene, Sheet):
             page = _sheet_figure(scene, theme)
         else:
@@ -203,21 +202,6 @@ def _write_heading(page: Figure, heading: list[tuple[str, float, str]], left: fl
     for k, (line, size, colour) in enumerate(heading):
         place = (left / width, 1 - (0.26 + k * _LINE) / height)
         page.text(*place, line, fontsize=size, color=colour, parse_math=False)
-
-
-@contextmanager
-def house_settings() -> Iterator[None]:
-    """Matplotlib's own defaults, whatever the user's settings are, while we draw."""
-    try:
-        import matplotlib
-    except ImportError as error:
-        raise MissingPackageError("drawing needs Matplotlib: pip install matplotlib") from error
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams["svg.hashsalt"] = "linkwork"
-        matplotlib.rcParams["path.simplify"] = False  # files show the scene's own coordinates
-        matplotlib.rcParams["pdf.fonttype"] = 42  # journals refuse PDF files with fonts of type 3
-        yield
 
 
 def _page(scene: Scene, theme: Theme) -> Axes:

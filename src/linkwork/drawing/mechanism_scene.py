@@ -6,13 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from linkwork.drawing.annotations import Subject, annotation_of
-from linkwork.drawing.belt_symbols import belt_symbols
 from linkwork.drawing.box import Box
 from linkwork.drawing.captions import inputs_caption, reached_caption
-from linkwork.drawing.contour_symbols import cam_symbols, curve_symbols
-from linkwork.drawing.cylinder_symbol import cylinder_symbols
 from linkwork.drawing.drawn_box import drawn_box
-from linkwork.drawing.follower_symbols import follower_symbols
 from linkwork.drawing.further_positions import (
     Further,
     faint_symbols,
@@ -25,15 +21,13 @@ from linkwork.drawing.input_arrow import input_arrows
 from linkwork.drawing.label_placement import link_names, placed, point_names
 from linkwork.drawing.link_symbols import link_symbols, pin_symbols, tones
 from linkwork.drawing.measures import Measures
+from linkwork.drawing.part.index import part_symbols
 from linkwork.drawing.pose import Pose
-from linkwork.drawing.rack_symbols import rack_symbols, rolling_symbols
 from linkwork.drawing.scene import Primitive, Role, Scene, xy
 from linkwork.drawing.scene_options import SceneOptions
-from linkwork.drawing.spring_symbols import spring_symbols
 from linkwork.drawing.trace_path import trace_symbols
 from linkwork.drawing.vector_polygon import Edge
 from linkwork.drawing.vector_symbols import vector_edges
-from linkwork.drawing.weld_symbols import weld_symbols
 from linkwork.drawing.wheel_symbols import wheel_symbols
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.results.motion import Motion
@@ -157,26 +151,16 @@ def symbols(
     pose: Pose, found: list[Track], names: tuple[str, ...], measures: Measures
 ) -> Iterator[Primitive]:
     """One position from the ground up to its pins, with the paths of points."""
+    figures = pose.skeleton.figures
     yield from ground_symbols(pose, measures)
-    yield from _contact_symbols(pose, measures)
+    yield from wheel_symbols(pose, measures)
+    yield from part_symbols((f for f in figures if not f.over), pose, measures)
     yield from guide_symbols(found, measures)
     yield from link_symbols(pose, track_gaps(found, measures))
-    yield from cylinder_symbols(pose, measures)
-    yield from spring_symbols(pose, measures)
+    yield from part_symbols(pose.skeleton.struts, pose, measures)
     yield from trace_symbols(pose, names, measures)
-    yield from weld_symbols(pose, measures)
+    yield from part_symbols((f for f in figures if f.over), pose, measures)
     yield from pin_symbols(pose, measures)
-
-
-def _contact_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
-    """Wheels and what they run on, belts, cams with their followers, curved slots."""
-    yield from wheel_symbols(pose, measures)
-    yield from rack_symbols(pose, measures)
-    yield from rolling_symbols(pose, measures)
-    yield from belt_symbols(pose)
-    yield from cam_symbols(pose, measures)
-    yield from follower_symbols(pose, measures)
-    yield from curve_symbols(pose, measures)
 
 
 def traced(pose: Pose, wanted: Sequence[str] | None) -> tuple[str, ...]:

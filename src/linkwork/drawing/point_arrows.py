@@ -62,18 +62,18 @@ def point_arrows(
 
 
 def scale_caption(word: str, scale: float, length_unit: str, unit: str, size: float) -> str:
-    """What an arrow's length means: ``velocity: 20 mm shows 500 mm/s``.
+    """The scale of arrows: ``velocity scale: 20 mm = 500 mm/s``.
 
     Parameters
     ----------
     word : str
-        What is shown.
+        The quantity that the arrows show.
     scale : float
-        Drawn length over what it shows.
+        Drawn length divided by the size of the quantity.
     size : float
         Of the drawing.
     """
     # Both numbers are short: the scale is a short number, the length a power of ten.
     length = 10.0 ** math.floor(math.log10(0.3 * size))
     shown = f"{length:g} {length_unit}".rstrip()
-    return f"{word}: {shown} shows {length / scale:.4g} {unit}".rstrip()
+    return f"{word} scale: {shown} = {length / scale:.4g} {unit}".rstrip()

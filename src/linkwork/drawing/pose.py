@@ -11,9 +11,10 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.errors import InputError, choices
-from linkwork.mechanism.contact_shapes import Contour
-from linkwork.mechanism.linkage import GROUND
-from linkwork.mechanism.skeleton import Guide, Skeleton, Strut
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.figures import Contour, Disc, Guide
+from linkwork.mechanism.part.cylinder import Strut
+from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
@@ -124,13 +125,11 @@ class Pose:
         skeleton = self.skeleton
         used = {point for bar in skeleton.bars for point in bar.points}
         used |= {point for strut in skeleton.struts for point in strut.between}
-        used |= {point for spring in skeleton.springs for point in spring.between}
+        used |= {point for figure in skeleton.figures for point in figure.ends}
         used |= {guide.point for guide in skeleton.guides} | set(skeleton.traced)
-        contacts = skeleton.contacts
-        used |= {disc.center for disc in contacts.discs}
+        used |= {disc.center for disc in skeleton.of(Disc)}
         lines = {p for g in skeleton.guides if self.on_ground(g) for p in g.line}
-        lines |= {p for track in contacts.rolling if track.on == GROUND for p in track.line}
-        lines |= {curve.center for curve in contacts.contours if curve.link == GROUND}
+        lines |= {point for figure in skeleton.figures for point in figure.laid_by}
         return lines - used
 
     @cached_property
@@ -195,7 +194,7 @@ def _named(skeleton: Skeleton) -> dict[str, None]:
     names = [*skeleton.fixed, *skeleton.pins, *skeleton.traced]
     names += [point for bar in skeleton.bars for point in bar.points]
     names += [point for strut in skeleton.struts for point in strut.between]
-    names += [point for spring in skeleton.springs for point in spring.between]
+    names += [point for figure in skeleton.figures for point in figure.ends]
     names += [point for guide in skeleton.guides for point in (guide.point, *guide.line)]
     return dict.fromkeys(names)
 

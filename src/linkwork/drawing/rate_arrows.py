@@ -56,7 +56,7 @@ def rate_arrows(
         ]
         most = max(usual_most(np.concatenate(rows)), most)
     if not most:
-        return Annotation(caption=f"{_WORD[order]}: none, nothing moves")
+        return Annotation(caption=f"{_WORD[order]}: none, no point moves")
     scale = 1.0 / round_up(most / (LONGEST * measures.size))
     arrows, short = point_arrows(rates, pose.points, scale, _LOOK[order], measures)
     rate = rate_of(order, by_time)

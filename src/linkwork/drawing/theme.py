@@ -13,12 +13,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 from linkwork.drawing.scene import Primitive, Role
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
 
 __all__ = ["DARK", "LIGHT", "THEMES", "Style", "Theme", "theme_named"]
+
+T = TypeVar("T")
 
 _BLUE, _GREEN, _ORANGE = "#0072B2", "#009E73", "#E69F00"
 _VERMILLION, _PURPLE, _SKY = "#D55E00", "#CC79A7", "#56B4E9"
@@ -208,14 +211,14 @@ DARK = Theme(
 THEMES: Mapping[str, Theme] = FrozenDict.of({"light": LIGHT, "dark": DARK})
 
 
-def theme_named(name: str) -> Theme:
-    """The theme of a name.
+def theme_named(name: str, themes: Mapping[str, T]) -> T:
+    """The theme of a name among those of drawings, or of charts.
 
     Raises
     ------
     UnknownNameError
-        If there is none.
+        With the names that exist.
     """
-    if name not in THEMES:
-        raise UnknownNameError(f'there is no theme "{name}" {choices("themes", THEMES, name)}')
-    return THEMES[name]
+    if name not in themes:
+        raise UnknownNameError(f'there is no theme "{name}" {choices("themes", themes, name)}')
+    return themes[name]

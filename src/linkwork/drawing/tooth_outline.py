@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwork.drawing.pose import Pose
 from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.mechanism.contact_shapes import Disc
+from linkwork.mechanism.figures import Disc, Mesh
 
 __all__ = ["ADDENDUM", "DEDENDUM", "tooth_outline", "tooth_phases"]
 
@@ -64,7 +64,7 @@ def tooth_phases(pose: Pose) -> dict[Disc, float]:
     that they are in mesh. As the wheels roll off each other, they turn with their links too.
     """
     phases: dict[Disc, float] = {}
-    meshes = [m.discs for m in pose.skeleton.contacts.meshes if all(d.teeth for d in m.discs)]
+    meshes = [m.discs for m in pose.skeleton.of(Mesh) if all(d.teeth for d in m.discs)]
     while meshes:
         # A mesh with a wheel that has its phase already, if there is one, goes first.
         one, other = min(meshes, key=lambda pair: not phases.keys() & set(pair))

@@ -15,12 +15,11 @@ import numpy as np
 from linkwork.drawing.link_symbols import tones
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
-from linkwork.drawing.scene import Disc as Circle
-from linkwork.drawing.scene import Hatch, Polygon, Polyline, Primitive, Role, xy
+from linkwork.drawing.scene import Disc as Circle, Hatch, Polygon, Polyline, Primitive, Role, xy
 from linkwork.drawing.tooth_outline import ADDENDUM, DEDENDUM, tooth_outline, tooth_phases
 from linkwork.foundation.arrays import ComplexArray
-from linkwork.mechanism.contact_shapes import Disc
-from linkwork.mechanism.linkage import GROUND
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.figures import Disc
 
 __all__ = ["addendum_of", "outer_radius", "wheel_symbols"]
 
@@ -44,7 +43,7 @@ def wheel_symbols(pose: Pose, measures: Measures, *, moving: bool = False) -> It
     """All wheels; with ``moving`` only those whose centres move, without their teeth."""
     phases: Mapping[Disc, float] = {} if moving else tooth_phases(pose)
     tone = tones(pose)
-    for disc in pose.skeleton.contacts.discs:
+    for disc in pose.skeleton.of(Disc):
         if moving and (disc.link == GROUND or not pose.moves(disc.center)):
             continue
         shown = phases.get(disc) if _seen(disc, measures) else None

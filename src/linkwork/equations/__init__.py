@@ -7,18 +7,7 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
-    from linkwork.equations.model import LoopEquations
-    from linkwork.equations.writing import EquationSheet
+    from linkwork.equations.model import LoopEquations as LoopEquations
+    from linkwork.equations.writing import EquationSheet as EquationSheet
 else:
-    __getattr__ = loader(
-        __name__,
-        {
-            "model": ("LoopEquations",),
-            "writing": ("EquationSheet",),
-        },
-    )
-
-__all__ = [
-    "EquationSheet",
-    "LoopEquations",
-]
+    __getattr__ = loader(__name__)

@@ -12,10 +12,10 @@ from linkwork.equations.cam_program import FollowerPath, program
 from linkwork.equations.frames import Frames
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.kernels.piecewise import Piecewise
-from linkwork.mechanism.contacts import Cam
-from linkwork.mechanism.followers import follower_frame, guide_named
 from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.parts import Slider, Slot
+from linkwork.mechanism.part.cam import Cam, follower_frame
+from linkwork.mechanism.part.guide import GuidePart, guide_named
+from linkwork.mechanism.part.slider import Slider
 
 __all__ = ["Follower", "follower_of", "program_of"]
 
@@ -57,7 +57,7 @@ def follower_of(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
     return _sliding(cam, guide, frames, motion)
 
 
-def _sliding(cam: Cam, guide: Slider | Slot, frames: Frames, motion: Piecewise) -> Follower | str:
+def _sliding(cam: Cam, guide: GuidePart, frames: Frames, motion: Piecewise) -> Follower | str:
     """s = foot ± (√((base + roller)² - e²) + motion), a flat face s = foot ± (base + motion)."""
     linkage = frames.linkage
     numbers = linkage.numbers

@@ -179,7 +179,7 @@ def _table(equations: LoopEquations, index: Mapping[str, int]) -> LoopTable:
             + law_sizes
         ),
         variable_scale=np.array(weights, dtype=float),
-        turns=np.array([v.kind == "angle" for v in equations.variables], dtype=bool),
+        is_angle=np.array([v.kind == "angle" for v in equations.variables], dtype=bool),
     )
 
 

@@ -13,12 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.numerics.homotopy.bilinear import BilinearSystem
 
 __all__ = ["DirectionForm", "NoDirectionForm", "check_independent", "direction_form"]
 
-_UNIT = np.finfo(float).eps / 2
 _MOST_LOOPS = 6  # C(12, 6) = 924 paths to a random system
 _DEPENDENT = 1e-12  # smallest singular value of a closure matrix, relative to the largest
 _WHOLE = 1e-12  # how far a weight may be from a whole number
@@ -66,12 +66,12 @@ class DirectionForm:
     @property
     def turning(self) -> IndexArray:
         """The unknowns of the block that are angles."""
-        return np.flatnonzero(self.table.turns[: self.table.unknowns])
+        return np.flatnonzero(self.table.is_angle[: self.table.unknowns])
 
     @property
     def sliding(self) -> IndexArray:
         """The unknowns of the block that are lengths."""
-        return np.flatnonzero(~self.table.turns[: self.table.unknowns])
+        return np.flatnonzero(~self.table.is_angle[: self.table.unknowns])
 
     def closures(self, known: Array, spread: Array) -> tuple[ComplexArray, Array]:
         """``left`` of the bilinear systems, (B, L, M + 1), and how far its numbers may be off.
@@ -95,7 +95,7 @@ class DirectionForm:
         np.add.at(weights, (loops.phase_variable, loops.phase_term), loops.phase_weight)
         phase = v @ weights
         turned = np.abs(v) @ np.abs(weights)
-        slack = off @ np.abs(weights) + _UNIT * (4.0 * turned + 16.0 + len(loops.row))
+        slack = off @ np.abs(weights) + UNIT_ROUNDOFF * (4.0 * turned + 16.0 + len(loops.row))
         length = np.ones(phase.shape)
         length_off = np.zeros(phase.shape)
         for t, j in enumerate(loops.length):
@@ -165,14 +165,14 @@ def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
         If it has none.
     """
     if table.functions:
-        cams = table.bends_boundedly
+        cams = table.has_curvature_bound
         raise NoDirectionForm(
-            "contain a cam or a curve" if cams else "are plain equations, not loops"
+            "contain a law, as cams and curves do" if cams else "are plain equations, not loops"
         )
     n, loops = table.unknowns, table.loops
-    turning = np.flatnonzero(table.turns[:n])
-    sliding = np.flatnonzero(~table.turns[:n])
-    reduce, shift, free_angles = _solved_lines(table, turning, sliding)
+    turning = np.flatnonzero(table.is_angle[:n])
+    sliding = np.flatnonzero(~table.is_angle[:n])
+    reduce, shift, free_angles = _solve_lines(table, turning, sliding)
     phases = np.zeros((len(loops.row), table.variables))
     np.add.at(phases, (loops.phase_term, loops.phase_variable), loops.phase_weight)
     if np.abs(phases[:, sliding]).max(initial=0.0) > 0.0:
@@ -210,7 +210,7 @@ def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
     )
 
 
-def _solved_lines(
+def _solve_lines(
     table: LoopTable, turning: IndexArray, sliding: IndexArray
 ) -> tuple[Array, Array, list[int]]:
     """Angles = first · (angles left) + second · (known, 1), from linear rows; which are left."""
@@ -221,7 +221,7 @@ def _solved_lines(
     _check_lengths_untied(rows, turning, sliding)
     own = rows[:, turning].copy()
     rest = np.concatenate([rows[:, n:-1], rows[:, -1:]], axis=1)
-    pivots = _eliminated(own, rest)
+    pivots = _eliminate(own, rest)
     free = [j for j in range(len(turning)) if j not in pivots]
     reduce = np.zeros((len(turning), len(free)))
     shift = np.zeros((len(turning), rest.shape[1]))
@@ -243,7 +243,7 @@ def _check_lengths_untied(rows: Array, turning: IndexArray, sliding: IndexArray)
     raise NoDirectionForm("tie an angle to a length, as racks and rolling do")
 
 
-def _eliminated(own: Array, rest: Array) -> list[int]:
+def _eliminate(own: Array, rest: Array) -> list[int]:
     """Solve lines own · angles + rest · known = 0 in place, each for one angle; which those are.
 
     An angle that lines determine altogether may have any ratio to what is known. Otherwise a turn

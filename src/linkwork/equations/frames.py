@@ -13,12 +13,18 @@ from dataclasses import dataclass, field
 from linkwork.equations.model import LinkAngle, Redundant, Term
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, Node
-from linkwork.foundation.lanes import choose, copysign, degrees, kept, phase, remainder, turn
-from linkwork.foundation.names import canonical
-from linkwork.mechanism.contacts import Weld
+from linkwork.foundation.lanes import (
+    choose,
+    cis,
+    copysign,
+    degrees,
+    is_structurally_nonzero,
+    phase,
+    remainder,
+)
+from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.description import Problems
-from linkwork.mechanism.linkage import GROUND, Linkage
-from linkwork.mechanism.parts import Cylinder, Slider
+from linkwork.mechanism.linkage import Linkage
 
 __all__ = ["Frames", "Place"]
 
@@ -59,17 +65,9 @@ class Frames:
             frames.angle[body] = groups.angle_of(body)
         for body in frames.bodies:
             if frames.angle[body].variable == body:
-                frames.start[body] = groups.sketched_angle(body)
+                frames.start[body] = linkage.sketched_angle(body)
             local = linkage.shapes.local[body]
             frames.places[body] = {p: Place(z, base=p) for p, z in local.items()}
-        for slot in linkage.slots:
-            frames.add_guide((slot.name, slot.on, slot.line), slot.point)
-        for slider in linkage.sliders:
-            offset, name = linkage.numbers(slider.offset), f"{slider.name}_offset"
-            guide = (slider.name, slider.on, slider.line)
-            frames.add_guide(guide, slider.points[0], offset, name)
-        for cylinder in linkage.cylinders:
-            frames.add_rod(cylinder.name, cylinder.between)
         return frames
 
     def add_guide(
@@ -86,33 +84,35 @@ class Frames:
         linkage, (own, body, line) = self.linkage, guide
         s, t = (linkage.shapes.local[body][p] for p in line)
         along = (t - s) / abs(t - s)
-        terms = [self.turned(along, None, body, own)]
-        if kept(offset):
+        terms = [self.vector_term(along, None, body, own)]
+        if is_structurally_nonzero(offset):
             name = canonical(symbol)
             self.symbols[name] = abs(offset)
             sideways = 1j * along * copysign(1.0, offset)
-            terms.append(self.turned(sideways * abs(offset), Name(name, name), body))
+            terms.append(self.vector_term(sideways * abs(offset), Name(name, name), body))
         self.places[body][point] = Place(s, tuple(terms), base=line[0])
         self.lengths.append(own)
         a, b, p = (linkage.sketched(q) for q in (*line, point))
         self.start[own] = ((p - a) * (b - a).conjugate()).real / abs(b - a)
 
-    def add_rod(self, name: str, between: tuple[str, str], length: float | None = None) -> None:
+    def add_rod(
+        self, name: str, between: tuple[str, str], length: float | None = None, angle: str = ""
+    ) -> None:
         """A body between two points: of that length, or of a variable one that has its name."""
         a, b = between
-        turning = name if length is not None else Cylinder(name=name, between=between).angle_name
+        turning = angle or name
         self.bodies.append(name)
         self.angle[name] = LinkAngle(variable=turning, constant=0.0)
         span = self.linkage.sketched(b) - self.linkage.sketched(a)
         self.start[turning] = phase(span)
         if length is None:
-            rod = self.turned(1.0 + 0j, None, name, name)
+            rod = self.vector_term(1.0 + 0j, None, name, name)
             self.lengths.append(name)
             self.start[name] = abs(span)
         else:
             symbol = canonical(f"{name}_rod")
             self.symbols[symbol] = length
-            rod = self.turned(length + 0j, Name(symbol, symbol), name)
+            rod = self.vector_term(length + 0j, Name(symbol, symbol), name)
         self.places[name] = {a: Place(0j, base=a), b: Place(0j, (rod,), base=a)}
 
     def release(self, link: str, a: str, b: str) -> None:
@@ -120,7 +120,7 @@ class Frames:
         name = f"{link}_length"
         first = self.places[link][a].fixed
         span = self.places[link][b].fixed - first
-        along = self.turned(span / abs(span), None, link, name)
+        along = self.vector_term(span / abs(span), None, link, name)
         self.places[link][b] = Place(first, (along,), base=a)
         self.start[name] = abs(span)
         self.released.append(Redundant(variable=name, link=link, points=(a, b), length=abs(span)))
@@ -140,12 +140,14 @@ class Frames:
                 weights[angle.variable] = weights.get(angle.variable, 0.0) + weight
         return {name: weight for name, weight in weights.items() if weight}, constant
 
-    def turned(self, z: complex, shown: Node | None, body: str, length: str | None = None) -> Term:
+    def vector_term(
+        self, z: complex, shown: Node | None, body: str, length: str | None = None
+    ) -> Term:
         """A vector of the body's frame as a term."""
         angle = self.angle[body]
         turning = ((canonical(angle.variable), 1.0),) if angle.variable is not None else ()
         symbol = None if length is None else canonical(length)
-        return Term.vector(z * turn(angle.constant), shown, symbol, turning)
+        return Term.vector(z * cis(angle.constant), shown, symbol, turning)
 
     def between(self, body: str, start: str, end: str) -> list[Term]:
         """The vector from one point to another across a body, as terms."""
@@ -153,7 +155,7 @@ class Frames:
         terms = []
         if a.base != b.base:
             shown = self._distance(body, a.base, b.base)
-            terms.append(self.turned(b.fixed - a.fixed, shown, body))
+            terms.append(self.vector_term(b.fixed - a.fixed, shown, body))
         terms += [term.negated() for term in a.sliding]
         terms += list(b.sliding)
         return terms
@@ -181,22 +183,14 @@ class _Orientation:
     def __init__(self, linkage: Linkage, problems: Problems) -> None:
         self.linkage = linkage
         self._parent: dict[str, tuple[str, float]] = {b: (b, 0.0) for b in linkage.links}
-        for k, slider in enumerate(linkage.sliders):
-            gap = self._join(slider.link, slider.on, self._constant(slider))
-            if gap:
+        for key, part in linkage.keyed_parts():
+            kept = part.kept_angle(linkage)
+            gap = 0.0 if kept is None else self._join(*kept)
+            if kept is not None and gap:
                 problems.add(
-                    ("sliders", k),
-                    f'"{slider.link}" cannot keep its angle against "{slider.on}": '
-                    f"other sliders turn it by {degrees(gap):.6g}° from there",
-                )
-        for k, weld in enumerate(linkage.welds):
-            first, second = weld.links
-            gap = self._join(second, first, self._welded(weld))
-            if gap:
-                problems.add(
-                    ("welds", k),
-                    f'"{second}" cannot keep its angle against "{first}": '
-                    f"other joints turn it by {degrees(gap):.6g}° from there",
+                    key,
+                    f'"{kept[0]}" cannot keep its angle relative to "{kept[1]}": '
+                    f"other {part.holders} turn it by {degrees(gap):.6g}° from there",
                 )
         driven = {w.link for w in linkage.inputs if w.link}
         self._name: dict[str, str] = {}
@@ -236,31 +230,6 @@ class _Orientation:
         self._parent[a] = (b, constant + offset_b - offset_a)
         return 0.0
 
-    def _welded(self, weld: Weld) -> float:
-        """The second link's angle minus the first one's."""
-        if weld.angle is not None:
-            return self.linkage.numbers(weld.angle) * self.linkage.angle.radians
-        first, second = (self.sketched_angle(link) for link in weld.links)
-        return second - first
-
-    def _constant(self, slider: Slider) -> float:
-        """The link's angle minus the carrier's, from the line and the sliding points."""
-        linkage = self.linkage
-        s, t = (linkage.shapes.local[slider.on][p] for p in slider.line)
-        line = phase(t - s)
-        local = linkage.shapes.local[slider.link]
-        if len(slider.points) == 2:
-            own = phase(local[slider.points[1]] - local[slider.points[0]])
-            d, e, a, b = (linkage.sketched(p) for p in (*slider.points, *slider.line))
-            along = ((e - d) * (b - a).conjugate()).real >= 0
-            return line - own + choose(along, 0.0, math.pi)
-        if slider.angle is not None:
-            return line + linkage.numbers(slider.angle) * linkage.angle.radians
-        if slider.link != GROUND and len(linkage.links[slider.link]) < 2:
-            return line
-        a, b = (linkage.sketched(p) for p in slider.line)
-        return line + self.sketched_angle(slider.link) - phase(b - a)
-
     def angle_of(self, body: str) -> LinkAngle:
         """The body's angle: its group's variable plus a constant; ground stands at zero."""
         root, offset = self._find(body)
@@ -268,13 +237,6 @@ class _Orientation:
             return LinkAngle(variable=None, constant=_tidy(offset - self._find(GROUND)[1]))
         name = self._name[root]
         return LinkAngle(variable=name, constant=_tidy(offset - self._find(name)[1]))
-
-    def sketched_angle(self, body: str) -> float:
-        """The direction of a link in the sketch [rad]; 0 for ground and wheels of one point."""
-        if body == GROUND or len(self.linkage.links[body]) < 2:
-            return 0.0
-        first, second = self.linkage.links[body][:2]
-        return phase(self.linkage.sketched(second) - self.linkage.sketched(first))
 
 
 def _tidy(angle: float) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from linkwork.equations.contacts import Contacts
 from linkwork.equations.frames import Frames
 from linkwork.equations.model import (
     LawEquation,
@@ -18,15 +17,17 @@ from linkwork.equations.model import (
     Variable,
 )
 from linkwork.equations.outputs import read_outputs
+from linkwork.equations.part.index import rows_of_parts
 from linkwork.equations.redundancy import Bar, released_links
 from linkwork.equations.structure import Node, Structure, StructureBlock
 from linkwork.expression.tree import Name
 from linkwork.foundation.errors import MechanismError, Problem
-from linkwork.foundation.lanes import hypot, largest, phase, row_of, smallest, turn
-from linkwork.foundation.names import canonical, pretty
+from linkwork.foundation.lanes import cis, hypot, largest, phase, row_of, smallest
+from linkwork.foundation.names import GROUND, canonical, pretty
 from linkwork.mechanism.description import Problems
-from linkwork.mechanism.linkage import GROUND, Linkage
-from linkwork.mechanism.parts import Input
+from linkwork.mechanism.driven_input import Input
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.cylinder import Cylinder
 
 __all__ = ["write_loops"]
 
@@ -40,12 +41,12 @@ def write_loops(linkage: Linkage) -> LoopEquations:
         If inputs contradict each other, or do not determine the motion: with the links that
         stay free or the parts that conflict.
     """
-    writer = _Writer(linkage)
-    return writer.written()
+    writer = _LoopWriter(linkage)
+    return writer.write()
 
 
 @dataclass
-class _Writer:
+class _LoopWriter:
     linkage: Linkage
     released: tuple[Bar, ...] = ()
     surplus: Problem | None = None
@@ -56,7 +57,7 @@ class _Writer:
     points: dict[str, PointPath] = field(default_factory=dict)
     base: dict[str, str | None] = field(default_factory=dict)
 
-    def written(self) -> LoopEquations:
+    def write(self) -> LoopEquations:
         """Everything, in order."""
         linkage = self.linkage
         where = f'mechanism "{linkage.name}"'
@@ -64,7 +65,7 @@ class _Writer:
         for bar in self.released:
             frames.release(*bar)
         self.problems.raise_any(where)
-        self.contacts = contacts = Contacts.of(frames, self.problems)
+        self.contacts = contacts = rows_of_parts(frames, self.problems)
         self.problems.raise_any(where)
         self.linear = list(contacts.linear)
         self.rank = {body: k for k, body in enumerate(frames.bodies)}
@@ -115,7 +116,7 @@ class _Writer:
 
     def _angle_of(self, body: str) -> str:
         """The angle variable a body would name itself."""
-        cylinder = {c.name: c.angle_name for c in self.linkage.cylinders}
+        cylinder = {c.name: c.angle_name for c in self.linkage.of(Cylinder)}
         return cylinder.get(body, body)
 
     def _variables(self, angles: Sequence[str | None]) -> list[tuple[str, str]]:
@@ -138,7 +139,8 @@ class _Writer:
         angle, base = self.frames.angle[link], self.frames.angle[against]
         if angle.variable == base.variable:
             self.problems.add(
-                key, f'"{link}" cannot turn against "{against}": a slider or a weld holds its angle'
+                key,
+                f'"{link}" cannot turn relative to "{against}": a slider or a weld holds its angle',
             )
         elif (
             kind == "link"
@@ -161,7 +163,7 @@ class _Writer:
             if part.variable is not None:
                 terms.append((canonical(part.variable), sign))
                 value += sign * self.frames.start[part.variable]
-        wrapped = phase(turn(value))
+        wrapped = phase(cis(value))
         constant = angle.constant - base.constant + wrapped - value  # off by whole turns
         self.linear.append(
             LinearEquation(label=f"{link} against {against}", terms=tuple(terms), constant=constant)
@@ -215,14 +217,14 @@ class _Writer:
             return
         if form.missing:
             free = _subjects(names[k] for k in form.underdetermined)
-            wanted = f"{form.missing} more input{'s' if form.missing > 1 else ''}"
-            driven = len(self.linkage.inputs)
-            self.problems.add(
-                ("input",),
-                f"{driven} input{'s' if driven != 1 else ''} leave{'s' if driven == 1 else ''} "
-                f"{form.missing} degree{'s' if form.missing > 1 else ''} of freedom: "
-                f"add {wanted} or a link (free to move: {', '.join(free)})",
-            )
+            freedoms = f"{form.missing} degrees of freedom have no input: add {form.missing} inputs"
+            if form.missing == 1:
+                freedoms = "one degree of freedom has no input: add an input"
+            example = next((link for link in free if link in self.linkage.links), None)
+            text = f"{freedoms} or a link"
+            if example is not None and not self.linkage.inputs:
+                text = f'{freedoms}, for example link = "{example}"'
+            self.problems.add(("input",), f"{text} (free to move: {', '.join(free)})")
         if form.surplus:
             tied = _subjects(names[k] for k in form.conflict_unknowns)
             self.problems.add(
@@ -241,7 +243,7 @@ class _Writer:
         if len(bars) < form.surplus:
             return None
         try:
-            return _Writer(self.linkage, released=bars, surplus=self.problems[0]).written()
+            return _LoopWriter(self.linkage, released=bars, surplus=self.problems[0]).write()
         except MechanismError:
             return None
 

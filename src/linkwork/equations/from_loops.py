@@ -18,7 +18,7 @@ from linkwork.equations.phasors import Monomial, PhasorReader
 from linkwork.expression.grammar import CONSTANTS, parse, parse_equation
 from linkwork.expression.tree import Binary, Name, Negative, Node, names_in
 from linkwork.foundation.errors import ExpressionError, choices
-from linkwork.foundation.lanes import kept, largest, row_of, shown_by
+from linkwork.foundation.lanes import display_value, is_structurally_nonzero, largest, row_of
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.loops import Loops, PlainEquations
@@ -50,8 +50,8 @@ def read_loops(mechanism: Loops) -> LoopEquations:
             loops.append(
                 LoopEquation(
                     label=label,
-                    left=tuple(_term(m, text) for m in left if kept(m.value)),
-                    right=tuple(_term(m, text) for m in right if kept(m.value)),
+                    left=tuple(_term(m, text) for m in left if is_structurally_nonzero(m.value)),
+                    right=tuple(_term(m, text) for m in right if is_structurally_nonzero(m.value)),
                 )
             )
         except ExpressionError as error:
@@ -96,7 +96,7 @@ def read_loops(mechanism: Loops) -> LoopEquations:
 def _term(m: Monomial, text: str) -> Term:
     if len(m.factors) > 1:
         raise ExpressionError(
-            f"the product {'·'.join(m.factors)} of two unknowns has no place in a loop equation: "
+            f"the product {'·'.join(m.factors)} of two unknowns is not allowed in a loop equation: "
             "a term is one length times e^(i*angle)",
             text,
             1,
@@ -104,7 +104,7 @@ def _term(m: Monomial, text: str) -> Term:
     sign = -1 if isinstance(m.shown, Negative) else 1
     shown = m.shown.operand if isinstance(m.shown, Negative) else m.shown
     turn = 0.0
-    seen = shown_by(m.value)
+    seen = display_value(m.value)
     if shown is not None and abs(seen.real) <= 1e-15 * abs(seen.imag):
         found, rest = _without_i(shown)
         if found:
@@ -164,7 +164,7 @@ def _read_points(
             if state[name] == "open" and not missing:  # else the other point is reported
                 monomials = reader.read(tree, text)
                 reader.points[name] = monomials
-                terms = tuple(_term(m, text) for m in monomials if kept(m.value))
+                terms = tuple(_term(m, text) for m in monomials if is_structurally_nonzero(m.value))
                 done[spelling[name]] = PointPath(parent=None, terms=terms)
         except ExpressionError as error:
             if not any(p.key == ("points", spelling[name]) for p in problems):
@@ -190,7 +190,7 @@ def _kinds(
                 if kinds.setdefault(name, kind) != kind or kind == "both":
                     problems.add(
                         ("loops", loop.label),
-                        f'"{spelling[name]}" stands as an angle and as a length',
+                        f'"{spelling[name]}" is used as an angle and as a length',
                     )
     for name, spelled in spelling.items():
         if name not in kinds:
@@ -209,7 +209,7 @@ def _check_ranges(
             if number is None:
                 problems.add(
                     (*mechanism.input_key(k), field),
-                    f'is missing: "{which.drives[1]}" is no angle and has no natural range',
+                    f'is missing: "{which.drives[1]}" is not an angle and has no natural range',
                 )
                 break
 

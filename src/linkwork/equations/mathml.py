@@ -3,34 +3,39 @@
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from html import escape
 
+from linkwork.equations.notation import Signed
 from linkwork.expression.precedence import ATOM, NEGATIVE, STRENGTH, strength
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 from linkwork.expression.writing import number_text
 from linkwork.foundation.names import pretty
 
-__all__ = ["MathML", "math_element"]
+__all__ = ["Markup", "MathML"]
 
-_PIECES = re.compile(r"<[^>]+>|[^<]+")
-_TOKENS = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?|\w+|\S")
 _INVISIBLE_TIMES, _APPLY, _MINUS = "\u2062", "\u2061", "\u2212"
 
 
-def math_element(text: str) -> str:
-    """A row of MathML as an element of a page."""
-    return f'<math display="block">{_row(text)}</math>'
+@dataclass(frozen=True)
+class Markup:
+    """Elements of MathML in a row; ``loose``: a product has to hold them together."""
+
+    xml: str
+    loose: bool = False
+
+    def element(self) -> str:
+        """The row as an equation of a page."""
+        return f'<math display="block">{self.xml}</math>'
 
 
 class MathML:
-    """``<msub><mi>a</mi><mn>2</mn></msub>…``: elements without spaces, signs between them plain."""
+    """``<msub><mi>a</mi><mn>2</mn></msub>…``."""
 
-    zero = "0"
-    imaginary = "<mi>i</mi>"
+    imaginary = Markup("<mi>i</mi>")
 
-    def name(self, name: str) -> str:
+    def name(self, name: str) -> Markup:
         """A variable or dimension."""
         shown = pretty(name)
         stem = shown.rstrip("0123456789'")
@@ -43,103 +48,113 @@ class MathML:
         below += [f"<mn>{index}</mn>"] if index else []
         if below:
             base = f"<msub>{base}<mrow>{'<mo>,</mo>'.join(below)}</mrow></msub>"
-        return f"<msup>{base}<mo>{primes}</mo></msup>" if primes else base
+        return Markup(f"<msup>{base}<mo>{primes}</mo></msup>" if primes else base)
 
-    def formula(self, node: Node) -> str:
+    def number(self, text: str) -> Markup:
+        """A number as its digits."""
+        digits = text.removeprefix("-")
+        sign = _operator("-") if digits != text else ""
+        return Markup(f"{sign}<mn>{digits}</mn>", loose=True)
+
+    def formula(self, node: Node) -> Markup:
         """A formula on its own."""
-        return self._written(node)
-
-    def node(self, node: Node) -> str:
-        """A formula as one factor of a product."""
-        shown = self._written(node)
-        loose = isinstance(node, Binary) and node.operator in "+-"
-        return _fenced(shown) if loose or isinstance(node, Negative) else _group(shown)
-
-    def degrees(self, radians: float) -> str:
-        """A fixed angle."""
-        return f"<mn>{number_text(round(math.degrees(radians), 6))}°</mn>"
-
-    def phasor(self, angle: str) -> str:
-        """e to the i times an angle."""
-        negative = angle.startswith("-") and " " not in angle
-        turned = angle[1:] if negative else angle
-        inside = _fenced(turned) if " " in turned or turned.startswith("-") else _row(turned)
-        sign = f"<mo>{_MINUS}</mo>" if negative else ""
-        return f"<msup><mi>e</mi><mrow>{sign}<mi>i</mi>{inside}</mrow></msup>"
-
-    def function(self, name: str, angle: str) -> str:
-        """cos or sin of an angle."""
-        compound = " " in angle or angle.startswith("-")
-        inside = _fenced(angle) if compound else _row(angle)
-        return _group(f"<mi>{name}</mi><mo>{_APPLY}</mo>{inside}")
-
-    def law(self, name: str, primes: int, argument: str) -> str:
-        """A named function, or a derivative of it."""
-        return _group(f"{self.name(name + primes * chr(39))}<mo>{_APPLY}</mo>{_fenced(argument)}")
-
-    def product(self, factors: Sequence[str]) -> str:
-        """Factors in a row."""
-        return f"<mo>{_INVISIBLE_TIMES}</mo>".join(map(_whole, factors))
-
-    def _written(self, node: Node) -> str:
         match node:
             case Number():
-                return number_text(node.value)
+                return self.number(number_text(node.value))
             case Name():
                 return self.name(node.spelling or node.name)
             case Negative():
-                return f"-{self._inside(node.operand, NEGATIVE)}"
+                inside = self._inside(node.operand, NEGATIVE)
+                return Markup(f"{_operator('-')}{inside.xml}", loose=True)
             case Call("sqrt"):
-                return f"<msqrt>{_row(self._written(node.arguments[0]))}</msqrt>"
+                return Markup(f"<msqrt>{self.formula(node.arguments[0]).xml}</msqrt>")
             case Call():
-                inside = "<mo>,</mo>".join(_row(self._written(a)) for a in node.arguments)
-                return _group(f"<mi>{node.function}</mi><mo>{_APPLY}</mo>{_fenced(inside)}")
+                shown = _operator(",").join(self.formula(a).xml for a in node.arguments)
+                return self._apply(f"<mi>{node.function}</mi>", self.fenced(Markup(shown)))
             case Binary("/"):
-                above, below = (_row(self._written(part)) for part in (node.left, node.right))
-                return f"<mfrac><mrow>{above}</mrow><mrow>{below}</mrow></mfrac>"
+                above, below = self.formula(node.left), self.formula(node.right)
+                return Markup(f"<mfrac>{_row(above)}{_row(below)}</mfrac>")
             case Binary("^"):
-                raised = _row(self._written(node.right))
-                return f"<msup>{_group(self._inside(node.left, ATOM))}<mrow>{raised}</mrow></msup>"
+                base, power = self._inside(node.left, ATOM), self.formula(node.right)
+                return Markup(f"<msup>{_row(base)}{_row(power)}</msup>")
             case Binary():
                 own = STRENGTH[node.operator]
                 left, right = self._inside(node.left, own), self._inside(node.right, own + 1)
                 if node.operator == "*":
                     return self.product([left, right])
-                return f"{left} {node.operator} {right}"
+                return Markup(f"{left.xml}{_operator(node.operator)}{right.xml}", loose=True)
 
-    def _inside(self, node: Node, least: int) -> str:
-        shown = self._written(node)
-        return _fenced(shown) if strength(node) < least else shown
+    def _inside(self, node: Node, least: int) -> Markup:
+        shown = self.formula(node)
+        return self.fenced(shown) if strength(node) < least else shown
+
+    def node(self, node: Node) -> Markup:
+        """A formula as one factor of a product."""
+        shown = self.formula(node)
+        loose = isinstance(node, Binary) and node.operator in "+-"
+        return self.fenced(shown) if loose or isinstance(node, Negative) else Markup(_row(shown))
+
+    def degrees(self, radians: float) -> Markup:
+        """A fixed angle."""
+        return Markup(f"<mn>{number_text(round(math.degrees(radians), 6))}°</mn>")
+
+    def phasor(self, angle: Sequence[Signed[Markup]]) -> Markup:
+        """e to the i times an angle."""
+        sign = ""
+        if len(angle) == 1 and angle[0].sign < 0:
+            sign, angle = _operator("-"), [Signed(1, angle[0].product)]
+        return Markup(
+            f"<msup><mi>e</mi><mrow>{sign}<mi>i</mi>{self._fitted(angle).xml}</mrow></msup>"
+        )
+
+    def function(self, name: str, angle: Sequence[Signed[Markup]]) -> Markup:
+        """cos or sin of an angle."""
+        return self._apply(f"<mi>{name}</mi>", self._fitted(angle))
+
+    def law(self, name: str, primes: int, argument: Markup) -> Markup:
+        """A named function, or a derivative of it."""
+        return self._apply(self.name(name + primes * "'").xml, self.fenced(argument))
+
+    def weighted(self, weight: str, name: Markup) -> Markup:
+        """A number directly before a name."""
+        return Markup(f"<mn>{weight}</mn>{name.xml}", loose=True)
+
+    def product(self, factors: Sequence[Markup]) -> Markup:
+        """Factors in a row; 1 if there are none."""
+        if not factors:
+            return self.number("1")
+        shown = (_row(factor) if factor.loose else factor.xml for factor in factors)
+        return Markup(_operator(_INVISIBLE_TIMES).join(shown))
+
+    def sum(self, terms: Iterable[Signed[Markup]]) -> Markup:
+        """Signed products in a row; 0 if there are none."""
+        shown = ""
+        for term in terms:
+            sign = _operator("-") if term.sign < 0 else _operator("+") if shown else ""
+            shown += f"{sign}{term.product.xml}"
+        return Markup(shown, loose=True) if shown else self.number("0")
+
+    def fenced(self, inside: Markup) -> Markup:
+        """In parentheses."""
+        return Markup(f"<mrow><mo>(</mo>{inside.xml}<mo>)</mo></mrow>")
+
+    def equation(self, left: Markup, right: Markup) -> Markup:
+        """Both sides of an equation."""
+        return Markup(f"{left.xml}{_operator('=')}{right.xml}", loose=True)
+
+    def _fitted(self, angle: Sequence[Signed[Markup]]) -> Markup:
+        """An angle as an argument: in parentheses if it has a sign or several terms."""
+        shown = self.sum(angle)
+        return self.fenced(shown) if len(angle) > 1 or angle[0].sign < 0 else shown
+
+    def _apply(self, function: str, argument: Markup) -> Markup:
+        return Markup(f"<mrow>{function}{_operator(_APPLY)}{argument.xml}</mrow>")
 
 
-def _whole(factor: str) -> str:
-    """A factor that begins with a sign, or is a sum, as one element."""
-    return factor if factor.startswith("<") and " " not in factor else _group(factor)
+def _row(inside: Markup) -> str:
+    return f"<mrow>{inside.xml}</mrow>"
 
 
-def _group(text: str) -> str:
-    return f"<mrow>{_row(text)}</mrow>"
-
-
-def _fenced(text: str) -> str:
-    return f"<mrow><mo>(</mo>{_row(text)}<mo>)</mo></mrow>"
-
-
-def _row(text: str) -> str:
-    """Signs and numbers between elements as elements."""
-    shown, depth = [], 0
-    for piece in _PIECES.findall(text):
-        if piece.startswith("<"):
-            depth += -1 if piece.startswith("</") else 1
-            shown.append(piece)
-        else:
-            shown.append(piece if depth else "".join(map(_token, _TOKENS.findall(piece))))
-    return "".join(shown)
-
-
-def _token(token: str) -> str:
-    if token[0].isdigit():
-        return f"<mn>{token}</mn>"
-    if token[0].isalpha():
-        return f"<mi>{escape(token)}</mi>"
-    return f"<mo>{_MINUS if token == '-' else escape(token)}</mo>"
+def _operator(sign: str) -> str:
+    shown = _MINUS if sign == "-" else sign
+    return f"<mo>{shown}</mo>"

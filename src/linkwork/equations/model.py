@@ -13,7 +13,7 @@ from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.errors import Problem
 from linkwork.foundation.frozen import FrozenDict
-from linkwork.foundation.lanes import shown_by
+from linkwork.foundation.lanes import display_value
 from linkwork.kernels.piecewise import Piecewise
 
 __all__ = [
@@ -84,7 +84,7 @@ class Term:
         phase: tuple[tuple[str, float], ...] = (),
     ) -> Term:
         """A fixed vector in a turning frame: modulus shown by ``shown``, direction as turn."""
-        seen = shown_by(z)
+        seen = display_value(z)
         turn = cmath.phase(seen) if seen else 0.0
         sign = 1
         if turn > np.pi / 2 + 1e-12 or turn < -np.pi / 2 + 1e-12:

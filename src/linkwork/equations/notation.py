@@ -3,56 +3,124 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Protocol
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
 
 from linkwork.expression import writing
 from linkwork.expression.tree import Node
 from linkwork.foundation.names import latex_name, pretty
 
-__all__ = ["Latex", "Notation", "PlainText"]
+__all__ = ["Latex", "Notation", "PlainText", "Signed"]
+
+T = TypeVar("T")
+S_co = TypeVar("S_co", covariant=True)
 
 
-class Notation(Protocol):
-    """How names, phasors and products are written."""
+@dataclass(frozen=True)
+class Signed(Generic[S_co]):
+    """A product with its sign."""
 
-    zero: str
-    imaginary: str
+    sign: int
+    product: S_co
 
-    def name(self, name: str) -> str:
+
+class Notation(Protocol[T]):
+    """How names, phasors, products and sums are written; an angle is given as its terms."""
+
+    imaginary: T
+
+    def name(self, name: str) -> T:
         """A variable or dimension."""
 
-    def node(self, node: Node) -> str:
+    def number(self, text: str) -> T:
+        """A number as its digits."""
+
+    def node(self, node: Node) -> T:
         """A formula as one factor of a product."""
 
-    def formula(self, node: Node) -> str:
+    def formula(self, node: Node) -> T:
         """A formula on its own."""
 
-    def degrees(self, radians: float) -> str:
+    def degrees(self, radians: float) -> T:
         """A fixed angle."""
 
-    def phasor(self, angle: str) -> str:
+    def phasor(self, angle: Sequence[Signed[T]]) -> T:
         """e to the i times an angle."""
 
-    def function(self, name: str, angle: str) -> str:
+    def function(self, name: str, angle: Sequence[Signed[T]]) -> T:
         """cos or sin of an angle."""
 
-    def law(self, name: str, primes: int, argument: str) -> str:
+    def law(self, name: str, primes: int, argument: T) -> T:
         """A named function, or a derivative of it."""
 
+    def weighted(self, weight: str, name: T) -> T:
+        """A number directly before a name."""
+
+    def product(self, factors: Sequence[T]) -> T:
+        """Factors in a row; 1 if there are none."""
+
+    def sum(self, terms: Iterable[Signed[T]]) -> T:
+        """Signed products in a row; 0 if there are none."""
+
+    def fenced(self, inside: T) -> T:
+        """In parentheses."""
+
+    def equation(self, left: T, right: T) -> T:
+        """Both sides of an equation."""
+
+
+class _Text:
+    """What plain text and LaTeX have in common."""
+
+    imaginary = "i"
+    times = ""
+
+    def number(self, text: str) -> str:
+        """A number as its digits."""
+        return text
+
+    def weighted(self, weight: str, name: str) -> str:
+        """A number directly before a name."""
+        return f"{weight}{name}"
+
     def product(self, factors: Sequence[str]) -> str:
-        """Factors in a row."""
+        """Factors in a row; 1 if there are none."""
+        return self.times.join(factors) or "1"
+
+    def sum(self, terms: Iterable[Signed[str]]) -> str:
+        """``a - b + c``; 0 if there are none."""
+        shown = ""
+        for term in terms:
+            if shown:
+                shown += f" {'-' if term.sign < 0 else '+'} {term.product}"
+            else:
+                shown = f"-{term.product}" if term.sign < 0 else term.product
+        return shown or "0"
+
+    def fenced(self, inside: str) -> str:
+        """In parentheses."""
+        return f"({inside})"
+
+    def equation(self, left: str, right: str) -> str:
+        """Both sides of an equation."""
+        return f"{left} = {right}"
+
+    def _is_compound(self, angle: Sequence[Signed[str]]) -> bool:
+        return len(angle) > 1 or angle[0].sign < 0 or self.times in angle[0].product
+
+    def _exponent(self, angle: Sequence[Signed[str]]) -> str:
+        """i times an angle."""
+        if len(angle) == 1 and angle[0].sign < 0 and " " not in angle[0].product:
+            return f"-i{angle[0].product}"
+        shown = self.sum(angle)
+        return f"i({shown})" if self._is_compound(angle) else f"i{shown}"
 
 
-def _compound(angle: str) -> bool:
-    return " " in angle or "·" in angle or angle.startswith("-")
-
-
-class PlainText:
+class PlainText(_Text):
     """``a2·e^(iθ12)``."""
 
-    zero = "0"
-    imaginary = "i"
+    times = "·"
 
     def name(self, name: str) -> str:
         """A variable or dimension."""
@@ -71,30 +139,24 @@ class PlainText:
         """A fixed angle."""
         return f"{writing.number_text(round(math.degrees(radians), 6))}°"
 
-    def phasor(self, angle: str) -> str:
+    def phasor(self, angle: Sequence[Signed[str]]) -> str:
         """e to the i times an angle."""
-        if angle.startswith("-") and " " not in angle:
-            return f"e^(-i{angle[1:]})"
-        return f"e^(i({angle}))" if _compound(angle) else f"e^(i{angle})"
+        return f"e^({self._exponent(angle)})"
 
-    def function(self, name: str, angle: str) -> str:
+    def function(self, name: str, angle: Sequence[Signed[str]]) -> str:
         """cos or sin of an angle."""
-        return f"{name}({angle})" if _compound(angle) else f"{name} {angle}"
+        shown = self.sum(angle)
+        return f"{name}({shown})" if self._is_compound(angle) else f"{name} {shown}"
 
     def law(self, name: str, primes: int, argument: str) -> str:
         """A named function, or a derivative of it."""
         return f"{pretty(name)}{primes * chr(39)}({argument})"
 
-    def product(self, factors: Sequence[str]) -> str:
-        """Factors in a row."""
-        return "·".join(factors)
 
-
-class Latex:
+class Latex(_Text):
     r"""``a_2 e^{i\theta_{12}}``."""
 
-    zero = "0"
-    imaginary = "i"
+    times = r" \, "
 
     def name(self, name: str) -> str:
         """A variable or dimension."""
@@ -113,15 +175,14 @@ class Latex:
         """A fixed angle."""
         return rf"{writing.number_text(round(math.degrees(radians), 6))}^\circ"
 
-    def phasor(self, angle: str) -> str:
+    def phasor(self, angle: Sequence[Signed[str]]) -> str:
         """e to the i times an angle."""
-        if angle.startswith("-") and " " not in angle:
-            return f"e^{{-i{angle[1:]}}}"
-        return f"e^{{i({angle})}}" if _compound(angle) else f"e^{{i{angle}}}"
+        return f"e^{{{self._exponent(angle)}}}"
 
-    def function(self, name: str, angle: str) -> str:
+    def function(self, name: str, angle: Sequence[Signed[str]]) -> str:
         """cos or sin of an angle."""
-        return rf"\{name}({angle})" if _compound(angle) else rf"\{name} {angle}"
+        shown = self.sum(angle)
+        return rf"\{name}({shown})" if self._is_compound(angle) else rf"\{name} {shown}"
 
     def law(self, name: str, primes: int, argument: str) -> str:
         """A named function, or a derivative of it."""
@@ -129,7 +190,3 @@ class Latex:
         if primes:
             shown = f"{{{shown}}}{primes * chr(39)}"
         return rf"{shown}\left({argument}\right)"
-
-    def product(self, factors: Sequence[str]) -> str:
-        """Factors in a row."""
-        return r" \, ".join(factors)

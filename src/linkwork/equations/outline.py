@@ -10,7 +10,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.kernels.piecewise import Piecewise
 
-__all__ = ["Outline"]
+__all__ = ["Outline", "spline"]
 
 _SAMPLES = 16  # of every piece, among which the nearest place is sought
 _FINE = 64  # of every piece, among which the least rounded place is sought
@@ -39,7 +39,7 @@ class Outline:
         if closed:
             u = u * (2.0 * np.pi / u[-1])
             u[-1] = 2.0 * np.pi
-        return cls(x=_spline(u, z.real, closed), y=_spline(u, z.imag, closed))
+        return cls(x=spline(u, z.real, closed), y=spline(u, z.imag, closed))
 
     def at(self, u: Array) -> ComplexArray:
         """Points x + iy."""
@@ -74,7 +74,7 @@ class Outline:
         return float(u[np.abs(self.at(u) - point).argmin()])
 
 
-def _spline(u: Array, values: Array, closed: bool) -> Piecewise:
+def spline(u: Array, values: Array, closed: bool) -> Piecewise:
     """The cubic spline with two continuous derivatives (de Boor, A Practical Guide to Splines)."""
     h = np.diff(u)
     chords = np.diff(values) / h
@@ -82,11 +82,11 @@ def _spline(u: Array, values: Array, closed: bool) -> Piecewise:
     if closed:
         before = np.roll(h, 1)
         right = 6.0 * (chords - np.roll(chords, 1))
-        second[:-1] = _solved_around(before, 2.0 * (before + h), h, right)
+        second[:-1] = _solve_cyclic(before, 2.0 * (before + h), h, right)
         second[-1] = second[0]
     else:
         right = 6.0 * np.diff(chords)[:, None]
-        second[1:-1] = _solved(h[:-1], 2.0 * (h[:-1] + h[1:]), h[1:], right)[:, 0]
+        second[1:-1] = _solve_tridiagonal(h[:-1], 2.0 * (h[:-1] + h[1:]), h[1:], right)[:, 0]
     powers = np.stack(
         [
             values[:-1],
@@ -99,7 +99,7 @@ def _spline(u: Array, values: Array, closed: bool) -> Piecewise:
     return Piecewise(breaks=u, powers=powers, sines=np.zeros((len(h), 3)), periodic=closed)
 
 
-def _solved(low: Array, middle: Array, high: Array, right: Array) -> Array:
+def _solve_tridiagonal(low: Array, middle: Array, high: Array, right: Array) -> Array:
     """x (K, R) of low_k x_{k-1} + middle_k x_k + high_k x_{k+1} = right_k, (K, R).
 
     Elimination without exchange of rows: the middle outweighs its neighbours.
@@ -116,12 +116,12 @@ def _solved(low: Array, middle: Array, high: Array, right: Array) -> Array:
     return right
 
 
-def _solved_around(low: Array, middle: Array, high: Array, right: Array) -> Array:
+def _solve_cyclic(low: Array, middle: Array, high: Array, right: Array) -> Array:
     """The same where the first and the last are neighbours: x (K,), by the last one's influence."""
     corner = np.zeros(len(middle) - 1)
     corner[0], corner[-1] = low[0], corner[-1] + high[-2]
     inner = np.stack([right[:-1], corner], axis=1)
-    own, by_last = _solved(low[:-1], middle[:-1], high[:-1], inner).T
+    own, by_last = _solve_tridiagonal(low[:-1], middle[:-1], high[:-1], inner).T
     last = right[-1] - low[-1] * own[-1] - high[-1] * own[0]
     last /= middle[-1] - low[-1] * by_last[-1] - high[-1] * by_last[0]
     return np.append(own - by_last * last, last)

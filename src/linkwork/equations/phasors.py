@@ -16,7 +16,7 @@ from linkwork.expression.values import value
 from linkwork.foundation import lanes
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import ExpressionError, choices
-from linkwork.foundation.lanes import exponential, settled, shown_by, vector
+from linkwork.foundation.lanes import display_value, exponential, uniform_value, vector
 
 __all__ = ["Monomial", "PhasorReader"]
 
@@ -90,7 +90,7 @@ class PhasorReader:
             Where the formula is not of this shape, with the column.
         """
         self.text = text
-        return _joined(self._sum(node))
+        return _join_like_terms(self._sum(node))
 
     def _error(self, node: Node, message: str) -> ExpressionError:
         return ExpressionError(f"column {node.column}: {message}", self.text, node.column)
@@ -102,15 +102,15 @@ class PhasorReader:
             case Name():
                 return self._name(node)
             case Negative():
-                return [_negated(m) for m in self._sum(node.operand)]
+                return [_negate(m) for m in self._sum(node.operand)]
             case Binary("+"):
                 return self._sum(node.left) + self._sum(node.right)
             case Binary("-"):
-                return self._sum(node.left) + [_negated(m) for m in self._sum(node.right)]
+                return self._sum(node.left) + [_negate(m) for m in self._sum(node.right)]
             case Binary("*"):
-                return self._multiplied(node)
+                return self._multiply(node)
             case Binary("/"):
-                return self._divided(node)
+                return self._divide(node)
             case Binary():
                 return self._power(node)
             case Call("exp"):
@@ -140,7 +140,7 @@ class PhasorReader:
             f"{choices('names', self.known, node.name)}",
         )
 
-    def _multiplied(self, node: Binary) -> list[Monomial]:
+    def _multiply(self, node: Binary) -> list[Monomial]:
         left, right = self._sum(node.left), self._sum(node.right)
         if all(m.constant for m in left) and len(left) > 1:
             left = [_whole(left, node.left)]
@@ -151,7 +151,7 @@ class PhasorReader:
             raise self._error(node, "multiplied out, this product has more than 1000 terms")
         return product
 
-    def _divided(self, node: Binary) -> list[Monomial]:
+    def _divide(self, node: Binary) -> list[Monomial]:
         right = self._sum(node.right)
         if not all(m.constant for m in right):
             raise self._error(node, "a loop equation cannot be divided by an unknown")
@@ -185,7 +185,7 @@ class PhasorReader:
             raise self._error(node, "this power is not a finite number") from None
 
     def _exponential(self, node: Node, exponent: Node) -> list[Monomial]:
-        terms = _joined(self._sum(exponent))
+        terms = _join_like_terms(self._sum(exponent))
         if all(m.constant and m.value.imag == 0 for m in terms):
             try:
                 return [Monomial(exponential(sum(m.value for m in terms)), node)]
@@ -210,18 +210,18 @@ class PhasorReader:
                     node, "the exponent has a part without i: a rotation is e^(i*angle)"
                 )
             if m.factors:
-                weight = settled(m.value.imag)
+                weight = uniform_value(m.value.imag)
                 weights[m.factors[0]] = weights.get(m.factors[0], 0.0) + weight
             else:
                 turn += m.value.imag * self.unit.radians
         phase = tuple((name, weight) for name, weight in weights.items() if weight)
         if not phase:
-            return [Monomial(lanes.turn(turn), node)]
+            return [Monomial(lanes.cis(turn), node)]
         if turn == 0.0:
             return [Monomial(1.0 + 0j, None, (), phase)]
-        angle = shown_by(turn).real / self.unit.radians
+        angle = display_value(turn).real / self.unit.radians
         constant = Binary("^", Name("e", "e"), Binary("*", Name("i", "i"), Number(angle)))
-        return [Monomial(lanes.turn(turn), constant, (), phase)]
+        return [Monomial(lanes.cis(turn), constant, (), phase)]
 
     def _function(self, node: Call) -> list[Monomial]:
         for used in names_in(node):
@@ -235,7 +235,7 @@ class PhasorReader:
         return [Monomial(vector(number, 0.0), node)]
 
 
-def _negated(m: Monomial) -> Monomial:
+def _negate(m: Monomial) -> Monomial:
     shown = m.shown
     flipped: Node = (
         Negative(Number(1.0) if shown is None else shown)
@@ -250,7 +250,7 @@ def _whole(terms: list[Monomial], node: Node) -> Monomial:
     return Monomial(sum(m.value for m in terms), node)
 
 
-def _joined(terms: list[Monomial]) -> list[Monomial]:
+def _join_like_terms(terms: list[Monomial]) -> list[Monomial]:
     """Sums of like monomials; constants without a variable stay apart, as written."""
     found: dict[tuple[object, ...], Monomial] = {}
     for k, m in enumerate(terms):

@@ -51,7 +51,7 @@ class FormulaRow:
             value, gradient[:, column] = jet.v, jet.d1
         return value, gradient
 
-    def second(self, v: Array, d: Array) -> Array:
+    def second_directional_derivative(self, v: Array, d: Array) -> Array:
         """Second derivative along d, (B,)."""
         return self._jet(v, d).d2
 

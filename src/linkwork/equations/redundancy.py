@@ -16,15 +16,14 @@ import numpy as np
 from linkwork.equations.frames import Frames
 from linkwork.equations.model import LawEquation, LinearEquation
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.names import canonical
-from linkwork.mechanism.linkage import GROUND
+from linkwork.foundation.names import GROUND, canonical
+from linkwork.foundation.rounding import RANK_TOLERANCE
 
 __all__ = ["Bar", "released_links"]
 
 #: A link, and the two of its points that are joints.
 Bar = tuple[str, str, str]
 
-_RANK = 1e-9  # relative: a smaller singular value counts as none
 _STRESSED = 1e-6  # of the largest: a link with less carries no force
 _ALIKE = 0.5  # of the largest: among such links the last one named is released
 
@@ -112,7 +111,7 @@ def _stresses(
             if name in unknown:
                 matrix[row, columns[name]] += value
     u, sizes, _ = np.linalg.svd(matrix)
-    rank = int((sizes > _RANK * sizes[0]).sum()) if len(sizes) else 0
+    rank = int((sizes > RANK_TOLERANCE * sizes[0]).sum()) if len(sizes) else 0
     stress: Array = u[:, rank:].T @ elongations
     return stress
 

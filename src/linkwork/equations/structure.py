@@ -101,7 +101,7 @@ class Structure:
         if wanted > 0:
             candidates = graph.candidates(tree)
             walks = sorted(
-                ((self._closed(cycle, known), cycle) for cycle in candidates),
+                ((self._close_walk(cycle, known), cycle) for cycle in candidates),
                 key=lambda pair: (len(pair[0]), pair[0]),
             )
             basis = _IndependentSet({edge: k for k, edge in enumerate(edges)})
@@ -110,10 +110,10 @@ class Structure:
                     loops.append(walk)
         return StructureBlock(tuple(graph.new), tuple(tree), tuple(loops))
 
-    def _closed(self, cycle: tuple[Edge, ...], known: set[Node]) -> tuple[Node, ...]:
+    def _close_walk(self, cycle: tuple[Edge, ...], known: set[Node]) -> tuple[Node, ...]:
         """The walk around a cycle of block edges, closed through known bodies where it leaves."""
         walk: list[Node] = []
-        steps = _oriented(cycle, known)
+        steps = _orient_cycle(cycle, known)
         for k, (here, there) in enumerate(steps):
             walk.append(here)
             following = steps[(k + 1) % len(steps)][0]
@@ -206,7 +206,7 @@ class _IndependentSet:
         return False
 
 
-def _oriented(cycle: tuple[Edge, ...], known: set[Node]) -> list[Edge]:
+def _orient_cycle(cycle: tuple[Edge, ...], known: set[Node]) -> list[Edge]:
     """The edges of a cycle, each turned so that it leads on to the next.
 
     Known nodes are one place: the cycle may leave it at another node than it came in.

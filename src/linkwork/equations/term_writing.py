@@ -3,57 +3,41 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 from linkwork.equations.model import Term
-from linkwork.equations.notation import Notation
+from linkwork.equations.notation import Notation, Signed
 from linkwork.expression.tree import Number
 
-__all__ = ["Signed", "TermWriter", "joined"]
+__all__ = ["TermWriter"]
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Signed:
-    """A product with its sign; ``text`` empty stands for 1, ``zero`` for nothing."""
-
-    sign: int
-    text: str
-
-
-def joined(parts: Iterable[Signed]) -> str:
-    """A sum of signed products: ``a - b + c``; ``0`` if empty."""
-    shown = ""
-    for part in parts:
-        text = part.text or "1"
-        if shown:
-            shown += f" {'-' if part.sign < 0 else '+'} {text}"
-        else:
-            shown = f"-{text}" if part.sign < 0 else text
-    return shown or "0"
-
-
-@dataclass(frozen=True)
-class TermWriter:
+class TermWriter(Generic[T]):
     """Writes terms and their derivatives; ``names`` maps symbols to what is shown."""
 
-    notation: Notation
+    notation: Notation[T]
     names: Mapping[str, str]
 
-    def angle(self, term: Term, sign: int = 1, with_turn: bool = True) -> str:
+    def angle(self, term: Term, sign: int = 1, with_turn: bool = True) -> list[Signed[T]]:
         """Σ weight θ (+ turn), times sign."""
         parts = []
         for symbol, weight in term.phase:
             w = weight * sign
-            name = self.notation.name(self.names[symbol])
-            shown = name if abs(w) == 1 else self.notation.product([f"{abs(w):g}", name])
+            factors = [] if abs(w) == 1 else [self.notation.number(f"{abs(w):g}")]
+            factors.append(self.notation.name(self.names[symbol]))
+            shown = factors[0] if len(factors) == 1 else self.notation.product(factors)
             parts.append(Signed(-1 if w < 0 else 1, shown))
         if with_turn and term.turn:
             turn = term.turn * sign
             parts.append(Signed(-1 if turn < 0 else 1, self.notation.degrees(abs(turn))))
-        return joined(parts)
+        return parts
 
-    def _factors(self, term: Term, length: bool = True) -> list[str]:
+    def _factors(self, term: Term, length: bool = True) -> list[T]:
         found = []
         if term.magnitude is not None and term.magnitude != Number(1.0):
             found.append(self.notation.node(term.magnitude))
@@ -61,19 +45,21 @@ class TermWriter:
             found.append(self.notation.name(self.names[term.length]))
         return found
 
-    def _conjugated(self, term: Term, length: bool) -> list[str]:
+    def _conjugated(self, term: Term, length: bool) -> list[T]:
         """The conjugate of a genuinely complex factor, as numbers."""
         z = (term.value * term.sign).conjugate()
-        sign = "-" if z.imag < 0 else "+"
-        imaginary = self.notation.product([f"{abs(z.imag):.10g}", self.notation.imaginary])
-        found = [f"({z.real:.10g} {sign} {imaginary})"]
+        write = self.notation
+        imaginary = write.product([write.number(f"{abs(z.imag):.10g}"), write.imaginary])
+        real = Signed(-1 if z.real < 0 else 1, write.number(f"{abs(z.real):.10g}"))
+        parts = [real, Signed(-1 if z.imag < 0 else 1, imaginary)]
+        found = [write.fenced(write.sum(parts))]
         if length and term.length is not None:
             found.append(self.notation.name(self.names[term.length]))
         return found
 
     def complex_form(
         self, term: Term, *, length: bool = True, factor_i: float = 0.0, conjugate: bool = False
-    ) -> Signed:
+    ) -> Signed[T]:
         """The term (or its derivative: times i·weight, or without its length) as a phasor.
 
         A quarter turn is written as the factor i.
@@ -86,7 +72,9 @@ class TermWriter:
             sign, powers_of_i = -sign, 0
         if conjugate and powers_of_i:
             sign = -sign
-        factors = [f"{abs(factor_i):g}"] if abs(factor_i) not in (0.0, 1.0) else []
+        factors = (
+            [self.notation.number(f"{abs(factor_i):g}")] if abs(factor_i) not in (0.0, 1.0) else []
+        )
         if powers_of_i:
             factors.append(self.notation.imaginary)
         if conjugate and self._complex_magnitude(term):
@@ -94,13 +82,13 @@ class TermWriter:
         else:
             factors += self._factors(term, length)
         angle = self.angle(term, -1 if conjugate else 1, with_turn=not quarter)
-        if angle != "0":
+        if angle:
             factors.append(self.notation.phasor(angle))
         return Signed(sign, self.notation.product(factors))
 
     def real_form(
         self, term: Term, *, imaginary: bool, length: bool = True, weight: float | None = None
-    ) -> list[Signed]:
+    ) -> list[Signed[T]]:
         """Real or imaginary part of the term; with ``weight`` of its derivative by an angle."""
         wanted = "sin" if imaginary else "cos"
         sign = term.sign
@@ -109,7 +97,7 @@ class TermWriter:
             # d cos = -sin, d sin = cos
             sign *= (1 if weight > 0 else -1) * (1 if wanted == "sin" else -1)
             wanted = "cos" if wanted == "sin" else "sin"
-            factors += [] if abs(weight) == 1 else [f"{abs(weight):g}"]
+            factors += [] if abs(weight) == 1 else [self.notation.number(f"{abs(weight):g}")]
         quarter = abs(abs(term.turn) - math.pi / 2) < 1e-12
         if quarter:
             # cos(x ± 90°) = ∓sin x, sin(x ± 90°) = ±cos x
@@ -120,7 +108,7 @@ class TermWriter:
             return self._split(term, wanted, sign, factors, length)
         angle = self.angle(term, with_turn=not quarter)
         factors += self._factors(term, length)
-        if angle == "0":
+        if not angle:
             return [] if wanted == "sin" else [Signed(sign, self.notation.product(factors))]
         factors.append(self.notation.function(wanted, angle))
         return [Signed(sign, self.notation.product(factors))]
@@ -131,8 +119,8 @@ class TermWriter:
         return abs(rotated.imag) > 1e-12 * abs(rotated)
 
     def _split(
-        self, term: Term, wanted: str, sign: int, factors: list[str], length: bool
-    ) -> list[Signed]:
+        self, term: Term, wanted: str, sign: int, factors: list[T], length: bool
+    ) -> list[Signed[T]]:
         """(p + iq) e^{ix} has the parts p cos x - q sin x and p sin x + q cos x."""
         z = term.value * term.sign
         if wanted == "cos":
@@ -142,12 +130,12 @@ class TermWriter:
         angle = self.angle(term)
         found = []
         for number, function, s in pairs:
-            if number == 0 or (angle == "0" and function == "sin"):
+            if number == 0 or (not angle and function == "sin"):
                 continue
-            text = [*factors, f"{abs(number):.10g}"]
+            text = [*factors, self.notation.number(f"{abs(number):.10g}")]
             if length and term.length is not None:
                 text.append(self.notation.name(self.names[term.length]))
-            if angle != "0":
+            if angle:
                 text.append(self.notation.function(function, angle))
             found.append(Signed(sign * s * (1 if number > 0 else -1), self.notation.product(text)))
         return found

@@ -6,12 +6,12 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
-from linkwork.equations.mathml import MathML, math_element
+from linkwork.equations.mathml import MathML
 from linkwork.equations.model import LawEquation, LoopEquation, LoopEquations, Variable
-from linkwork.equations.notation import Latex, Notation, PlainText
-from linkwork.equations.term_writing import Signed, TermWriter, joined
+from linkwork.equations.notation import Latex, Notation, PlainText, Signed
+from linkwork.equations.term_writing import TermWriter
 from linkwork.expression.derivative import derivative
 from linkwork.expression.tree import Binary, Number
 from linkwork.expression.writing import number_text
@@ -20,6 +20,7 @@ from linkwork.foundation.names import pretty
 __all__ = ["EquationSheet"]
 
 Matrix = list[list[str]]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -32,61 +33,64 @@ class EquationSheet:
     def _names(self) -> dict[str, str]:
         return {v.symbol: v.shown for v in self.equations.variables}
 
-    def _writer(self, notation: Notation) -> TermWriter:
+    def _writer(self, notation: Notation[T]) -> TermWriter[T]:
         return TermWriter(notation, self._names)
 
     # What is shown, in one notation
 
-    def loop(self, loop: LoopEquation, notation: Notation) -> str:
+    def loop(self, loop: LoopEquation, notation: Notation[T]) -> T:
         """``a2·e^(iθ12) + … = …``."""
         write = self._writer(notation)
-        left = joined(write.complex_form(term) for term in loop.left)
-        right = joined(write.complex_form(term) for term in loop.right)
-        return f"{left} = {right}"
+        left = notation.sum(write.complex_form(term) for term in loop.left)
+        right = notation.sum(write.complex_form(term) for term in loop.right)
+        return notation.equation(left, right)
 
-    def real_rows(self, notation: Notation) -> list[str]:
+    def real_rows(self, notation: Notation[T]) -> list[T]:
         """Every real equation F_k = …: real parts, imaginary parts, linear, plain, laws."""
         write = self._writer(notation)
         rows = []
         for imaginary in (False, True):
             for loop in self.equations.loops:
                 forms = [write.real_form(term, imaginary=imaginary) for term in loop.terms]
-                rows.append(joined(signed for form in forms for signed in form))
+                rows.append(notation.sum(signed for form in forms for signed in form))
         for line in self.equations.linear:
             parts = self._sum(line.terms, line.constant, notation, angle=line.kind == "angle")
-            rows.append(joined(parts))
+            rows.append(notation.sum(parts))
         rows += [notation.formula(_difference(e.left, e.right)) for e in self.equations.real]
         for law in self.equations.laws:
             parts = self._sum(law.terms, law.constant, notation, angle=law.kind == "angle")
-            rows.append(joined([*parts, Signed(-1, self._law(law, notation))]))
+            rows.append(notation.sum([*parts, Signed(-1, self._law(law, notation))]))
         return rows
 
     def _sum(
         self,
         terms: tuple[tuple[str, float], ...],
         constant: float,
-        notation: Notation,
+        notation: Notation[T],
         *,
         angle: bool,
-    ) -> list[Signed]:
+    ) -> list[Signed[T]]:
         """Σ weight · name + constant."""
-        parts = [
-            Signed(-1 if w < 0 else 1, self._weighted(abs(w), notation.name(self._names[n])))
-            for n, w in terms
-        ]
+        parts = []
+        for symbol, weight in terms:
+            shown = notation.name(self._names[symbol])
+            if abs(weight) != 1:
+                shown = notation.weighted(number_text(abs(weight)), shown)
+            parts.append(Signed(-1 if weight < 0 else 1, shown))
         if constant:
             size = abs(constant)
-            shown = notation.degrees(size) if angle else number_text(float(f"{size:.10g}"))
+            fixed = number_text(float(f"{size:.10g}"))
+            shown = notation.degrees(size) if angle else notation.number(fixed)
             parts.append(Signed(-1 if constant < 0 else 1, shown))
         return parts
 
-    def _law(self, law: LawEquation, notation: Notation, primes: int = 0) -> str:
+    def _law(self, law: LawEquation, notation: Notation[T], primes: int = 0) -> T:
         """The function of a law equation, or its derivative, at its argument."""
         angle = {v.symbol: v.kind for v in self.equations.variables}[law.inner[0][0]] == "angle"
-        argument = joined(self._sum(law.inner, law.offset, notation, angle=angle))
+        argument = notation.sum(self._sum(law.inner, law.offset, notation, angle=angle))
         return notation.law(law.shown, law.primes + primes, argument)
 
-    def _law_entry(self, law: LawEquation, symbol: str, notation: Notation) -> str:
+    def _law_entry(self, law: LawEquation, symbol: str, notation: Notation[str]) -> str:
         """∂/∂symbol of a law equation."""
         straight, turned = dict(law.terms).get(symbol, 0.0), dict(law.inner).get(symbol, 0.0)
         parts = []
@@ -96,13 +100,9 @@ class EquationSheet:
             slope = self._law(law, notation, primes=1)
             weight = [] if abs(turned) == 1 else [number_text(abs(turned))]
             parts.append(Signed(1 if turned < 0 else -1, notation.product([*weight, slope])))
-        return joined(parts)
+        return notation.sum(parts)
 
-    @staticmethod
-    def _weighted(weight: float, name: str) -> str:
-        return name if weight == 1 else f"{number_text(weight)}{name}"
-
-    def complex_jacobian(self, notation: Notation) -> Matrix:
+    def complex_jacobian(self, notation: Notation[str]) -> Matrix:
         """Loops, then their conjugates, by the unknowns."""
         write = self._writer(notation)
         rows = []
@@ -121,11 +121,11 @@ class EquationSheet:
                             parts.append(
                                 write.complex_form(term, length=False, conjugate=conjugate)
                             )
-                    row.append(joined(parts))
+                    row.append(notation.sum(parts))
                 rows.append(row)
         return rows
 
-    def real_jacobian(self, notation: Notation) -> Matrix:
+    def real_jacobian(self, notation: Notation[str]) -> Matrix:
         """∂F/∂x as real numbers: real parts, imaginary parts, linear, plain equations, laws."""
         write = self._writer(notation)
         rows = []
@@ -160,16 +160,16 @@ class EquationSheet:
         return rows
 
     def _real_entry(
-        self, write: TermWriter, loop: LoopEquation, unknown: Variable, imaginary: bool
+        self, write: TermWriter[str], loop: LoopEquation, unknown: Variable, imaginary: bool
     ) -> str:
-        parts: list[Signed] = []
+        parts: list[Signed[str]] = []
         for term in loop.terms:
             weight = dict(term.phase).get(unknown.symbol, 0.0)
             if weight:
                 parts += write.real_form(term, imaginary=imaginary, weight=weight)
             if term.length == unknown.symbol:
                 parts += write.real_form(term, imaginary=imaginary, length=False)
-        return joined(parts)
+        return write.notation.sum(parts)
 
     # Plain text
 
@@ -180,30 +180,28 @@ class EquationSheet:
     def _text_lines(self, width: int) -> Iterator[str]:
         notation, equations = PlainText(), self.equations
         described = ", ".join(map(self._described, equations.unknowns))
-        yield from _wrapped("unknowns  ", described, width)
+        yield from _wrap("unknowns  ", described, width)
         if equations.inputs:
-            yield from _wrapped(
-                "inputs    ", ", ".join(map(self._described, equations.inputs)), width
-            )
+            yield from _wrap("inputs    ", ", ".join(map(self._described, equations.inputs)), width)
         values = [f"{pretty(n)} = {number_text(v)}" for n, v in equations.symbols.items()]
         if values:
-            yield from _wrapped("with      ", ", ".join(values), width)
+            yield from _wrap("with      ", ", ".join(values), width)
         for k, loop in enumerate(equations.loops):
             yield ""
             yield f'Loop {k + 1} "{loop.label}"'
-            yield from _wrapped("  ", self.loop(loop, notation), width, "      ")
+            yield from _wrap("  ", self.loop(loop, notation), width, "      ")
         for k in range(len(equations.loops), len(equations.labels)):
             yield ""
             yield f'Equation "{equations.labels[k]}"'
             row = self.real_rows(notation)[k + len(equations.loops)]
-            yield from _wrapped("  ", f"{row} = 0", width, "      ")
+            yield from _wrap("  ", f"{row} = 0", width, "      ")
             if (law := k - len(equations.labels) + len(equations.laws)) >= 0:
-                yield from _wrapped("  where ", equations.laws[law].meaning, width, "      ")
+                yield from _wrap("  where ", equations.laws[law].meaning, width, "      ")
         if equations.loops:
             yield from ("", "Real form")
             for k, row_text in enumerate(self.real_rows(notation)):
                 head = f"  F{k + 1} = "
-                yield from _wrapped(head, row_text, width, "       ")
+                yield from _wrap(head, row_text, width, "       ")
         columns = [notation.name(u.shown) for u in equations.unknowns]
         if equations.loops:
             count = len(equations.loops)
@@ -238,7 +236,7 @@ class EquationSheet:
         parts.append(self._latex_matrix(self.real_jacobian(notation), notation))
         return "\n".join(parts)
 
-    def _latex_matrix(self, matrix: Matrix, notation: Notation) -> str:
+    def _latex_matrix(self, matrix: Matrix, notation: Latex) -> str:
         rows = " \\\\\n".join("    " + " & ".join(row) for row in matrix)
         unknowns = r" \\ ".join(
             rf"\delta {notation.name(u.shown)}" for u in self.equations.unknowns
@@ -253,10 +251,10 @@ class EquationSheet:
         """Every equation as its label and a ``<math>`` element for a page."""
         notation, equations = MathML(), self.equations
         rows = [self.loop(loop, notation) for loop in equations.loops]
-        rows += [f"{row} = 0" for row in self.real_rows(notation)[2 * len(rows) :]]
-        return [
-            (label, math_element(row)) for label, row in zip(equations.labels, rows, strict=True)
-        ]
+        zero = notation.number("0")
+        rest = self.real_rows(notation)[2 * len(rows) :]
+        rows += [notation.equation(row, zero) for row in rest]
+        return [(label, row.element()) for label, row in zip(equations.labels, rows, strict=True)]
 
     # Data
 
@@ -292,7 +290,7 @@ def _environment(name: str, body: str) -> str:
     return f"\\begin{{{name}}}\n{body}\n\\end{{{name}}}\n"
 
 
-def _wrapped(head: str, body: str, width: int, indent: str = "") -> list[str]:
+def _wrap(head: str, body: str, width: int, indent: str = "") -> list[str]:
     return textwrap.wrap(
         body,
         width,
@@ -320,6 +318,6 @@ def _matrix_lines(
     for label, row in zip(labels, matrix, strict=True):
         for column, entry in zip(columns, row, strict=True):
             if entry != "0":
-                yield from _wrapped(f"  ∂({label})/∂{column} = ", entry, width, "      ")
+                yield from _wrap(f"  ∂({label})/∂{column} = ", entry, width, "      ")
     if any("0" in row for row in matrix):
         yield "  all others = 0"

@@ -1,4 +1,4 @@
-"""Writing results for other programs."""
+"""Export of results to files of other programs."""
 
 from __future__ import annotations
 
@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
-    from linkwork.export.csv_file import csv_lines, csv_text
-    from linkwork.export.workbook.workbook import WrittenWorkbook, workbook_of
-else:
-    __getattr__ = loader(
-        __name__,
-        {
-            "csv_file": ("csv_lines", "csv_text"),
-            "workbook.workbook": ("WrittenWorkbook", "workbook_of"),
-        },
+    from linkwork.export.csv_file import (
+        csv_lines as csv_lines,
+        csv_text as csv_text,
     )
-
-__all__ = ["WrittenWorkbook", "csv_lines", "csv_text", "workbook_of"]
+    from linkwork.export.workbook.workbook import (
+        WrittenWorkbook as WrittenWorkbook,
+        workbook_of as workbook_of,
+    )
+else:
+    __getattr__ = loader(__name__)

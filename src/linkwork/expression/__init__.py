@@ -1,1 +1,1 @@
-"""Formulas as people type them: grammar, values, derivatives, LaTeX. Never ``eval``."""
+"""Formulas in text form: grammar, values, derivatives, LaTeX; without ``eval``."""

@@ -1,4 +1,4 @@
-"""The derivative of a formula as a formula, for showing; numbers come from jets."""
+"""The derivative of a formula as a formula, for display; jets compute the numbers."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def _chain(node: Call, name: str, radians: float) -> Node:
         )
         whole = Binary("/", top, Binary("+", square, Binary("^", other, Number(2.0))))
         return whole if radians == 1.0 else _product(Number(1.0 / radians), whole)
-    raise ValueError(f"{node.function} has no derivative in one formula")
+    raise ValueError(f"{node.function} has a derivative that is not a single formula")
 
 
 def _negative(node: Node) -> Node:

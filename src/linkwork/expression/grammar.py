@@ -1,4 +1,4 @@
-"""Reading a formula: a small recursive-descent grammar of our own.
+"""Parse a formula by recursive descent.
 
 ::
 
@@ -137,7 +137,7 @@ class _Reader:
     def __init__(self, text: str) -> None:
         if len(text) > _LONGEST:
             raise ExpressionError(
-                f"the formula has {len(text)} characters, at most {_LONGEST} are read",
+                f"the formula has {len(text)} characters, at most {_LONGEST} are allowed",
                 text[:60],
                 1,
             )

@@ -44,7 +44,7 @@ def applied(name: str, arguments: Sequence[float]) -> float:
     """
     given: list[object] = list(arguments)
     first = next(number for number in given if isinstance(number, Lanes))
-    found = first.applied(FUNCTIONS[name], *given)
+    found = first.apply(FUNCTIONS[name], *given)
     wrong = ~np.isfinite(found.values)
     if name in _PARTIAL and wrong.any() and first.consensus.decide(wrong):
         raise OverflowError if name == "exp" else ValueError

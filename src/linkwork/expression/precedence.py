@@ -1,4 +1,4 @@
-"""How tightly the parts of a formula hold together: what needs parentheses where."""
+"""The precedence of operators, which decides where parentheses are needed."""
 
 from __future__ import annotations
 

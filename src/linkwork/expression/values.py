@@ -1,4 +1,4 @@
-"""The value of a formula in plain numbers."""
+"""Evaluate a formula in plain numbers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwork.expression.lane_functions import applied
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import ExpressionError, choices
-from linkwork.foundation.lanes import as_float, broken, finite, many
+from linkwork.foundation.lanes import as_float, finite, is_batched, is_fractional
 
 __all__ = ["value"]
 
@@ -94,7 +94,7 @@ def _combined(node: Binary, left: float, right: float, text: str) -> float:
             message = "division by zero"
         case "/":
             return left / right
-        case _ if (left < 0) & broken(right):
+        case _ if (left < 0) & is_fractional(right):
             message = f"{left:g}^{right:g} is not a real number"
         case _ if (left == 0) & (right < 0):
             message = "division by zero"
@@ -105,7 +105,7 @@ def _combined(node: Binary, left: float, right: float, text: str) -> float:
 
 def _applied(node: Call, arguments: list[float], unit: AngleUnit, text: str) -> float:
     name = node.function
-    lanes = any(map(many, arguments))
+    lanes = any(map(is_batched, arguments))
     try:
         if name in _OF_ANGLE:
             angle = arguments[0] * unit.radians

@@ -1,4 +1,4 @@
-"""Writing a formula: as plain text in the grammar's own notation, and as LaTeX."""
+"""Print a formula as plain text or as LaTeX."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Room that begins where a cache line does: vector instructions take a third longer across two."""
+"""Arrays aligned to cache lines, without which vector instructions take a third longer."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 
-__all__ = ["aligned"]
+__all__ = ["allocate_aligned"]
 
 _LINE = 64  # bytes
 
 
-def aligned(*shape: int) -> Array:
+def allocate_aligned(*shape: int) -> Array:
     """Numbers that are not set, in a C-contiguous array at a multiple of 64 bytes."""
     size = math.prod(shape)
     room: Array = np.empty(size + _LINE // 8 - 1)

@@ -1,4 +1,4 @@
-"""Angle units. Radians inside; the file's unit in files, tables and everyday objects."""
+"""Angle units. Radians inside; the file's unit in files, tables and results."""
 
 from __future__ import annotations
 
@@ -23,7 +23,20 @@ def within_half_a_turn(gap: Array, turns: BoolArray) -> Array:
 
 
 class AngleUnit(Enum):
-    """The unit of every angle a person reads or writes; the value is its name in files."""
+    """The unit of the angles in files, tables and results; the value is its name in files.
+
+    Internally every angle is in radians.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.AngleUnit("deg") is lw.AngleUnit.DEGREE
+    True
+    >>> round(lw.AngleUnit.DEGREE.from_radians(1.0471975511965976), 9)
+    60.0
+    >>> lw.AngleUnit.RADIAN.turn
+    6.283185307179586
+    """
 
     DEGREE = "deg"
     RADIAN = "rad"

@@ -1,4 +1,4 @@
-"""Names for NumPy arrays by what they hold.
+"""Type names for NumPy arrays by their contents.
 
 Importing ``numpy.typing`` costs a quarter of importing NumPy, so only type checkers do.
 """

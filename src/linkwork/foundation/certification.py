@@ -1,66 +1,49 @@
-"""Whether a position is proved, or why not: sentences."""
+"""Whether a position is proved, or why not, as sentences."""
 
 from __future__ import annotations
 
-from enum import Enum
-
-from linkwork.foundation.arrays import StatusArray
+from linkwork.foundation.coded_enum import CodedEnum
 
 __all__ = ["Certification"]
 
 
-class Certification(Enum):
-    """The certificate of one position in one word, with a sentence."""
+class Certification(CodedEnum):
+    """Whether a position is proved, or why not; the value is a sentence.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> position = lw.example("four-bar").solve(at=60, certify=False)
+    >>> position.certificate.certification.value
+    'certificates were switched off'
+    """
 
     CERTIFIED = (
-        "a true position is proved to lie within the radius, no other near it, "
-        "and the motion from the start to it stays on one branch"
+        "proved: a true position lies within the radius, no other near it, "
+        "and the motion from the start stays on one branch"
     )
     NOT_ASKED = "certificates were switched off"
     NO_POSITION = "there is no position to certify"
-    NO_BOUND = "plain equations have no known bound of their curvature, so nothing is proved"
+    NO_BOUND = "plain equations have no known bound on their curvature, so there is no proof"
     POSITION_NOT_PROVED = (
-        "too near to a singular position: rounding is larger than what the proof allows"
+        "too close to a singular position: rounding errors exceed the margin of the proof"
     )
     MOTION_NOT_PROVED = (
-        "the position is proved, but not that the motion from the start to it stays on one branch"
+        "the position is proved, but not that the motion from the start stays on one branch"
     )
     BRANCH_CHOSEN = (
-        "the position is proved; at a change point before it nothing but the chosen way of going "
-        "on decides the branch"
+        "the position is proved; at a change point before it, the chosen policy decides the branch"
     )
     SUBSET_CERTIFIED = (
-        "proved for the mechanism without its redundant links; that these fit holds to rounding, "
-        "not proved"
+        "proved for the mechanism without its redundant links; these fit to rounding, without proof"
     )
-    CONFIGURATION_CERTIFIED = (
-        "a true position is proved to lie within the radius, and no other near it"
-    )
+    CONFIGURATION_CERTIFIED = "proved: a true position lies within the radius, and no other near it"
     PROOF_TOO_LONG = (
-        "the position is proved; that the motion from the start to it stays on one branch would "
-        "take more steps of proof than are tried"
+        "the position is proved; the proof that the motion from the start stays on one branch "
+        "would take too many steps"
     )
 
     @property
     def certified(self) -> bool:
         """Whether everything that belongs to the position is proved."""
         return self in (Certification.CERTIFIED, Certification.CONFIGURATION_CERTIFIED)
-
-    @property
-    def code(self) -> int:
-        """A small whole number, for arrays."""
-        return _CODES[self]
-
-    @classmethod
-    def of_code(cls, code: int) -> Certification:
-        """The member with this code."""
-        return _MEMBERS[code]
-
-    @classmethod
-    def of_codes(cls, codes: StatusArray) -> tuple[Certification, ...]:
-        """Those with these codes (B,)."""
-        return tuple(map(_MEMBERS.__getitem__, codes.tolist()))
-
-
-_MEMBERS = tuple(Certification)
-_CODES = {member: code for code, member in enumerate(_MEMBERS)}

@@ -1,4 +1,4 @@
-"""Why the curve of a circuit ends, or that it closes: sentences."""
+"""The ways in which the curve of a circuit ends or closes, as sentences."""
 
 from __future__ import annotations
 
@@ -8,14 +8,21 @@ __all__ = ["CircuitEnd"]
 
 
 class CircuitEnd(Enum):
-    """How the positions reachable without taking the mechanism apart come to an end."""
+    """How the curve of a circuit ends; the value is a sentence.
 
-    CLOSED = "closed: the motion comes back to where it began"
-    INPUT_CONSTANT = "input at rest: the mechanism moves while its input stands still"
-    CHANGE_POINT = "change point: it is followed up to change points, where curves cross"
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.example("four-bar").circuits()[0].end.story
+    'the motion returns to its start'
+    """
+
+    CLOSED = "closed: the motion returns to its start"
+    INPUT_CONSTANT = "input at rest: the mechanism moves while its input is constant"
+    CHANGE_POINT = "change point: the curve was followed up to change points, where curves cross"
     RUNS_TO_INFINITY = "runs to infinity: a length grows without bound"
-    NEVER_CLOSES = "never closes: the motion does not come back within the turns that were followed"
-    SINGULAR = "stopped: it was followed only to a singular position that was not recognised"
+    NEVER_CLOSES = "never closes: within the turns followed the motion does not return to its start"
+    SINGULAR = "stopped: the curve was followed to a singular position of unknown kind"
 
     @property
     def story(self) -> str:

@@ -1,4 +1,4 @@
-"""Whether a list of configurations is complete: sentences, best first."""
+"""Whether a list of configurations is complete, as sentences, strongest first."""
 
 from __future__ import annotations
 
@@ -8,29 +8,39 @@ __all__ = ["Completeness"]
 
 
 class Completeness(Enum):
-    """How sure it is that no configuration is missing."""
+    """Whether a list of configurations or circuits is complete; the value is a sentence.
+
+    The members are ordered from the strongest statement to the weakest.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> found = lw.example("four-bar").configurations(60).completeness
+    >>> found is lw.Completeness.PROVED, found.complete
+    (True, True)
+    """
 
     PROVED = (
-        "every configuration is listed, and that is proved: "
-        "as many solutions were certified as can exist at most"
+        "the list is proved complete: "
+        "the number of certified solutions equals the largest possible number"
     )
     WITH_PROBABILITY_ONE = (
-        "every configuration is listed, with probability one: "
+        "the list is complete with probability one: "
         "all solution paths from a random start are accounted for"
     )
     MULTIPLE = (
         "not proved: some solutions coincide, as they do at a dead point or change point; "
-        "ask for an input value beside it"
+        "use a nearby input value"
     )
     NOT_PROVED = (
         "not proved: solution paths were lost, so configurations may be missing; "
-        "ask for another input value"
+        "use another input value"
     )
     CONTINUUM = (
         "not proved: the mechanism can still move at this input, there are infinitely many "
         "configurations; isolated ones are listed"
     )
-    NOT_LISTED = "not proved: these equations have no list of configurations"
+    NOT_LISTED = "not proved: configurations of plain equations cannot be listed"
 
     @property
     def complete(self) -> bool:
@@ -38,6 +48,6 @@ class Completeness(Enum):
         return self in (Completeness.PROVED, Completeness.WITH_PROBABILITY_ONE)
 
     def and_then(self, other: Completeness) -> Completeness:
-        """The grade of two lists together: the worse of the two."""
+        """The completeness of two lists together: the weaker of the two."""
         order = tuple(Completeness)
         return max(self, other, key=order.index)

@@ -37,19 +37,57 @@ __all__ = [
 
 
 class LinkworkError(Exception):
-    """Base of every exception raised on purpose by this package."""
+    """Base of all exceptions that Linkwork raises on purpose.
+
+    ``exit_code`` is the exit code of the command line.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> issubclass(lw.InputError, lw.LinkworkError), lw.InputError.exit_code
+    (True, 2)
+    """
 
     exit_code = 3
 
 
 class InputError(LinkworkError):
-    """What was asked cannot be understood or contradicts itself."""
+    """Wrong input: it cannot be understood or contradicts itself; base of all such errors.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> try:
+    ...     lw.Force(at="B", x=float("nan"), y=0)
+    ... except lw.InputError as error:
+    ...     print(error)
+    the force at B is not finite: nan, 0
+    """
 
     exit_code = 2
 
 
 class ExpressionError(InputError):
-    """A formula that cannot be read; ``column`` counts from 1 in ``text``."""
+    """A formula that cannot be read.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong.
+    text : str
+        The formula.
+    column : int
+        Where it is wrong, counted from 1.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> try:
+    ...     lw.example("crank-shaper").description.numbers("2 * q")
+    ... except lw.ExpressionError as error:
+    ...     print(error.column, error.message)
+    5 column 5: "q" is not defined (dimensions: r, d)
+    """
 
     def __init__(self, message: str, text: str, column: int) -> None:
         super().__init__(message, text, column)
@@ -72,7 +110,26 @@ class ExpressionError(InputError):
 
 @dataclass(frozen=True, kw_only=True)
 class Problem:
-    """One thing that is wrong with a mechanism: where (key path, line) and what."""
+    """One problem of a mechanism or file.
+
+    Parameters
+    ----------
+    key : tuple of str and int
+        The key path, as ``("lengths", "O2 A")``.
+    message : str
+        What is wrong and how to correct it.
+    line : int, optional
+        The line of the file.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> try:
+    ...     lw.linkage(points={"A": (0, 0)}, links={"ground": ["A", "B"]})
+    ... except lw.MechanismError as error:
+    ...     print(error.problems[0].key, error.problems[0].message)
+    ('links', 'ground') point "B" is not defined (points: A)
+    """
 
     key: tuple[str | int, ...]
     message: str
@@ -84,7 +141,25 @@ class Problem:
 
 
 class MechanismError(InputError):
-    """A mechanism that cannot be understood; carries every problem that was found."""
+    """A mechanism that cannot be understood; it carries every problem that was found.
+
+    Parameters
+    ----------
+    problems : iterable of Problem
+        The problems; the attribute is a tuple.
+    where : str
+        The name of the mechanism or file, for the message.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> try:
+    ...     lw.example("four-bar").changed(lengths={"O2 A": -40})
+    ... except lw.MechanismError as error:
+    ...     print(error)
+    1 problem in mechanism "Four-bar linkage, open"
+      lengths."O2 A"  must be a positive length, got -40
+    """
 
     def __init__(self, problems: Iterable[Problem], where: str = "the mechanism") -> None:
         self.problems: tuple[Problem, ...] = tuple(problems)
@@ -108,22 +183,63 @@ class MechanismError(InputError):
 
 
 class MechanismFileError(MechanismError):
-    """A mechanism file, or the plan of a study, that cannot be understood, with line numbers."""
+    """A mechanism file, or the plan of a study, with errors; every problem has its line number.
+
+    Parameters are those of :class:`MechanismError`.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> text = lw.example_text("four-bar").replace('link  = "crank"', 'link  = "crnk"')
+    >>> try:
+    ...     lw.loads(text, "bar.toml")
+    ... except lw.MechanismFileError as error:
+    ...     print(error.problems[0].line, error.problems[0].message)
+    27 link "crnk" is not defined (links: crank, ground, coupler, rocker)
+    """
 
 
 class UnknownNameError(InputError, KeyError):
-    """A name that does not exist where it was looked up."""
+    """A name that does not exist; the message lists the nearest existing names.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> try:
+    ...     lw.example("four-bar").solve()["rockr"]
+    ... except lw.UnknownNameError as error:
+    ...     print(error)
+    there is no "rockr" (names: rocker, crank, coupler, mu, O2.x, O2.y, A.x, A.y, … 4 more)
+    """
 
     def __str__(self) -> str:
         return str(self.args[0])
 
 
 class MissingPackageError(InputError, ImportError):
-    """An optional package is needed and not installed."""
+    """An optional package is needed and not installed; the message contains the install command.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> issubclass(lw.MissingPackageError, ImportError)
+    True
+    """
 
 
 class NotConvergedError(LinkworkError):
-    """A position that was asked for with ``throw=True`` could not be found."""
+    """No position was found, and the caller asked for an exception with ``throw=True``.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> short = {"O2 A": 40, "A B": 30, "O4 B": 20, "O2 O4": 100}
+    >>> try:
+    ...     lw.example("four-bar").changed(lengths=short).solve(throw=True)
+    ... except lw.NotConvergedError as error:
+    ...     print(error.exit_code)
+    1
+    """
 
     exit_code = 1
 

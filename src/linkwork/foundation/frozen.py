@@ -1,4 +1,4 @@
-"""Immutable containers: a dictionary and arrays that cannot be changed by accident."""
+"""Immutable containers: a dictionary and read-only arrays."""
 
 from __future__ import annotations
 

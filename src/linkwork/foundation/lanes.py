@@ -1,4 +1,4 @@
-"""Numbers of many designs at once, for code that was written for one design.
+"""Numbers of many designs at once, for code written for one design.
 
 The code that builds a mechanism computes with floats and complex numbers. :class:`Lanes` stand for
 such a number in n designs; arithmetic goes lane by lane. Where the code asks *whether* something
@@ -35,29 +35,29 @@ __all__ = [
     "Rest",
     "Truths",
     "as_float",
-    "broken",
     "choose",
+    "cis",
     "copysign",
     "degrees",
+    "display_value",
     "everywhere",
     "exponential",
     "finite",
     "hypot",
-    "kept",
+    "is_batched",
+    "is_fractional",
+    "is_structurally_nonzero",
     "largest",
-    "led",
-    "many",
+    "leader_value",
     "phase",
     "rect",
     "remainder",
     "remainders",
     "rest_of",
     "row_of",
-    "settled",
-    "shown_by",
     "smallest",
     "sqrt",
-    "turn",
+    "uniform_value",
     "vector",
     "with_parts",
 ]
@@ -112,7 +112,7 @@ class Consensus:
         """Values (n,) as one number."""
         return cast(float, Lanes(values, self))
 
-    def picked(self, values: AnyArray) -> Any:
+    def pick(self, values: AnyArray) -> Any:
         """Values (n,) that are each one of two plain numbers as one number."""
         return self.lanes(values)
 
@@ -159,11 +159,11 @@ class Lanes:
         """Other values of the same lanes."""
         return Lanes(values, self.consensus)
 
-    def applied(self, function: Callable[..., Any], *numbers: object) -> Lanes:
+    def apply(self, function: Callable[..., Any], *numbers: object) -> Lanes:
         """A NumPy function of plain numbers and lanes, lane by lane."""
         return self.like(np.asarray(function(*map(_bare, numbers))))
 
-    def settled(self) -> Any:
+    def uniform_value(self) -> Any:
         """The leader's number, which has to be that of all lanes."""
         return self.consensus.settle(self.values)
 
@@ -304,7 +304,7 @@ def _power(own: Lanes, base: Any, exponent: Any) -> Lanes:
     return own.like(found)
 
 
-def many(number: object) -> TypeGuard[Lanes]:
+def is_batched(number: object) -> TypeGuard[Lanes]:
     """Whether a number is one of many designs."""
     return isinstance(number, Lanes)
 
@@ -329,7 +329,7 @@ def vector(x: float, y: float) -> complex:
     lanes = _first_of_many((x, y))
     if lanes is None:
         return complex(x, y)
-    return _complex(lanes.applied(with_parts, x, y))
+    return _complex(lanes.apply(with_parts, x, y))
 
 
 def with_parts(x: Array, y: Array) -> ComplexArray:
@@ -341,23 +341,23 @@ def with_parts(x: Array, y: Array) -> ComplexArray:
 
 def phase(z: complex) -> float:
     """The direction of a vector, in (-π, π]."""
-    if many(z):
-        return _real(z.applied(np.angle, z))
+    if is_batched(z):
+        return _real(z.apply(np.angle, z))
     return cmath.phase(z)
 
 
-def turn(angle: float) -> complex:
+def cis(angle: float) -> complex:
     """e^(i angle)."""
-    if many(angle):
-        return vector(_real(angle.applied(np.cos, angle)), _real(angle.applied(np.sin, angle)))
+    if is_batched(angle):
+        return vector(_real(angle.apply(np.cos, angle)), _real(angle.apply(np.sin, angle)))
     return cmath.exp(1j * angle)
 
 
 def exponential(z: complex) -> complex:
     """e^z; raises OverflowError where it is too large, as ``cmath`` does."""
-    if not many(z):
+    if not is_batched(z):
         return cmath.exp(z)
-    found = z.applied(np.exp, z)
+    found = z.apply(np.exp, z)
     if (wrong := ~np.isfinite(found.values)).any() and z.consensus.decide(wrong):
         raise OverflowError
     return _complex(found)
@@ -367,12 +367,12 @@ def rect(length: float, angle: float) -> complex:
     """length · e^(i angle)."""
     if _first_of_many((length, angle)) is None:
         return cmath.rect(length, angle)
-    return length * turn(angle)
+    return length * cis(angle)
 
 
 def sqrt(x: float) -> float:
     """The square root; NaN in lanes where it is not real."""
-    return _real(x.applied(np.sqrt, x)) if many(x) else math.sqrt(x)
+    return _real(x.apply(np.sqrt, x)) if is_batched(x) else math.sqrt(x)
 
 
 def hypot(x: float, y: float) -> float:
@@ -380,21 +380,21 @@ def hypot(x: float, y: float) -> float:
     lanes = _first_of_many((x, y))
     if lanes is None:
         return math.hypot(x, y)
-    return _real(lanes.applied(np.hypot, x, y))
+    return _real(lanes.apply(np.hypot, x, y))
 
 
 def copysign(size: float, sign: float) -> float:
     """A plain size with the sign of a number."""
-    if many(sign):
-        return _real(sign.applied(np.copysign, size, sign))
+    if is_batched(sign):
+        return _real(sign.apply(np.copysign, size, sign))
     return math.copysign(size, sign)
 
 
 def remainder(x: float, period: float) -> float:
     """x less whole periods, at most half a period in size; exact."""
-    if not many(x):
+    if not is_batched(x):
         return math.remainder(x, period)
-    return _real(x.applied(remainders, x, period))
+    return _real(x.apply(remainders, x, period))
 
 
 def remainders(x: Array, period: float) -> Array:
@@ -407,19 +407,19 @@ def remainders(x: Array, period: float) -> Array:
 
 def degrees(angle: float) -> float:
     """Radians in degrees."""
-    if many(angle):
+    if is_batched(angle):
         return _real(angle * (180.0 / math.pi))
     return math.degrees(angle)
 
 
 def finite(x: float) -> bool:
     """Whether a number is neither NaN nor infinite."""
-    return cast(bool, x.holds(np.isfinite(x.values))) if many(x) else math.isfinite(x)
+    return cast(bool, x.holds(np.isfinite(x.values))) if is_batched(x) else math.isfinite(x)
 
 
-def broken(x: float) -> bool:
+def is_fractional(x: float) -> bool:
     """Whether a number is no whole number."""
-    if many(x):
+    if is_batched(x):
         return cast(bool, x.holds(x.values != np.floor(x.values)))
     return not float(x).is_integer()
 
@@ -430,9 +430,9 @@ def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
     if isinstance(truths, Truths):
         lanes = _first_of_many((yes, no))
         if lanes is None:
-            picked: _Number = truths.consensus.picked(np.where(truths.values, yes, no))
+            picked: _Number = truths.consensus.pick(np.where(truths.values, yes, no))
             return picked
-        return cast(_Number, lanes.applied(np.where, truths, yes, no))
+        return cast(_Number, lanes.apply(np.where, truths, yes, no))
     return yes if condition else no
 
 
@@ -458,13 +458,13 @@ class Rest:
         self.lanes = np.concatenate([[self.whole.leader], np.flatnonzero(wanted)])
         self.part = Consensus(len(self.lanes))
 
-    def narrowed(self, number: _Number) -> _Number:
+    def narrow(self, number: _Number) -> _Number:
         """A number in these lanes."""
-        if not many(number):
+        if not is_batched(number):
             return number
         return cast(_Number, Lanes(number.values[self.lanes], self.part))
 
-    def widened(self, whole: _Number, part: _Number) -> _Number:
+    def widen(self, whole: _Number, part: _Number) -> _Number:
         """A number of all lanes with what has become of it in these."""
         values = np.array(np.broadcast_to(_bare(whole), self.whole.agreeing.shape))
         values[self.lanes] = _bare(part)
@@ -495,40 +495,40 @@ def _extreme(numbers: list[float], default: float, *, most: bool) -> float:
     lanes = _first_of_many(numbers)
     if lanes is None:
         return max(numbers, default=default) if most else min(numbers, default=default)
-    plain = [number for number in numbers if not many(number)]
+    plain = [number for number in numbers if not is_batched(number)]
     found: Any = (max(plain) if most else min(plain)) if plain else None
     for number in numbers:
-        if many(number):
+        if is_batched(number):
             better = np.fmax if most else np.fmin
-            found = number if found is None else lanes.applied(better, found, number)
+            found = number if found is None else lanes.apply(better, found, number)
     return cast(float, found)
 
 
-def kept(x: complex) -> bool:
+def is_structurally_nonzero(x: complex) -> bool:
     """Whether something of this size is there."""
-    return (many(x) and x.consensus.widest) or bool(x)
+    return (is_batched(x) and x.consensus.widest) or bool(x)
 
 
-def shown_by(x: complex) -> complex:
+def display_value(x: complex) -> complex:
     """The plain number by which something is shown."""
-    return complex(x.values[0]) if many(x) else x
+    return complex(x.values[0]) if is_batched(x) else x
 
 
 def as_float(x: float) -> float:
     """A float of any plain number; lanes as they are."""
-    if many(x):
+    if is_batched(x):
         return _real(x)
     return float(x)
 
 
-def led(x: float) -> float:
+def leader_value(x: float) -> float:
     """The leader's number."""
-    return cast(float, x.values[x.consensus.leader].item()) if many(x) else x
+    return cast(float, x.values[x.consensus.leader].item()) if is_batched(x) else x
 
 
-def settled(x: float) -> float:
+def uniform_value(x: float) -> float:
     """A number that has to be one for all designs, as a weight of an angle."""
-    return cast(float, x.settled()) if many(x) else x
+    return cast(float, x.uniform_value()) if is_batched(x) else x
 
 
 def row_of(numbers: Iterable[float]) -> Array:

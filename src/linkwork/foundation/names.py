@@ -9,8 +9,20 @@ from functools import lru_cache
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import as_told
 
-__all__ = ["GREEK", "as_name", "canonical", "is_name", "latex_name", "pretty", "spelled"]
+__all__ = [
+    "GREEK",
+    "GROUND",
+    "as_name",
+    "canonical",
+    "find_spelling",
+    "free_name",
+    "is_name",
+    "latex_name",
+    "pretty",
+]
 
+#: The name of the fixed link.
+GROUND = "ground"
 GREEK = {
     "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta",
     "η": "eta", "θ": "theta", "ι": "iota", "κ": "kappa", "λ": "lambda", "μ": "mu",
@@ -52,7 +64,7 @@ def _canonical(name: str) -> str:
     return "".join(GREEK.get(letter, letter) for letter in folded)
 
 
-def spelled(name: str, known: Iterable[str]) -> str:
+def find_spelling(name: str, known: Iterable[str]) -> str:
     """The spelling among ``known`` of a name that may be written otherwise, else the name."""
     folded = canonical(name)
     return next((other for other in known if canonical(other) == folded), name)
@@ -89,3 +101,12 @@ def latex_name(name: str) -> str:
     if len(subscript) > 1 or not subscript.isalnum():
         subscript = f"{{{subscript}}}" if subscript else ""
     return base + primes + (f"_{subscript}" if subscript else "")
+
+
+def free_name(name: str, taken: set[str]) -> str:
+    """A name that nothing has yet, from now on taken (canonical names)."""
+    found, k = name, 1
+    while canonical(found) in taken:
+        found, k = f"{name}{k}", k + 1
+    taken.add(canonical(found))
+    return found

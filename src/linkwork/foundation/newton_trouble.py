@@ -1,4 +1,4 @@
-"""Why Newton-Raphson misses: the four ways of the textbook's sketches, told apart."""
+"""The four ways in which Newton-Raphson misses a root, as in textbook sketches."""
 
 from __future__ import annotations
 
@@ -8,21 +8,28 @@ __all__ = ["NewtonTrouble"]
 
 
 class NewtonTrouble(Enum):
-    """What keeps Newton-Raphson from the position that was meant, with a next step."""
+    """The way in which Newton-Raphson missed the intended root; the value is a sentence.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.NewtonTrouble.ANOTHER_ROOT.value.partition(":")[0]
+    'the iteration passed the root nearest to the guess and found another root'
+    """
 
     SINGULAR_DERIVATIVE = (
         "the derivative is singular at an iterate, where Newton-Raphson has no next step: "
-        "start from a guess beside it"
+        "start from a guess near it"
     )
     INFLECTION = (
-        "the equations bend to the other side behind the root (an inflection), so that every "
-        "step overshoots further than the one before: start nearer to the root"
+        "the equations have an inflection near the root, so that every step overshoots further "
+        "than the one before: start nearer to the root"
     )
     ANOTHER_ROOT = (
-        "Newton-Raphson went past the root beside the guess and found another one: "
-        "start nearer to the one that is meant"
+        "the iteration passed the root nearest to the guess and found another root: "
+        "start nearer to the intended root"
     )
     LOCAL_EXTREMUM = (
-        "the guess lies at a local extremum of the equations, which come no nearer to zero "
-        "around it: start from the other side of it"
+        "the guess is near a local extremum of the equations, which do not reach zero there: "
+        "start from the other side of the extremum"
     )

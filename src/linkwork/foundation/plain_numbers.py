@@ -1,4 +1,4 @@
-"""Numbers from a caller: a float of whatever is a plain number, and a refusal of the rest."""
+"""Numbers from a caller: conversion to float, or an error for anything else."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What to do where two branches cross."""
+"""The policy at a change point, where two branches cross."""
 
 from __future__ import annotations
 
@@ -30,6 +30,6 @@ class ChangePointPolicy(Enum):
         names = [policy.value for policy in cls]
         if name not in names:
             raise InputError(
-                f'"{name}" is no way to go on at a change point {choices("ways", names, name)}'
+                f'"{name}" is not a policy at a change point {choices("policies", names, name)}'
             )
         return cls(name)

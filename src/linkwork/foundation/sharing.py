@@ -1,4 +1,4 @@
-"""Work shared out among threads, of which the one that asks is the first."""
+"""Work shared among threads; the calling thread takes part."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from threading import Lock
 from typing import TypeVar
 
-__all__ = ["cores", "shared_out"]
+__all__ = ["cores", "share_out"]
 
 Item = TypeVar("Item")
 
@@ -18,7 +18,7 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def shared_out(work: Callable[[Item], object], items: Iterable[Item], threads: int) -> None:
+def share_out(work: Callable[[Item], object], items: Iterable[Item], threads: int) -> None:
     """Do something to every item; whoever is free takes the next one.
 
     The thread that asks works too: waiting, it would keep a core for nothing while new threads look

@@ -19,12 +19,11 @@ from functools import cached_property
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
-from linkwork.foundation.tall_product import tall_product
+from linkwork.foundation.products import tall_product
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.phasor_rows import PhasorRows
 
 __all__ = ["Curvature", "PhaseGroups"]
-
-_UNIT = np.finfo(float).eps / 2
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -116,7 +115,7 @@ class PhaseGroups:
         s[:, sliding] = v[:, rows.length[sliding]]
         c = tall_product(s, self._sorted_in).reshape(len(v), rows.rows, self.weights.shape[1])
         size = tall_product(np.abs(s), np.abs(self._sorted_in)).reshape(c.shape)
-        slip = _UNIT * (len(rows.row) + rows.rows + 8) * np.abs(alpha)
+        slip = UNIT_ROUNDOFF * (len(rows.row) + rows.rows + 8) * np.abs(alpha)
         d = self.pairs[2]
         phase = np.abs(alpha @ c) + slip @ size
         return phase, np.abs(alpha @ d) + slip @ self._pair_size
@@ -145,7 +144,7 @@ class PhaseGroups:
         modulus, slopes = rows.moduli(v, factor + products + 2.0)
         gather = np.zeros((len(rows.row), rows.rows))
         gather[np.arange(len(rows.row)), rows.row] = 1.0
-        return _UNIT * tall_product(modulus * factor, gather), _UNIT * slopes
+        return UNIT_ROUNDOFF * tall_product(modulus * factor, gather), UNIT_ROUNDOFF * slopes
 
 
 def _doubles(weight: float) -> bool:

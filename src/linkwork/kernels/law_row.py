@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.piecewise import Piecewise
 
 __all__ = ["TURN_ROUNDING", "LawRow"]
 
-_UNIT = np.finfo(float).eps / 2
 _TURN = 2.0 * np.pi
-TURN_ROUNDING = 8.0 * _UNIT  # a third is no float, but three of them are one turn
+TURN_ROUNDING = 8.0 * UNIT_ROUNDOFF  # a third is no float, but three of them are one turn
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -51,7 +51,7 @@ class LawRow:
         straight = v[:, list(self.variables)] @ self.weights + self.constant
         return straight - value, self.weights - slope[:, None] * self.inner
 
-    def second(self, v: Array, d: Array) -> Array:
+    def second_directional_derivative(self, v: Array, d: Array) -> Array:
         """Second derivative along d, (B,)."""
         turned = d[:, list(self.variables)] @ self.inner
         second: Array = -self.law.jet(self._argument(v))[2] * turned**2
@@ -77,12 +77,12 @@ class LawRow:
         value, slope = self.law.rounding(self._argument(v))
         argument = np.abs(x) @ np.abs(self.inner) + abs(self.offset)
         count = len(self.variables) + 3.0
-        moved = count * _UNIT * argument
+        moved = count * UNIT_ROUNDOFF * argument
         straight = np.abs(x) @ np.abs(self.weights) + abs(self.constant)
         steepest = np.abs(self.law.jet(self._argument(v))[1]) + self.law.bend * moved
         size = np.abs(self.law(self._argument(v)))
-        error = value + steepest * moved + _UNIT * (count * straight + 2.0 * size)
-        slopes = (slope + self.law.bend * moved + 2.0 * _UNIT * steepest)[:, None] * np.abs(
+        error = value + steepest * moved + UNIT_ROUNDOFF * (count * straight + 2.0 * size)
+        slopes = (slope + self.law.bend * moved + 2.0 * UNIT_ROUNDOFF * steepest)[:, None] * np.abs(
             self.inner
         )
-        return error, slopes + 2.0 * _UNIT * np.abs(self.weights)
+        return error, slopes + 2.0 * UNIT_ROUNDOFF * np.abs(self.weights)

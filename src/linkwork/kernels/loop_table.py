@@ -13,6 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.curvature import Curvature, PhaseGroups
 from linkwork.kernels.exact_rows import exact_line, exact_rows
 from linkwork.kernels.law_row import TURN_ROUNDING, LawRow
@@ -34,14 +35,11 @@ class FunctionRow(Protocol):
     def value_and_gradient(self, v: Array) -> tuple[Array, Array]:
         """Value (B,) and derivatives by ``variables`` (B, len(variables))."""
 
-    def second(self, v: Array, d: Array) -> Array:
+    def second_directional_derivative(self, v: Array, d: Array) -> Array:
         """Second derivative along d, (B,)."""
 
     def repeats_after(self, turns: Array) -> bool:
         """Whether ``variables`` (k,) moved by so many whole turns are known to satisfy the same."""
-
-
-_UNIT = np.finfo(float).eps / 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +74,7 @@ class LoopTable:
         What each real row's residual is divided by before it is compared.
     variable_scale : (N,)
         Weight of each variable: 1 for angles, a length of the mechanism for lengths.
-    turns : (N,) bool
+    is_angle : (N,) bool
         Which variables are angles.
     """
 
@@ -86,7 +84,7 @@ class LoopTable:
     functions: tuple[FunctionRow, ...]
     equation_scale: Array
     variable_scale: Array
-    turns: BoolArray
+    is_angle: BoolArray
 
     @property
     def variables(self) -> int:
@@ -142,19 +140,19 @@ class LoopTable:
             row.rounding(v[None, :])[0][0] if isinstance(row, LawRow) else np.inf
             for row in self.functions
         ]
-        return np.append(found, rows), np.append(_UNIT * np.abs(found), errors)
+        return np.append(found, rows), np.append(UNIT_ROUNDOFF * np.abs(found), errors)
 
     def jacobian(self, v: Array) -> Array:
         """dF/dv, (B, m, N): the Jacobian by the unknowns, then the derivative by the inputs."""
         return self.residual_and_jacobian(v)[1]
 
-    def second(self, v: Array, d: Array) -> Array:
+    def second_directional_derivative(self, v: Array, d: Array) -> Array:
         """D²F[d, d], the directional second derivative, (B, m)."""
         value = self.loops.jet(v, d, np.zeros_like(d))[2]
         parts = [value.real, value.imag]
         if not self._only_loops:
             parts.append(np.zeros((len(v), len(self.linear.constant))))
-            parts += [row.second(v, d)[:, None] for row in self.functions]
+            parts += [row.second_directional_derivative(v, d)[:, None] for row in self.functions]
         return np.concatenate(parts, axis=1)
 
     def repeats_after(self, turns: Array) -> bool:
@@ -177,14 +175,14 @@ class LoopTable:
         )
 
     @property
-    def bends_boundedly(self) -> bool:
+    def has_curvature_bound(self) -> bool:
         """Whether :meth:`curvature` knows a bound: not for rows of any formula."""
         return len(self._bounded) == len(self.functions)
 
     @property
     def is_straight(self) -> bool:
         """Whether no equation bends with the unknowns: lines, and laws of what is known."""
-        if self.loops.rows or not self.bends_boundedly:
+        if self.loops.rows or not self.has_curvature_bound:
             return False
         return not any(
             weight and variable < self.unknowns
@@ -216,9 +214,9 @@ class LoopTable:
         error, slopes = groups.rounding(v, self.equations)
         a = np.abs(self._linear_matrix)
         line_error = (np.abs(v) @ a.T + np.abs(self.linear.constant)) * (
-            _UNIT * (self.variables + 2)
+            UNIT_ROUNDOFF * (self.variables + 2)
         )
-        lines = np.broadcast_to(_UNIT * (self.equations + 4) * a, (len(v), *a.shape))
+        lines = np.broadcast_to(UNIT_ROUNDOFF * (self.equations + 4) * a, (len(v), *a.shape))
         lengths, group, _ = groups.pairs
         found = Curvature(
             loop_rows=2 * count,
@@ -247,7 +245,7 @@ class LoopTable:
             errors.append(error)
             whole = np.zeros((len(v), self.variables))
             gradient = np.abs(row.value_and_gradient(v)[1])
-            whole[:, variables] = slope + _UNIT * (self.equations + 4) * gradient
+            whole[:, variables] = slope + UNIT_ROUNDOFF * (self.equations + 4) * gradient
             slopes.append(whole)
         return replace(
             found,
@@ -322,7 +320,7 @@ class TableSplitter:
             functions=tuple(whole.functions[k].moved(index) for k in functions),
             equation_scale=whole.equation_scale[np.array(real, dtype=np.intp)],
             variable_scale=whole.variable_scale[order],
-            turns=whole.turns[order],
+            is_angle=whole.is_angle[order],
         )
         return part, known
 

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
-from linkwork.foundation.tall_product import tall_product
+from linkwork.foundation.products import tall_product
 
 __all__ = ["PhasorRows"]
 

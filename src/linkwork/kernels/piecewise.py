@@ -15,10 +15,10 @@ from math import comb
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 
 __all__ = ["Piecewise"]
 
-_UNIT = np.finfo(float).eps / 2
 _PARTS = 32  # of each piece, in which its bend is bounded
 
 
@@ -68,7 +68,7 @@ class Piecewise:
             self, powers=factor * self.powers, sines=self.sines * np.array([factor, 1.0, 1.0])
         )
 
-    def _placed(self, x: Array) -> tuple[IndexArray, Array, Array]:
+    def _locate(self, x: Array) -> tuple[IndexArray, Array, Array]:
         """Piece of each x, t inside it, and how far x lies beyond an open end."""
         low, high = self.breaks[0], self.breaks[-1]
         if self.periodic:
@@ -84,7 +84,7 @@ class Piecewise:
     def jet(self, x: Array) -> tuple[Array, Array, Array]:
         """Value, first and second derivative at any x; the second from the right at a joint."""
         shape, x = np.shape(x), np.ravel(np.asarray(x, dtype=float))
-        piece, t, beyond = self._placed(x)
+        piece, t, beyond = self._locate(x)
         c = self.powers[piece]
         value, first, second = np.zeros_like(t), np.zeros_like(t), np.zeros_like(t)
         for k in range(c.shape[1] - 1, -1, -1):
@@ -155,7 +155,7 @@ class Piecewise:
 
     def rounding(self, x: Array) -> tuple[Array, Array]:
         """Bounds of the error of computing the value and the first derivative at x (B,)."""
-        piece, t, beyond = self._placed(x)
+        piece, t, beyond = self._locate(x)
         c, degrees = np.abs(self.powers[piece]), np.arange(self.powers.shape[1])
         t = np.abs(t)
         powers = t[:, None] ** degrees
@@ -165,8 +165,10 @@ class Piecewise:
         moved = 2.0 * (np.abs(x) + self.period + np.abs(self.breaks).max())
         factor = 2.0 * self.powers.shape[1] + 8.0
         slope_error = factor * slope_powers.sum(axis=1) + a * w * phase + self.bend * moved
-        steepest = np.abs(self.jet(x)[1]) + _UNIT * slope_error
+        steepest = np.abs(self.jet(x)[1]) + UNIT_ROUNDOFF * slope_error
         value_error = factor * (c * powers).sum(axis=1) + a * phase + steepest * moved
         value_error += (factor * steepest + slope_error) * np.abs(beyond)
         apart, steeper = self.gaps
-        return apart + _UNIT * value_error + steeper * np.abs(beyond), steeper + _UNIT * slope_error
+        return apart + UNIT_ROUNDOFF * value_error + steeper * np.abs(
+            beyond
+        ), steeper + UNIT_ROUNDOFF * slope_error

@@ -2,69 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from enum import Enum
 
 from linkwork.foundation.frozen import FrozenDict
-from linkwork.mechanism.followers import guide_named
-from linkwork.mechanism.linkage import GROUND, Linkage
-from linkwork.mechanism.parts import Slider
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.joint import Joint, JointKind
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.weld import Weld
 
-__all__ = ["GROUND", "Chain", "Joint", "JointKind", "cylinder_ends"]
-
-
-class JointKind(Enum):
-    """What a joint lets its links do: its letter, its freedoms, and what it is called."""
-
-    REVOLUTE = ("R", 1, "revolute joint")
-    PRISMATIC = ("P", 1, "prismatic joint")
-    PIN_IN_SLOT = ("RP", 2, "pin in slot")
-    GEAR_PAIR = ("G", 2, "gear pair")
-    RACK = ("G", 2, "rack and pinion")
-    BELT = ("B", 2, "belt")
-    ROLLING = ("W", 1, "rolling contact")
-    CAM = ("C", 2, "cam")
-    CURVE = ("C", 2, "pin on a curve")
-
-    def __init__(self, letter: str, freedom: int, noun: str) -> None:
-        self.letter = letter
-        self.freedom = freedom
-        self.noun = noun
-
-    @property
-    def lower(self) -> bool:
-        """Whether it is a lower pair: its links touch in a surface, and have one freedom."""
-        return self in (JointKind.REVOLUTE, JointKind.PRISMATIC)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Joint:
-    """A joint of two links, or a pin of more.
-
-    Parameters
-    ----------
-    name : str
-        The point of a pin; otherwise the name of slider, slot or cylinder.
-    links : tuple of str
-        Two; a multiple pin has more and counts as one joint less than it has links.
-    point : str
-        For a pin in a slot: where the pin is.
-    """
-
-    kind: JointKind
-    name: str
-    links: tuple[str, ...]
-    point: str = ""
-
-    @property
-    def count(self) -> int:
-        """How many simple joints it stands for."""
-        return len(self.links) - 1
-
-    def across(self, link: str) -> Iterator[str]:
-        """The links on its other side."""
-        return (other for other in self.links if other != link)
+__all__ = ["GROUND", "Chain"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,10 +37,12 @@ class Chain:
     @classmethod
     def of(cls, linkage: Linkage) -> Chain:
         """The chain of a linkage, whatever is driven."""
-        links = [*linkage.links, *(end for c in linkage.cylinders for end in cylinder_ends(c.name))]
-        joints = tuple(joint for read in _JOINTS for joint in read(linkage))
-        chain = cls(links=tuple(links), joints=joints)
-        return chain.welded(weld.links for weld in linkage.welds) if linkage.welds else chain
+        links = [*linkage.links, *(end for part in linkage.parts for end in part.ends)]
+        joints = [joint for part in linkage.parts if (joint := part.joint(linkage)) is not None]
+        joints.sort(key=lambda joint: not joint.kind.lower)
+        chain = cls(links=tuple(links), joints=(*_pins(linkage), *joints))
+        welds = linkage.of(Weld)
+        return chain.welded(weld.links for weld in welds) if welds else chain
 
     @property
     def mobility(self) -> int:
@@ -198,88 +147,10 @@ class Chain:
         return found
 
 
-def cylinder_ends(cylinder: str) -> tuple[str, str]:
-    """The two links of a cylinder: that of its first point, and that of its second one."""
-    return f"{cylinder} barrel", f"{cylinder} rod"
-
-
 def _pins(linkage: Linkage) -> Iterator[Joint]:
     """A pin wherever links share a point; a cylinder's barrel is at its first point."""
-    ends = {
-        c.name: dict(zip(c.between, cylinder_ends(c.name), strict=True)) for c in linkage.cylinders
-    }
+    ends = {part.label: dict(zip(part.body, part.ends, strict=True)) for part in linkage.parts}
     for point, bodies in linkage.carriers().items():
         links = tuple(ends[body][point] if body in ends else body for body in bodies)
         if len(links) > 1:
             yield Joint(kind=JointKind.REVOLUTE, name=point, links=links)
-
-
-def _sliders(linkage: Linkage) -> Iterator[Joint]:
-    for slider in linkage.sliders:
-        yield Joint(kind=JointKind.PRISMATIC, name=slider.name, links=(slider.link, slider.on))
-
-
-def _cylinders(linkage: Linkage) -> Iterator[Joint]:
-    for cylinder in linkage.cylinders:
-        yield Joint(
-            kind=JointKind.PRISMATIC, name=cylinder.name, links=cylinder_ends(cylinder.name)
-        )
-
-
-def _slots(linkage: Linkage) -> Iterator[Joint]:
-    for slot in linkage.slots:
-        pinned = next(_pinned(linkage, slot.point))
-        yield Joint(
-            kind=JointKind.PIN_IN_SLOT,
-            name=slot.name,
-            links=(pinned, slot.on),
-            point=slot.point,
-        )
-
-
-def _pinned(linkage: Linkage, point: str) -> Iterator[str]:
-    """The links that carry a point, cylinders by their ends."""
-    yield from linkage.bodies_at(point)
-    for cylinder in linkage.cylinders:
-        if point in cylinder.between:
-            yield cylinder_ends(cylinder.name)[cylinder.between.index(point)]
-
-
-def _wheels(linkage: Linkage) -> Iterator[Joint]:
-    """Gears, belts, racks and rolling wheels."""
-    for gear in linkage.gears:
-        yield Joint(kind=JointKind.GEAR_PAIR, name=gear.name, links=gear.wheels)
-    for belt in linkage.belts:
-        yield Joint(kind=JointKind.BELT, name=belt.name, links=belt.wheels)
-    for rack in linkage.racks:
-        slider = next(s for s in linkage.sliders if s.name == rack.slider)
-        yield Joint(kind=JointKind.RACK, name=rack.name, links=(rack.pinion, slider.link))
-    for part in linkage.rolling:
-        yield Joint(kind=JointKind.ROLLING, name=part.name, links=(part.wheel, part.on))
-
-
-def _curves(linkage: Linkage) -> Iterator[Joint]:
-    """Cams with their followers, and pins on curves."""
-    for cam in linkage.cams:
-        follower = cam.link
-        if follower is None:
-            guide = guide_named(linkage, cam.slider)
-            assert guide is not None
-            follower = (
-                guide.link if isinstance(guide, Slider) else next(_pinned(linkage, guide.point))
-            )
-        yield Joint(kind=JointKind.CAM, name=cam.name, links=(cam.cam, follower))
-    for curve in linkage.curves:
-        pinned = next(_pinned(linkage, curve.point))
-        yield Joint(kind=JointKind.CURVE, name=curve.name, links=(pinned, curve.on))
-
-
-#: How joints are read off a linkage: a further kind of joint is one further entry.
-_JOINTS: tuple[Callable[[Linkage], Iterator[Joint]], ...] = (
-    _pins,
-    _sliders,
-    _cylinders,
-    _slots,
-    _wheels,
-    _curves,
-)

@@ -10,8 +10,9 @@ from functools import cache
 from itertools import product
 from pathlib import Path
 
-from linkwork.mechanism.chain import Chain, Joint, JointKind
+from linkwork.mechanism.chain import Chain
 from linkwork.mechanism.chain_graph import same_graph
+from linkwork.mechanism.joint import Joint, JointKind
 
 __all__ = ["EightLinkChain", "chain_name", "eight_link_chains", "inversion_name", "loop_letters"]
 

@@ -24,11 +24,11 @@ from linkwork.foundation.errors import (
 )
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical, is_name
-from linkwork.mechanism.dimensions import Numbers
-from linkwork.mechanism.parts import Input, Number
+from linkwork.mechanism.dimensions import Number, Numbers
+from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.speed import speed_per_second
 
-__all__ = ["Description", "Problems", "declared"]
+__all__ = ["Description", "Key", "Problems", "declared"]
 
 Key = tuple[str | int, ...]
 
@@ -55,7 +55,7 @@ class Description:
     Parameters
     ----------
     name : str
-        What the mechanism is called.
+        Name of the mechanism.
     length : str
         Unit of every length; nothing is converted.
     angle : AngleUnit
@@ -155,10 +155,6 @@ class Description:
         )
         return replace(self, inputs=(changed,))
 
-    def unit_of_input(self, which: Input) -> str:
-        """``deg``, ``rad`` or the length unit."""
-        return self.length if which.drives[0] in ("slider", "cylinder") else self.angle.value
-
     def speed(self, which: Input) -> float | None:
         """The speed of an input in its own unit per second, if it has one."""
         if which.speed is None:
@@ -245,7 +241,7 @@ def _angle_unit(text: str, name: str) -> AngleUnit:
 def _check_name(problems: Problems, key: Key, name: str, taken: dict[str, str]) -> None:
     folded = canonical(name)
     if is_name(name) and not _reads_as(name, folded):
-        problems.add(key, f'"{name}" cannot be a name: a formula would not read it as one')
+        problems.add(key, f'"{name}" cannot be a name: formulas could not use it')
     elif not is_name(name):
         rule = "letters first, then letters, digits, _ or '"
         problems.add(key, f'"{name}" cannot be a name: {rule}')
@@ -280,7 +276,7 @@ def _check_rows(description: Description, which: Input, key: Key, problems: Prob
     if missing == ["step"] and amounts[0] == amounts[1]:
         missing = []  # held at one value
     if lengthy and missing:
-        problems.add((*key, missing[0]), "is missing: a length has no natural range")
+        problems.add((*key, missing[0]), "is missing: an input length has no natural range")
     if (lengthy and missing) or any(amount != amount for amount in amounts):  # NaN
         return
     start, stop, step = description._range(which)

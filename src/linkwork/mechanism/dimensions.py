@@ -11,12 +11,13 @@ from linkwork.expression.tree import Name, names_in
 from linkwork.expression.values import value
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import ExpressionError, choices
-from linkwork.foundation.lanes import finite, many
+from linkwork.foundation.lanes import finite, is_batched
 from linkwork.foundation.names import canonical
 from linkwork.foundation.plain_numbers import as_told, plain_number
 
-__all__ = ["Numbers"]
+__all__ = ["Number", "Numbers"]
 
+#: Wherever a number is expected, a formula of the named dimensions may stand.
 Number = float | int | str
 _LONGEST_CHAIN = 200
 Report = Callable[[Iterable[str | int], str], None]
@@ -51,7 +52,7 @@ class Numbers:
         """
         if isinstance(number, str):
             return value(parse(number), self.known, self.unit, number)
-        plain = cast(float, number) if many(number) else plain_number(number)
+        plain = cast(float, number) if is_batched(number) else plain_number(number)
         if plain is None or not finite(plain):
             shown = as_told(number if plain is None else plain)
             raise ExpressionError(f"must be a finite number, got {shown}", shown, 1)

@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from linkwork.foundation.names import canonical
-from linkwork.mechanism.contact_shapes import ContactShapes
-from linkwork.mechanism.contacts import names_of
-from linkwork.mechanism.linkage import GROUND, Linkage
-from linkwork.mechanism.parts import Number
+from linkwork.foundation.names import GROUND, canonical, free_name
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.slider import Slider
 
-__all__ = ["directed", "free_name", "named_in"]
-
-_CONTACTS = ("gears", "belts", "racks", "rolling", "cams", "curves")
+__all__ = ["directed", "named_in"]
 
 
 def directed(linkage: Linkage) -> Linkage:
@@ -22,7 +19,7 @@ def directed(linkage: Linkage) -> Linkage:
     A mark is a second point. In the sketch it lies beside the first one in the direction of the x
     axis, from which the angle of a link of one point is counted: all angles stay what they are.
     """
-    blocks = {slider.link for slider in linkage.sliders}
+    blocks = {slider.link for slider in linkage.of(Slider)}
     bare = [
         link
         for link, points in linkage.links.items()
@@ -46,15 +43,10 @@ def directed(linkage: Linkage) -> Linkage:
 
 def _size(linkage: Linkage, link: str) -> float:
     """The radius of a wheel or of a cam's base circle, else the largest extent of a link."""
-    numbers = linkage.numbers
-    for disc in ContactShapes.of(linkage, {}).discs:
-        if disc.link == link:
-            return disc.radius
-    for cam in linkage.cams:
-        if cam.cam == link and cam.base is not None:
-            return numbers(cam.base)
-        if cam.cam == link:
-            return abs(complex(*map(numbers, cam.profile[0])))
+    for part in linkage.parts:
+        size = part.size_of(link, linkage)
+        if size is not None:
+            return size
     shapes = linkage.shapes.local.values()
     return (
         max((abs(a - b) for own in shapes for a in own.values() for b in own.values()), default=0.0)
@@ -72,19 +64,5 @@ def named_in(linkage: Linkage) -> Iterator[str]:
     yield from linkage.links
     yield from linkage.dimensions
     yield from linkage.outputs
-    yield from (slot.name for slot in linkage.slots)
-    yield from (slider.name for slider in linkage.sliders)
-    for kind in _CONTACTS:
-        for part in getattr(linkage, kind):
-            yield from names_of(part)
-    for cylinder in linkage.cylinders:
-        yield from (cylinder.name, cylinder.angle_name)
-
-
-def free_name(name: str, taken: set[str]) -> str:
-    """A name that nothing has yet, from now on taken (canonical names)."""
-    found, k = name, 1
-    while canonical(found) in taken:
-        found, k = f"{name}{k}", k + 1
-    taken.add(canonical(found))
-    return found
+    for part in linkage.parts:
+        yield from part.names

@@ -10,8 +10,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from linkwork.mechanism.linkage import GROUND
-from linkwork.mechanism.skeleton import Bar, Guide, Skeleton
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.figures import Guide
+from linkwork.mechanism.skeleton import Bar, Skeleton
 
 __all__ = ["Dyad", "dyads_of"]
 

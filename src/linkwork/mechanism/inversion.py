@@ -8,12 +8,16 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import canonical
-from linkwork.mechanism.directed import free_name, named_in
-from linkwork.mechanism.inverted_contacts import inverted_cam, inverted_curve
+from linkwork.foundation.names import GROUND, canonical, free_name
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.directed import named_in
+from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.inverted_values import Frame, inverted_input, inverted_output
-from linkwork.mechanism.linkage import GROUND, PART_KINDS, Linkage
-from linkwork.mechanism.parts import Input, Number, Slider
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.cylinder import Cylinder
+from linkwork.mechanism.part.index import PARTS
+from linkwork.mechanism.part.part import Inversion, Part
+from linkwork.mechanism.part.slider import Slider
 
 __all__ = ["inverted", "settled"]
 
@@ -28,7 +32,7 @@ _CARRIED = frozenset(
         "outputs",
         "trace",
         "dimensions",
-        *PART_KINDS,
+        *PARTS,
     }
 )
 
@@ -74,7 +78,7 @@ def inverted(linkage: Linkage, link: str, places: Places, which: Input | None = 
         If the inversion cannot be written with points and links.
     """
     if link not in linkage.links:
-        cylinder = any(link == c.name for c in linkage.cylinders)
+        cylinder = any(link == c.name for c in linkage.of(Cylinder))
         if cylinder:
             raise InputError(
                 f'"{link}" is a cylinder, whose length varies: it cannot be ground. Write it as '
@@ -98,8 +102,8 @@ def _check_carried(linkage: Linkage) -> None:
     ]
     if held:
         raise InputError(
-            f"an inversion of {linkage.name} would have to carry [{held[0]}] to another ground, "
-            "which it cannot: remove it, or write the inversion by hand"
+            f"an inversion of {linkage.name} cannot move [{held[0]}] to another ground: "
+            "remove it, or write the inversion by hand"
         )
 
 
@@ -131,7 +135,7 @@ class _Inverting:
         if len(points) > 1:
             along = self.places[points[1]] - self.places[points[0]]
         else:  # a block of one point slides along a line
-            slider = next(s for s in self.linkage.sliders if s.link == self.link)
+            slider = next(s for s in self.linkage.of(Slider) if s.link == self.link)
             along = self.places[slider.line[1]] - self.places[slider.line[0]]
         return along / abs(along)
 
@@ -139,10 +143,18 @@ class _Inverting:
         """The inversion."""
         linkage = self.linkage
         frame = self._seen_frame()
-        sliders = tuple(self._slider(slider) for slider in linkage.sliders)
-        slots = tuple(replace(slot, on=self._name(slot.on)) for slot in linkage.slots)
+        inversion = Inversion(
+            linkage=linkage, link=self.link, frame=self.frame, ground=GROUND, turn=self.turn,
+            seen=self.seen, fixed=self.fixed, taken=self.taken,
+        )  # fmt: skip
+        parts: dict[str, tuple[Part, ...]] = {
+            table: tuple(part.inverted(inversion) for part in getattr(linkage, table))
+            for table in PARTS
+        }
         links = {GROUND: tuple(self.fixed)} | {
-            self._name(name): points for name, points in linkage.links.items() if name != self.link
+            inversion.name(name): points
+            for name, points in linkage.links.items()
+            if name != self.link
         }
         inputs = tuple(inverted_input(linkage, given, frame) for given in linkage.inputs)
         changes: dict[str, Any] = {
@@ -151,9 +163,7 @@ class _Inverting:
             "links": links,
             "lengths": self._lengths(),
             "angles": self._angles(),
-            "slots": slots,
-            "sliders": sliders,
-            **self._contacts(),
+            **parts,
             "inputs": inputs if which is None else (which,),
             "outputs": {
                 name: inverted_output(linkage, formula, frame)
@@ -173,73 +183,6 @@ class _Inverting:
             place=self.linkage.shapes.local[GROUND][origin],
             turn=self.turn,
         )
-
-    def _name(self, link: str) -> str:
-        return {GROUND: self.frame, self.link: GROUND}.get(link, link)
-
-    def _contacts(self) -> dict[str, tuple[object, ...]]:
-        """Welds and wheels between the same links; angles between them as they are assembled."""
-        linkage, name = self.linkage, self._name
-
-        def both(links: tuple[str, str]) -> tuple[str, str]:
-            return name(links[0]), name(links[1])
-
-        return {
-            "welds": tuple(replace(w, links=both(w.links), angle=None) for w in linkage.welds),
-            "gears": tuple(
-                replace(g, wheels=both(g.wheels), arm=name(g.arm), phase=None)
-                for g in linkage.gears
-            ),
-            "belts": tuple(
-                replace(b, wheels=both(b.wheels), arm=name(b.arm), phase=None)
-                for b in linkage.belts
-            ),
-            "racks": tuple(replace(r, pinion=name(r.pinion)) for r in linkage.racks),
-            "rolling": tuple(
-                replace(r, wheel=name(r.wheel), on=name(r.on)) for r in linkage.rolling
-            ),
-            "cams": tuple(inverted_cam(linkage, c, name, self.turn) for c in linkage.cams),
-            "curves": tuple(inverted_curve(c, name, self.turn) for c in linkage.curves),
-        }
-
-    def _slider(self, slider: Slider) -> Slider:
-        """The slider; one of the new ground turns round, so that the other link slides on it.
-
-        Its displacement stays the same: the new line runs the other way. The guide of a cam's
-        follower or of a rack stays the guide.
-        """
-        linkage = self.linkage
-        guides = {cam.slider for cam in linkage.cams} | {rack.slider for rack in linkage.racks}
-        if slider.link != self.link or slider.name in guides:
-            same = replace(slider, link=self._name(slider.link), on=self._name(slider.on))
-            return replace(same, angle=self._angle_from_line(slider))
-        start, end = (self.seen[point] for point in slider.line)
-        along = (end - start) / abs(end - start)
-        own = self.seen[slider.points[0]]
-        foot = own - 1j * along * self.linkage.numbers(slider.offset)
-        line = []
-        for name, place in (("foot", foot), ("guide", foot - (end - start))):
-            line.append(free_name(f"{slider.name}_{name}", self.taken))
-            self.seen[line[-1]] = place
-        if foot == own:  # then the block's own point is the foot
-            del self.seen[line[0]]
-            line[0] = slider.points[0]
-        self.fixed += [point for point in line if point not in self.fixed]
-        return Slider(
-            name=slider.name,
-            link=self._name(slider.on),
-            points=slider.line,
-            on=GROUND,
-            line=(line[0], line[1]),
-        )
-
-    def _angle_from_line(self, slider: Slider) -> Number | None:
-        """The angle of a slider of one point; ground's is counted from its x axis."""
-        angle = slider.angle
-        if angle is None or slider.link != GROUND or not self.turn:
-            return angle
-        turn = self.linkage.angle.from_radians(self.turn)
-        return f"({angle}) + ({turn!r})" if isinstance(angle, str) else angle + turn
 
     def _points(self) -> dict[str, Coordinates]:
         """The new ground exactly, with its length as the file gives it; the rest as a sketch."""

@@ -7,9 +7,11 @@ from dataclasses import dataclass, replace
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import names_in
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.names import canonical
-from linkwork.mechanism.linkage import GROUND, Linkage
-from linkwork.mechanism.parts import Input, Number
+from linkwork.foundation.names import GROUND, canonical
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.driven_input import Input
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.cylinder import Cylinder
 
 __all__ = ["Frame", "inverted_input", "inverted_output"]
 
@@ -54,7 +56,7 @@ def inverted_input(linkage: Linkage, which: Input, frame: Frame) -> Input:
             link, against = against, link
     if frame.ground in (link, against) and len(linkage.links[frame.ground]) < 2:
         raise InputError(
-            f'the input turns against "{frame.ground}", which has one point and no direction: '
+            f'the input turns relative to "{frame.ground}", which has one point and no direction: '
             "give input= for the inversion"
         )
     turn = linkage.angle.from_radians(frame.turn) if against == GROUND else 0.0
@@ -96,7 +98,7 @@ def inverted_output(linkage: Linkage, formula: str, frame: Frame) -> str:
     """A formula with the same value: angles and coordinates as seen from the old ground."""
     turn = linkage.angle.from_radians(frame.turn)
     angles = {canonical(name): name for name in linkage.links if name != GROUND}
-    angles |= {canonical(c.angle_name): c.angle_name for c in linkage.cylinders}
+    angles |= {canonical(c.angle_name): c.angle_name for c in linkage.of(Cylinder)}
     text = formula
     for node in reversed(list(names_in(parse(formula)))):
         if node.name in angles:

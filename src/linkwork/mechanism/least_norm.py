@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray
-from linkwork.foundation.lanes import Lanes, many
+from linkwork.foundation.lanes import Lanes, is_batched
 
 __all__ = ["full_rank", "least_norm"]
 
@@ -71,7 +71,7 @@ def _stacked(matrix: Sequence[Sequence[float]], lanes: Lanes) -> Array:
     found = np.empty((len(lanes.values), len(matrix), len(matrix[0])))
     for i, row in enumerate(matrix):
         for j, number in enumerate(row):
-            found[:, i, j] = number.values if many(number) else number
+            found[:, i, j] = number.values if is_batched(number) else number
     return found
 
 

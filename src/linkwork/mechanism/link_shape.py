@@ -11,6 +11,7 @@ import numpy as np
 from linkwork.foundation.lanes import (
     Rest,
     choose,
+    cis,
     degrees,
     everywhere,
     largest,
@@ -18,7 +19,6 @@ from linkwork.foundation.lanes import (
     rect,
     rest_of,
     sqrt,
-    turn,
     vector,
 )
 from linkwork.mechanism.least_norm import full_rank, least_norm
@@ -71,8 +71,8 @@ class Distance:
     def shown(self, z: Mapping[str, complex]) -> str:
         return f"|{self.a}{self.b}| = {abs(z[self.b] - z[self.a]):.12g}"
 
-    def narrowed(self, rest: Rest) -> Distance:
-        return replace(self, length=rest.narrowed(self.length))
+    def narrow(self, rest: Rest) -> Distance:
+        return replace(self, length=rest.narrow(self.length))
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ class VertexAngle:
     def error(self, z: Mapping[str, complex]) -> float:
         """Disagreement with placed points [rad], within half a turn."""
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
-        return phase(rays * turn(-self.angle)) if rays else math.inf
+        return phase(rays * cis(-self.angle)) if rays else math.inf
 
     def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
         return abs(self.error(z)) <= tolerance
@@ -109,8 +109,8 @@ class VertexAngle:
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
         return f"an angle of {degrees(phase(rays)):.12g}° at {self.vertex}"
 
-    def narrowed(self, rest: Rest) -> VertexAngle:
-        return replace(self, angle=rest.narrowed(self.angle))
+    def narrow(self, rest: Rest) -> VertexAngle:
+        return replace(self, angle=rest.narrow(self.angle))
 
 
 Given = Distance | VertexAngle
@@ -347,12 +347,12 @@ def _gone_on(
     z: Mapping[str, complex], rows: Sequence[Given], steps: int, rest: Rest
 ) -> dict[str, complex]:
     """Further steps of the designs that are not done."""
-    own = {point: rest.narrowed(place) for point, place in z.items()}
+    own = {point: rest.narrow(place) for point, place in z.items()}
     try:
-        found = _gauss_newton(own, [row.narrowed(rest) for row in rows], steps, first=steps)
+        found = _gauss_newton(own, [row.narrow(rest) for row in rows], steps, first=steps)
     finally:
         rest.leave()
-    return {point: rest.widened(place, found[point]) for point, place in z.items()}
+    return {point: rest.widen(place, found[point]) for point, place in z.items()}
 
 
 def _slopes(z: Mapping[str, complex], rows: Sequence[Given]) -> list[list[float]]:
@@ -372,7 +372,9 @@ def _upright(z: Mapping[str, complex], points: tuple[str, ...]) -> dict[str, com
     """Move the first point to the origin and the second onto the positive real axis."""
     axis = z[points[1]] - z[points[0]]
     if axis == 0:
-        raise ShapeError(f"{points[0]} and {points[1]} coincide: a link's angle needs two places")
+        raise ShapeError(
+            f"{points[0]} and {points[1]} coincide: the angle of a link needs two places"
+        )
     size = abs(axis)
     turned = {p: (z[p] - z[points[0]]) * axis.conjugate() / size for p in points[2:]}
     return {points[0]: 0j, points[1]: size + 0j, **turned}

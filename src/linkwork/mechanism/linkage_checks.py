@@ -4,85 +4,54 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 from linkwork.foundation.errors import choices
-from linkwork.mechanism.contact_checks import check_contacts
-from linkwork.mechanism.contacts import names_of
-from linkwork.mechanism.description import Problems, declared
-from linkwork.mechanism.parts import Input, Number, Slider, Slot
-from linkwork.mechanism.shape import Shapes
-from linkwork.mechanism.wheel_checks import check_distances
-
-if TYPE_CHECKING:
-    from linkwork.mechanism.linkage import Linkage
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.description import Key, Problems, declared
+from linkwork.mechanism.driven_input import Input
+from linkwork.mechanism.part.index import JoinedBodies
+from linkwork.mechanism.part.part import PartChecks, turning_links
+from linkwork.mechanism.part.slider import Slider
 
 __all__ = ["check_linkage"]
 
-Key = tuple[str | int, ...]
-GROUND = "ground"
-_LARGEST = 1e100  # so that squares and quotients of lengths stay numbers
-_SMALLEST = 1e-100
+_SMALLEST = 1e-100  # so that squares and quotients of lengths stay numbers
 
 
-def check_linkage(linkage: Linkage, problems: Problems) -> Shapes:
-    """Add every problem of the linkage to ``problems``; the links' shapes if there is none."""
+def check_linkage(linkage: JoinedBodies, problems: Problems) -> None:
+    """Add every problem of the linkage that shows without its links' shapes."""
     linkage.check_common(
         problems,
         [
             *declared("points", linkage.points),
             *declared("links", linkage.links),
-            *((("slots", k, "name"), slot.name) for k, slot in enumerate(linkage.slots)),
-            *((("sliders", k, "name"), part.name) for k, part in enumerate(linkage.sliders)),
-            *((("cylinders", k, "name"), part.name) for k, part in enumerate(linkage.cylinders)),
-            *(
-                (("cylinders", k, "name"), part.angle_name)
-                for k, part in enumerate(linkage.cylinders)
-            ),
-            *((("springs", k, "name"), part.name) for k, part in enumerate(linkage.springs)),
-            *(
-                ((kind, k, "name"), name)
-                for kind in ("gears", "belts", "racks", "rolling", "cams", "curves")
-                for k, part in enumerate(getattr(linkage, kind))
-                for name in names_of(part)
-            ),
+            *(((*key, "name"), n) for key, part in linkage.keyed_parts() for n in part.names),
         ],
     )
     _check_points(linkage, problems)
     _check_links(linkage, problems)
     _check_shared_points(linkage, problems)
-    for k, slot in enumerate(linkage.slots):
-        _check_slot(linkage, slot, ("slots", k), problems)
-    for k, slider in enumerate(linkage.sliders):
-        _check_slider(linkage, slider, ("sliders", k), problems)
+    for key, part in linkage.keyed_parts():
+        part.check(PartChecks(linkage, problems, key))
     _check_guided_once(linkage, problems)
-    for k, cylinder in enumerate(linkage.cylinders):
-        _check_ends(linkage, cylinder.between, ("cylinders", k, "between"), problems)
-    for k, spring in enumerate(linkage.springs):
-        _check_ends(linkage, spring.between, ("springs", k, "between"), problems)
-    check_contacts(linkage, problems)
     _check_dimension_keys(linkage, problems)
     _check_inputs(linkage, problems)
     for k, point in enumerate(linkage.trace):
         if point not in linkage.points:
             problems.add(("trace", "points", k), _no_point(linkage, point))
-    shapes = Shapes() if problems else Shapes.of(linkage, problems)
-    if not problems:
-        check_distances(linkage, shapes, problems)
-    return shapes
 
 
-def _no_point(linkage: Linkage, point: str) -> str:
+def _no_point(linkage: JoinedBodies, point: str) -> str:
     return f'point "{point}" is not defined {choices("points", linkage.points, point)}'
 
 
-def _no_link(linkage: Linkage, link: str) -> str:
+def _no_link(linkage: JoinedBodies, link: str) -> str:
     return f'link "{link}" is not defined {choices("links", linkage.links, link)}'
 
 
-def _check_points(linkage: Linkage, problems: Problems) -> None:
+def _check_points(linkage: JoinedBodies, problems: Problems) -> None:
     carried = {point for points in linkage.links.values() for point in points}
-    carried |= {point for cylinder in linkage.cylinders for point in cylinder.between}
+    carried |= {point for part in linkage.parts for point in part.body}
     if not linkage.points:
         problems.add(("points",), "is empty: name at least the pins of the mechanism")
     for point, coordinates in linkage.points.items():
@@ -90,24 +59,16 @@ def _check_points(linkage: Linkage, problems: Problems) -> None:
             problems.add(("points", point), f"needs two coordinates, got {len(coordinates)}")
             continue
         for number in coordinates:
-            _check_length(linkage, number, ("points", point), problems)
+            PartChecks(linkage, problems, ("points", point)).length(number)
         if point not in carried:
             problems.add(("points", point), "is on no link: add it to a link or remove it")
 
 
-def _check_length(linkage: Linkage, number: Number, key: Key, problems: Problems) -> float:
-    """A length or coordinate whose square is a number too."""
-    amount = linkage.numbers.check_number(problems.add, key, number)
-    if abs(amount) > _LARGEST:
-        problems.add(key, f"{amount:g} is too large: at most {_LARGEST:g} {linkage.length}")
-    return amount
-
-
-def _check_links(linkage: Linkage, problems: Problems) -> None:
+def _check_links(linkage: JoinedBodies, problems: Problems) -> None:
     if GROUND not in linkage.links:
-        problems.add(("links",), '"ground" is missing: the link that stands still')
-    alone = {GROUND} | {slider.link for slider in linkage.sliders}
-    alone |= linkage.turning_on_one_point
+        problems.add(("links",), '"ground" is missing: name the fixed link')
+    alone = {GROUND} | {slider.link for slider in linkage.of(Slider)}
+    alone |= turning_links(linkage)
     for link, points in linkage.links.items():
         key = ("links", link)
         for point in points:
@@ -126,11 +87,11 @@ def _check_links(linkage: Linkage, problems: Problems) -> None:
             )
 
 
-def _check_shared_points(linkage: Linkage, problems: Problems) -> None:
+def _check_shared_points(linkage: JoinedBodies, problems: Problems) -> None:
     """Two links that share two points are one rigid body."""
     bodies: list[tuple[Key, str, tuple[str, ...]]] = [
         *((("links", link), link, points) for link, points in linkage.links.items()),
-        *((("cylinders", k), c.name, c.between) for k, c in enumerate(linkage.cylinders)),
+        *((key, part.label, part.body) for key, part in linkage.keyed_parts() if part.body),
     ]
     carriers: dict[str, list[int]] = {}
     for k, (_, _, points) in enumerate(bodies):
@@ -147,113 +108,33 @@ def _check_shared_points(linkage: Linkage, problems: Problems) -> None:
         other = bodies[first][1]
         advice = (
             "a cylinder between them cannot change its length"
-            if key[0] == "cylinders"
-            else f"they move as one: make one link of {_union(linkage, other, points)}"
+            if key[0] != "links"
+            else f"they move as one body: make one link of {_union(linkage, other, points)}"
         )
         problems.add(key, f'shares {common[0]} and {common[1]} with "{other}": {advice}')
 
 
-def _union(linkage: Linkage, other: str, points: Iterable[str]) -> str:
+def _union(linkage: JoinedBodies, other: str, points: Iterable[str]) -> str:
     return ", ".join(dict.fromkeys([*linkage.links.get(other, ()), *points]))
 
 
-def _check_line(
-    linkage: Linkage, on: str, line: tuple[str, ...], key: Key, problems: Problems
-) -> None:
-    if on not in linkage.links:
-        problems.add((*key, "on"), _no_link(linkage, on))
-        return
-    if len(line) != 2:
-        problems.add((*key, "line"), f"needs two points, got {len(line)}")
-        return
-    for point in line:
-        if point not in linkage.points:
-            problems.add((*key, "line"), _no_point(linkage, point))
-        elif point not in linkage.links[on]:
-            problems.add(
-                (*key, "line"),
-                f'point "{point}" is not on link "{on}" {choices("points", linkage.links[on])}',
-            )
-    if line[0] == line[1]:
-        problems.add((*key, "line"), f"needs two different points, got {line[0]} twice")
-
-
-def _check_slot(linkage: Linkage, slot: Slot, key: Key, problems: Problems) -> None:
-    _check_line(linkage, slot.on, slot.line, key, problems)
-    if slot.point not in linkage.points:
-        problems.add((*key, "point"), _no_point(linkage, slot.point))
-    elif slot.point in linkage.links.get(slot.on, ()):
-        problems.add(
-            (*key, "point"),
-            f'point "{slot.point}" is fixed on "{slot.on}" and cannot run in its slot',
-        )
-
-
-def _check_guided_once(linkage: Linkage, problems: Problems) -> None:
+def _check_guided_once(linkage: JoinedBodies, problems: Problems) -> None:
     """A point has one place in a body: on one line of it."""
-    guides = [
-        *((("slots", k, "point"), s.name, s.point, s.on) for k, s in enumerate(linkage.slots)),
-        *(
-            (("sliders", k, "points"), s.name, s.points[0], s.on)
-            for k, s in enumerate(linkage.sliders)
-            if s.points
-        ),
-        *(
-            (("rolling", k, "center"), part.name, part.center, part.on)
-            for k, part in enumerate(linkage.rolling)
-            if part.line is not None
-        ),
-    ]
     first: dict[tuple[str, str], str] = {}
-    for key, name, point, on in guides:
-        other = first.setdefault((point, on), name)
-        if other != name:
+    for key, part in linkage.keyed_parts():
+        if part.guided is None:
+            continue
+        field, point, on = part.guided
+        other = first.setdefault((point, on), part.label)
+        if other != part.label:
             problems.add(
-                key,
-                f'point "{point}" is guided twice by "{on}": "{other}" already leads it along '
-                "a line there, and a second line leaves it no freedom",
+                (*key, field),
+                f'point "{point}" is guided twice by "{on}": "{other}" already guides it along '
+                "a line, and a second line would fix it",
             )
 
 
-def _check_slider(linkage: Linkage, slider: Slider, key: Key, problems: Problems) -> None:
-    _check_line(linkage, slider.on, slider.line, key, problems)
-    if slider.link not in linkage.links:
-        problems.add((*key, "link"), _no_link(linkage, slider.link))
-        return
-    if slider.link == slider.on:
-        problems.add((*key, "on"), f'"{slider.link}" cannot slide on itself')
-    if len(slider.points) not in (1, 2):
-        problems.add((*key, "points"), f"needs one or two points, got {len(slider.points)}")
-    for point in slider.points:
-        if point not in linkage.points:
-            problems.add((*key, "points"), _no_point(linkage, point))
-        elif slider.link != slider.on and point in linkage.links.get(slider.on, ()):
-            message = f'point "{point}" is fixed on "{slider.on}" and cannot slide on it'
-            problems.add((*key, "points"), message)
-        elif point not in linkage.links[slider.link]:
-            own = choices("points", linkage.links[slider.link])
-            problems.add((*key, "points"), f'point "{point}" is not on link "{slider.link}" {own}')
-    if len(set(slider.points)) < len(slider.points):
-        problems.add((*key, "points"), f"names {slider.points[0]} twice")
-    if len(slider.points) == 2 and slider.angle is not None:
-        problems.add((*key, "angle"), "is already given by the two points: leave one of them out")
-    _check_length(linkage, slider.offset, (*key, "offset"), problems)
-    if slider.angle is not None:
-        linkage.numbers.check_number(problems.add, (*key, "angle"), slider.angle)
-
-
-def _check_ends(linkage: Linkage, between: tuple[str, ...], key: Key, problems: Problems) -> None:
-    """The two points of a cylinder or spring."""
-    if len(set(between)) > 2 or len(between) < 2:
-        problems.add(key, f"needs two points, got {len(between)}")
-    elif len(set(between)) == 1:
-        problems.add(key, f"needs two different points, got {between[0]} twice")
-    for point in between:
-        if point not in linkage.points:
-            problems.add(key, _no_point(linkage, point))
-
-
-def _check_dimension_keys(linkage: Linkage, problems: Problems) -> None:
+def _check_dimension_keys(linkage: JoinedBodies, problems: Problems) -> None:
     links_at: dict[str, set[str]] = {}
     for link, points in linkage.links.items():
         for point in points:
@@ -278,7 +159,7 @@ def _check_dimension_keys(linkage: Linkage, problems: Problems) -> None:
             if table == "angles":
                 linkage.numbers.check_number(problems.add, key, number)
                 continue
-            amount = _check_length(linkage, number, key, problems)
+            amount = PartChecks(linkage, problems, key).length(number)
             if amount <= 0:
                 problems.add(key, f"must be a positive length, got {amount:g}")
             elif amount < _SMALLEST:
@@ -286,7 +167,7 @@ def _check_dimension_keys(linkage: Linkage, problems: Problems) -> None:
                 problems.add(key, message)
 
 
-def _check_inputs(linkage: Linkage, problems: Problems) -> None:
+def _check_inputs(linkage: JoinedBodies, problems: Problems) -> None:
     driven: dict[tuple[str, ...], Key] = {}
     for k, which in enumerate(linkage.inputs):
         key = linkage.input_key(k)
@@ -309,12 +190,12 @@ def _quantity_text(quantity: tuple[str, ...]) -> str:
 
 
 def _check_input(
-    linkage: Linkage, which: Input, key: Key, problems: Problems
+    linkage: JoinedBodies, which: Input, key: Key, problems: Problems
 ) -> tuple[str, ...] | None:
     """The driven quantity in a comparable form, or ``None`` after reporting."""
     kind, name = which.drives
     if which.relative_to is not None and kind != "link":
-        problems.add((*key, "relative_to"), "goes with link only")
+        problems.add((*key, "relative_to"), "is used with link only")
         return None
     if kind == "variable":
         message = "belongs to [loops] and [equations]: use link, slider or cylinder"
@@ -324,13 +205,7 @@ def _check_input(
         return _check_angle_input(linkage, which, key, problems)
     if kind == "joint":
         return _check_joint_input(linkage, name, key, problems)
-    if kind == "cylinder":
-        names = [part.name for part in linkage.cylinders]
-    else:
-        names = [part.name for part in linkage.sliders]
-        names += [part.name for part in linkage.slots]
-        names += [part.name for part in linkage.rolling if part.line is not None]
-        names += [part.name for part in linkage.curves if not part.closed]
+    names = [part.label for part in linkage.parts if part.drive == kind]
     if name not in names:
         known = choices("cylinders" if kind == "cylinder" else "sliders and slots", names, name)
         problems.add((*key, kind), f'{kind} "{name}" is not defined {known}')
@@ -339,7 +214,7 @@ def _check_input(
 
 
 def _check_angle_input(
-    linkage: Linkage, which: Input, key: Key, problems: Problems
+    linkage: JoinedBodies, which: Input, key: Key, problems: Problems
 ) -> tuple[str, ...] | None:
     link, against = which.link or "", which.relative_to or GROUND
     if GROUND not in linkage.links and against == GROUND:
@@ -349,16 +224,16 @@ def _check_angle_input(
             problems.add((*key, field), _no_link(linkage, name))
             return None
     if link == GROUND:
-        problems.add((*key, "link"), "ground stands still: drive another link")
+        problems.add((*key, "link"), "ground is fixed: drive another link")
         return None
     if link == against:
-        problems.add((*key, "relative_to"), f'"{link}" has no angle against itself')
+        problems.add((*key, "relative_to"), f'"{link}" has no angle relative to itself')
         return None
     return tuple(sorted((link, against)))
 
 
 def _check_joint_input(
-    linkage: Linkage, joint: str, key: Key, problems: Problems
+    linkage: JoinedBodies, joint: str, key: Key, problems: Problems
 ) -> tuple[str, ...] | None:
     if joint not in linkage.points:
         problems.add((*key, "joint"), _no_point(linkage, joint))

@@ -9,7 +9,7 @@ from linkwork.foundation.errors import choices
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Description, Problems, declared
-from linkwork.mechanism.parts import Number
+from linkwork.mechanism.dimensions import Number
 
 __all__ = ["Loops", "PlainEquations"]
 
@@ -33,7 +33,7 @@ class _Equations(Description):
             key = self.input_key(k)
             kind, name = which.drives
             if kind != "variable" or which.relative_to is not None:
-                problems.add(key, 'must name a variable of the equations, only: variable = "…"')
+                problems.add(key, 'must name only a variable of the equations: variable = "…"')
                 continue
             if canonical(name) not in known:
                 problems.add(
@@ -55,7 +55,7 @@ class Loops(_Equations):
         Complex equations by label: ``"a2*e^(i*θ12) + a3*e^(i*θ13) = d + a4*e^(i*θ14)"``.
         An angle stands in an exponent, a variable length as a factor; the rest are dimensions.
     guess : Mapping[str, number]
-        Estimates of all unknowns and the input value they belong to.
+        Estimates of all unknowns at one input value.
     points : Mapping[str, str], optional
         Points as formulas of the same kind; they make the mechanism drawable.
     links : Mapping[str, sequence of str], optional

@@ -9,9 +9,9 @@ from typing import Any
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Description
+from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.parts import Number
 
 __all__ = ["Quantity", "quantities", "quantity_named", "with_numbers"]
 
@@ -29,7 +29,7 @@ class Quantity:
     axis: int = 0
 
     def of(self, description: Description) -> float:
-        """Its value in a description, everyday units."""
+        """Its value in a description, in file units."""
         return description.numbers(self.written(description))
 
     def written(self, description: Description) -> Number:
@@ -79,7 +79,7 @@ def quantity_named(description: Description, name: str) -> Quantity:
     if wanted not in found:
         names = [quantity.name for quantity in found.values()]
         raise UnknownNameError(
-            f'"{name}" is no number of {description.name} that can vary '
+            f'"{name}" is not a number of {description.name} that can vary '
             f"{choices('numbers', names, name)}"
         )
     return found[wanted]

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
-from linkwork.mechanism.contact_shapes import ContactShapes
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.figures import Disc, Figure, Guide, Mesh, Outlines
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.cylinder import Strut
+from linkwork.mechanism.part.weld import RigidJoint
 
-__all__ = ["Bar", "DrivenPart", "Guide", "Rail", "RigidJoint", "Skeleton", "Strut"]
+__all__ = ["Bar", "DrivenPart", "Rail", "Skeleton"]
+
+F = TypeVar("F", bound=Figure)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,23 +24,6 @@ class Bar:
 
     name: str
     points: tuple[str, ...]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Guide:
-    """A slider or slot: ``point`` runs along the line through two points of the body ``on``.
-
-    ``offset`` is the distance of ``point`` to the left of the line. ``block`` tells a sliding
-    block (prismatic joint) from a pin in a slot; ``link`` is the one that slides.
-    """
-
-    name: str
-    point: str
-    on: str
-    line: tuple[str, str]
-    offset: float = 0.0
-    block: bool = False
-    link: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,22 +40,6 @@ class Rail:
     along: complex = 1.0 + 0.0j
     on: str = GROUND
     line: tuple[str, str] | None = None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Strut:
-    """A cylinder or a spring: something of variable length between two points."""
-
-    name: str
-    between: tuple[str, str]
-
-
-@dataclass(frozen=True, kw_only=True)
-class RigidJoint:
-    """Two links that are welded together at a point that both carry."""
-
-    links: tuple[str, str]
-    point: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,26 +68,19 @@ class Skeleton:
     guides: tuple[Guide, ...] = ()
     rails: tuple[Rail, ...] = ()
     struts: tuple[Strut, ...] = ()
-    springs: tuple[Strut, ...] = ()
-    rigid: tuple[RigidJoint, ...] = ()
     driven: tuple[DrivenPart, ...] = ()
     traced: tuple[str, ...] = ()
-    contacts: ContactShapes = field(default_factory=ContactShapes)
+    figures: tuple[Figure, ...] = ()
 
     @classmethod
-    def of_linkage(
-        cls, linkage: Linkage, outlines: Mapping[str, tuple[str, str, Iterable[complex]]]
-    ) -> Skeleton:
+    def of_linkage(cls, linkage: Linkage, outlines: Outlines) -> Skeleton:
         """The skeleton of a points-and-links mechanism.
 
         ``outlines``: body, centre and points of every cam and curve by name.
         """
         carriers = linkage.carriers()
-        guided = {slot.point for slot in linkage.slots} | {curve.point for curve in linkage.curves}
-        contacts = ContactShapes.of(linkage, outlines)
-        guided |= {disc.center for disc in contacts.discs if disc.kind == "roller"}
-        guided |= {point for spring in linkage.springs for point in spring.between}
-        rigid = tuple(_rigid_joints(linkage))
+        figures = _merged(f for part in linkage.parts for f in part.figures(linkage, outlines))
+        pinned = {point for figure in figures for point in figure.pins}
         return cls(
             fixed=linkage.links[GROUND],
             bars=tuple(
@@ -122,30 +88,17 @@ class Skeleton:
                 for name, points in linkage.links.items()
                 if name != GROUND
             ),
-            pins=tuple(p for p, n in _bodies(carriers, rigid).items() if n > 1 or p in guided),
-            guides=tuple(
-                [Guide(name=s.name, point=s.point, on=s.on, line=s.line) for s in linkage.slots]
-                + [
-                    Guide(
-                        name=s.name,
-                        point=point,
-                        on=s.on,
-                        line=s.line,
-                        offset=linkage.numbers(s.offset),
-                        block=True,
-                        link=s.link,
-                    )
-                    for s in linkage.sliders
-                    for point in s.points
-                ]
-            ),
-            struts=tuple(Strut(name=c.name, between=c.between) for c in linkage.cylinders),
-            springs=tuple(Strut(name=s.name, between=s.between) for s in linkage.springs),
-            rigid=rigid,
+            pins=tuple(p for p, n in _bodies(carriers, figures).items() if n > 1 or p in pinned),
+            guides=tuple(figure for figure in figures if isinstance(figure, Guide)),
+            struts=tuple(figure for figure in figures if isinstance(figure, Strut)),
             driven=tuple(_driven_parts(linkage, carriers)),
             traced=linkage.trace,
-            contacts=contacts,
+            figures=tuple(f for f in figures if not isinstance(f, Guide | Strut)),
         )
+
+    def of(self, kind: type[F]) -> tuple[F, ...]:
+        """The figures of one kind, besides guides and struts."""
+        return tuple(figure for figure in self.figures if isinstance(figure, kind))
 
     @classmethod
     def of_points(
@@ -176,15 +129,27 @@ def _joined_to_blocks(
             yield from on if len(on) < len(points) else ()
 
 
-def _rigid_joints(linkage: Linkage) -> Iterator[RigidJoint]:
-    for weld in linkage.welds:
-        first, second = (linkage.links[name] for name in weld.links)
-        yield RigidJoint(links=weld.links, point=next(p for p in first if p in second))
+def _merged(figures: Iterable[Figure]) -> list[Figure]:
+    """Figures with every wheel once, wheels first; its teeth may be told by one mesh only."""
+    found: dict[tuple[str, str, str], Disc] = {}
+    others: list[Figure] = []
+    for figure in figures:
+        if not isinstance(figure, Disc):
+            others.append(figure)
+            continue
+        known = found.setdefault(figure.key, figure)
+        if known.teeth is None and figure.teeth is not None:
+            found[figure.key] = replace(known, teeth=figure.teeth)
+    for k, figure in enumerate(others):
+        if isinstance(figure, Mesh):
+            first, second = figure.discs
+            others[k] = replace(figure, discs=(found[first.key], found[second.key]))
+    return [*found.values(), *others]
 
 
-def _bodies(carriers: Mapping[str, list[str]], rigid: tuple[RigidJoint, ...]) -> Mapping[str, int]:
+def _bodies(carriers: Mapping[str, list[str]], figures: Iterable[Figure]) -> Mapping[str, int]:
     """How many bodies meet at each point: links that are welded there are one."""
-    welded = [joint.point for joint in rigid]
+    welded = [joint.point for joint in figures if isinstance(joint, RigidJoint)]
     return {point: len(links) - welded.count(point) for point, links in carriers.items()}
 
 

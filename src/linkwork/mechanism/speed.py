@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from linkwork.foundation.errors import ExpressionError
-from linkwork.mechanism.dimensions import Numbers
-from linkwork.mechanism.parts import Number
+from linkwork.mechanism.dimensions import Number, Numbers
 
 __all__ = ["speed_per_second"]
 

@@ -21,11 +21,11 @@ from linkwork.motion.tracking import track_to
 from linkwork.numerics.continuation.branch_tracking import (
     BOLD,
     Node,
-    Rows,
     Track,
     TrackOptions,
+    TrackRows,
+    concatenate_rows,
     follow,
-    joined_rows,
     rows_on_track,
 )
 from linkwork.numerics.continuation.passage import Passage
@@ -43,11 +43,13 @@ class Asked:
 
     t: Array
     inputs: Array
-    everyday: Array
+    in_file_units: Array
 
     def take(self, where: IndexArray) -> Asked:
         """Some of them."""
-        return Asked(t=self.t[where], inputs=self.inputs[where], everyday=self.everyday[where])
+        return Asked(
+            t=self.t[where], inputs=self.inputs[where], in_file_units=self.in_file_units[where]
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -111,20 +113,20 @@ def rows_of_branch(
     The track is bold first; where that leaves rows unproved it is followed again with care. With a
     ``passage`` that led to the anchor the branch is followed onwards only.
     """
-    provable = all(block.system.bends_boundedly for block in drive.solver.blocks)
+    provable = all(block.system.has_curvature_bound for block in drive.solver.blocks)
     tries = (BOLD, None) if certify and provable else (None,)
     for care in tries:
         track = _covering(drive, anchor, asked.t, care, report, passage)
-        placed = _placed(track, asked.t, drive.free)
-        work = _Rows(
+        placed = _place_rows(track, asked.t, drive.free)
+        work = _RowSolver(
             drive=drive, track=track, placed=placed, asked=asked, report=report, certify=certify
         )
-        rows, to_ends = work.solved()
+        rows, to_ends = work.solve()
         if care is None or not _doubtful(rows, placed, to_ends):
             break
     ends = ends_of(drive, track, certify)
     if not to_ends:
-        ends = tuple(end.demoted(Certification.MOTION_NOT_PROVED) for end in ends)
+        ends = tuple(end.demote(Certification.MOTION_NOT_PROVED) for end in ends)
     fill_last_rows(drive, track, ends, asked.t, placed, rows)
     if passage is not None:
         fill_passed_rows(drive, passage, asked.t, placed, rows)
@@ -181,7 +183,7 @@ def _turns_above(t: Array | float, edge: Array | float) -> Array:
     return turns
 
 
-def _placed(track: Track, t: Array, free: bool) -> Array:
+def _place_rows(track: Track, t: Array, free: bool) -> Array:
     """Where on the track each row lies, whole turns apart if need be; NaN if nowhere."""
     moved = t
     if free:
@@ -191,7 +193,7 @@ def _placed(track: Track, t: Array, free: bool) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Rows:
+class _RowSolver:
     """Rows to be solved on a track; ``placed`` (B,): where on it each of them lies, or NaN."""
 
     drive: Drive
@@ -201,7 +203,7 @@ class _Rows:
     report: Report
     certify: bool
 
-    def solved(self) -> tuple[SolvedRows, bool]:
+    def solve(self) -> tuple[SolvedRows, bool]:
         """All rows that lie on the track, and whether the track is proved up to its ends."""
         there = np.flatnonzero(~np.isnan(self.placed))
         there = there[np.argsort(self.placed[there], kind="stable")]
@@ -214,7 +216,7 @@ class _Rows:
 
     def _blank(self) -> SolvedRows:
         variables = self.drive.solver.variables
-        found = SolvedRows.blank(self.asked.everyday, variables, Status.CONVERGED)
+        found = SolvedRows.blank(self.asked.in_file_units, variables, Status.CONVERGED)
         if not self.certify:
             found.certification[:] = Certification.NOT_ASKED.code
         return found
@@ -236,7 +238,7 @@ class _Rows:
     def _fill(self, found: SolvedRows, there: IndexArray) -> bool:
         """Solve some rows, in the order of the track; whether that is proved up to its ends."""
         solver, path, track = self.drive.solver, self.drive.path, self.track
-        pieces: list[Rows] = []
+        pieces: list[TrackRows] = []
         for begin in range(0, len(there), _CHUNK):
             chunk = there[begin : begin + _CHUNK]
             rows = rows_on_track(solver, path, track, self.placed[chunk])
@@ -248,7 +250,7 @@ class _Rows:
             self.report.solved((begin + len(chunk)) / len(there))
         if not (self.certify and pieces):
             return self.certify
-        asked, joined = self.asked.inputs[there], joined_rows(pieces)
+        asked, joined = self.asked.inputs[there], concatenate_rows(pieces)
         proofs = prove_rows(solver, path, track, joined, asked, self.report.proved)
         found.prove(there, proofs)
         return proofs.up_to_ends

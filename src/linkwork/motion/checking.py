@@ -1,4 +1,4 @@
-"""What was understood: loops, unknowns, blocks, mobility, and whether the start closes."""
+"""Check a mechanism: loops, unknowns, blocks, mobility, closure at the start."""
 
 from __future__ import annotations
 
@@ -19,8 +19,6 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["check"]
 
-_JOINTS = ("sliders", "rolling", "slots", "gears", "belts", "racks", "cams", "curves")
-
 
 def check(model: Model) -> CheckReport:
     """Report what was understood of a mechanism and try its start position."""
@@ -39,8 +37,9 @@ def check(model: Model) -> CheckReport:
     else:
         form = "loops" if isinstance(description, Loops) else "equations"
     if linkage is not None:
-        links = len(linkage.links) + len(linkage.cylinders)
-        joints = pins(linkage) + sum(len(getattr(linkage, k)) for k in _JOINTS)
+        bodies = [part for part in linkage.parts if part.body]
+        links = len(linkage.links) + len(bodies)
+        joints = pins(linkage) + sum(part.kind is not None for part in linkage.parts) - len(bodies)
     units = model.units
     return CheckReport(
         mechanism=description.name,
@@ -70,7 +69,7 @@ def check(model: Model) -> CheckReport:
         start_message=start.message,
         start_input={
             v.name: float(value)
-            for v, value in zip(equations.inputs, model.everyday_start, strict=True)
+            for v, value in zip(equations.inputs, model.start_in_file_units, strict=True)
         },
         residual=start.residual,
         failure=start.failure,

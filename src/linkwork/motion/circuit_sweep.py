@@ -1,4 +1,4 @@
-"""Around the whole circuit: the rows of the branches beyond the dead points."""
+"""Sweep the whole circuit: the rows of the branches beyond the dead points."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.motion.branch_rows import Asked, BranchRows, Report, rows_of_branch
-from linkwork.motion.circuit.branches import CurveBranch, Traced, branches_of, traced
+from linkwork.motion.curve_branches import CurveBranch, TracedCurve, branches_of, trace_with_proof
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd, end_at_dead_point
 from linkwork.motion.model import Model
@@ -70,9 +70,9 @@ def further_branches(
     A closed circuit is followed once around, upwards first; an open one to both of its ends.
     """
     leads = drive.leads
-    walks = [traced(leads, start, 1.0, certify)]
+    walks = [trace_with_proof(leads, start, 1.0, certify)]
     if not walks[0].curve.end.closed:
-        walks.append(traced(leads, start, -1.0, certify))
+        walks.append(trace_with_proof(leads, start, -1.0, certify))
     ways = [(walk, branches_of(leads, walk)) for walk in walks if walk.curve.legs]
     pieces = [(walk, branch) for walk, branches in ways for branch in branches[1:]]
     found = []
@@ -99,16 +99,21 @@ def _branch_name(model: Model, number: int) -> str:
     return f"{model.circuit}, branch {number} from there"
 
 
-def _how_it_ends(walks: Sequence[Traced]) -> CircuitEnd:
+def _how_it_ends(walks: Sequence[TracedCurve]) -> CircuitEnd:
     """How the circuit ends: of its two ends the one that leaves most open."""
     return max((walk.curve.end for walk in walks), key=list(CircuitEnd).index)
 
 
 def _rows(
-    drive: Drive, walk: Traced, branch: CurveBranch, asked: Asked, report: Report, certify: bool
+    drive: Drive,
+    walk: TracedCurve,
+    branch: CurveBranch,
+    asked: Asked,
+    report: Report,
+    certify: bool,
 ) -> FurtherBranch | None:
     leads = drive.leads
-    mine = _asked_on(branch, asked, leads.parameter, drive.free)
+    mine = _rows_on_branch(branch, asked, leads.parameter, drive.free)
     anchor = branch.anchor
     node = node_at(drive.solver, drive.path, float(anchor[leads.parameter]), anchor)
     if not len(mine.t):
@@ -132,7 +137,7 @@ def _rows(
     )
 
 
-def _asked_on(branch: CurveBranch, asked: Asked, parameter: int, free: bool) -> Asked:
+def _rows_on_branch(branch: CurveBranch, asked: Asked, parameter: int, free: bool) -> Asked:
     """The rows of the table that lie on a branch, in the direction of travel.
 
     With a freely turning input a row is met once in every turn.
@@ -150,5 +155,5 @@ def _asked_on(branch: CurveBranch, asked: Asked, parameter: int, free: bool) -> 
     if len(order):  # 0 and 360 degrees are one row here
         keep = np.concatenate([[True], np.abs(np.diff(t[order])) > 1e-12])
         order = order[keep]
-    everyday = asked.everyday[row[order]]
-    return Asked(t=t[order], inputs=asked.inputs[row[order]], everyday=everyday)
+    in_file_units = asked.in_file_units[row[order]]
+    return Asked(t=t[order], inputs=asked.inputs[row[order]], in_file_units=in_file_units)

@@ -1,4 +1,4 @@
-"""Beyond change points on the branch that was chosen: straight on, or the one that crosses."""
+"""Continue beyond change points by a policy: straight on, or onto the other branch."""
 
 from __future__ import annotations
 

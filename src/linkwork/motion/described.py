@@ -1,4 +1,4 @@
-"""A mechanism made ready as its description says, from the configuration that it names."""
+"""The model of a mechanism, started in the configuration that its description names."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def as_described(description: Description) -> Model:
     if not description.configuration:
         return model
     try:
-        return motion.started_in(model, description.configuration)
+        return motion.start_in_configuration(model, description.configuration)
     except InputError as error:
         problem = Problem(key=("configuration",), message=str(error))
         raise MechanismError([problem], f'mechanism "{description.name}"') from None

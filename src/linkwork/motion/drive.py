@@ -1,11 +1,11 @@
-"""A mechanism as it is driven: its inputs move in lock-step, measured by the leading one."""
+"""The inputs of a mechanism, which move in lock-step along the leading one."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
 
-from linkwork.equations.leading import LeadTable
+from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import leading_scale, turns_freely
@@ -37,9 +37,9 @@ class Drive:
         return self.model.compiled.solver
 
     @cached_property
-    def leads(self) -> LeadTable:
+    def leads(self) -> ParametrizedTable:
         """The equations along the path, solvable with any variable in the lead."""
-        return LeadTable(self.model.compiled.table, self.path, self.lead)
+        return ParametrizedTable(self.model.compiled.table, self.path, self.lead)
 
     @cached_property
     def free(self) -> bool:
@@ -48,5 +48,5 @@ class Drive:
 
     @property
     def unit(self) -> float:
-        """Internal units per everyday unit of t."""
+        """Internal units per file unit of t."""
         return float(self.model.input_scale[self.lead])

@@ -1,4 +1,4 @@
-"""Limits of an output: positions at which a chosen quantity stands still while the input moves."""
+"""Extremes of an output: positions at which its derivative with respect to the input is zero."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import as_told
+from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
@@ -20,7 +21,6 @@ from linkwork.results.quantities.registry import Group
 
 __all__ = ["check_quantities", "output_limit_at", "output_limits"]
 
-_UNIT = np.finfo(float).eps
 _AT_ONCE = 1e-12  # of the leader: a quantity and the input that turn back so near turn back at once
 
 
@@ -70,7 +70,7 @@ def output_limits(drive: Drive, track: Track, name: str) -> list[tuple[float, Ou
         value, _, second, condition = (float(part[0]) for part in search.at(np.array([here])))
         # the derivative is known to its rounding only
         size = max(abs(float(rate[k])), abs(float(rate[k + 1])), abs(second))
-        noise = 8.0 * _UNIT * condition * size
+        noise = 8.0 * EPSILON * condition * size
         error = max(error, noise / abs(second)) if second else np.inf
         unit = drive.unit
         limit = OutputLimit(
@@ -97,7 +97,7 @@ def output_limit_at(drive: Drive, end: BranchEnd, name: str) -> OutputLimit | No
     v, first, second = (led.whole(x)[None, :] for x in (node.v, node.first, node.second))
     series = RowValues(model, v, first, second, np.ones(1, dtype=bool)).series(name)
     rate, bend = float(series.first[0]), float(series.second[0])
-    noise = 8.0 * _UNIT * node.condition * float(np.abs(series.first[0]) + np.abs(bend))
+    noise = 8.0 * EPSILON * node.condition * float(np.abs(series.first[0]) + np.abs(bend))
     away = (abs(rate) + noise) / abs(bend) if bend else np.inf
     if not away <= _AT_ONCE * led.path.size * max(1.0, node.condition):
         return None
@@ -137,7 +137,7 @@ class _Search:
             if not np.isfinite(first):
                 break
             step = -first / second if second else np.inf
-            tiny = 4.0 * _UNIT * max(1.0, abs(here))
+            tiny = 4.0 * EPSILON * max(1.0, abs(here))
             if abs(first) < least:
                 best, least, error = here, abs(first), abs(step)
             elif abs(step) < 1e-9:
@@ -149,4 +149,4 @@ class _Search:
             else:
                 high = here
             here = here + step if low < here + step < high else 0.5 * (low + high)
-        return best, max(error, 4.0 * _UNIT * max(1.0, abs(best)))
+        return best, max(error, 4.0 * EPSILON * max(1.0, abs(best)))

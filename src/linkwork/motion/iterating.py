@@ -1,4 +1,4 @@
-"""Newton-Raphson made visible: from any guess, every iterate kept."""
+"""The iterates of Newton-Raphson from any guess."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.motion.model import Model
-from linkwork.motion.named_quantities import Named, named_series
+from linkwork.motion.named_quantities import Named, name_series
 from linkwork.motion.nearest_assembling import open_ends
 from linkwork.motion.positions import target_values
 from linkwork.motion.solving import solve
@@ -36,9 +36,9 @@ def iterates(
     Parameters
     ----------
     guess : Mapping[str, number], optional
-        Unknowns in everyday units; those left out start where the mechanism's own guess does.
+        Unknowns in file units; those left out start where the mechanism's own guess does.
     at : number or Mapping[str, number], optional
-        Input value(s) in everyday units; the guess's own if left out.
+        Input value(s) in file units; the guess's own if left out.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def iterates(
         For names that are no unknowns, and values that are no numbers.
     """
     options = options or NewtonOptions()
-    model = model.guessed(guess or {})
+    model = model.with_guess(guess or {})
     position = solve(model, at, from_guess=True, options=options)
     solver = model.compiled.solver
     v = model.equations.start.copy()
@@ -83,19 +83,19 @@ def pulled_guess(
     Returns
     -------
     dict[str, float]
-        All unknowns in everyday units; as they were where none of them moves the point.
+        All unknowns in file units; as they were where none of them moves the point.
 
     Raises
     ------
     UnknownNameError, InputError
         For names that are no unknowns or no points, and values that are no numbers.
     """
-    model = model.guessed(guess or {})
+    model = model.with_guess(guess or {})
     names, unknowns = model.compiled.points.names, model.equations.unknowns
     if point not in names:
         raise UnknownNameError(f'there is no point "{point}" {choices("points", names, point)}')
     if not np.isfinite(place).all():
-        raise InputError(f"the place of {point} must be two finite numbers, got {place}")
+        raise InputError(f"the coordinates of {point} must be two finite numbers, got {place}")
     v = model.equations.start.copy()
     v[len(unknowns) :] = target_values(model, at) * model.input_scale
     wanted = complex(*place)
@@ -208,7 +208,7 @@ def _points(model: Model, v: Array) -> list[dict[str, tuple[float, float]]]:
 def _named(model: Model, v: Array) -> Named:
     none = np.zeros_like(v)
     inputs = v[:, model.compiled.solver.unknowns :] / model.input_scale
-    return named_series(model, v, none, none, inputs, np.ones(len(v), dtype=bool))
+    return name_series(model, v, none, none, inputs, np.ones(len(v), dtype=bool))
 
 
 def _points_of(named: Named, count: int) -> list[dict[str, tuple[float, float]]]:

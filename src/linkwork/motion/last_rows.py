@@ -1,4 +1,4 @@
-"""Rows right before a dead point and around change points, where the input leads no longer well.
+"""Rows close to dead points and change points, where the input is a poor parameter.
 
 Before a dead point the position is found with the variable that leads through it: its value at
 which the input has the value asked for. Around change points it lies on the way across them.
@@ -14,6 +14,7 @@ import numpy as np
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.rounding import EPSILON, LARGEST_POLISH
 from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
@@ -26,9 +27,6 @@ from linkwork.numerics.continuation.turning_point import TurnAhead
 from linkwork.numerics.proof.position_proof import Proof, prove
 
 __all__ = ["fill_last_rows", "fill_passed_rows"]
-
-_UNIT = np.finfo(float).eps
-_SAME = 1e-6  # weighted: a position moves no further when its input is made exact
 
 
 def fill_last_rows(
@@ -86,7 +84,10 @@ def _enter_passed(
     proof = _enter(drive, v, row, rows)
     if proof is not None and proof.holds[0]:
         rows.certification[row] = standing.code
-        rows.radius[row], rows.unique[row] = proof.radius[0], proof.alone_within[0]
+        rows.radius[row], rows.uniqueness_radius[row] = (
+            proof.radius[0],
+            proof.least_uniqueness_radius[0],
+        )
 
 
 def _enter(drive: Drive, v: Array, row: int, rows: SolvedRows) -> Proof | None:
@@ -98,10 +99,10 @@ def _enter(drive: Drive, v: Array, row: int, rows: SolvedRows) -> Proof | None:
     rows.residual[row], rows.condition[row] = solver.residual(here)[0], rates.condition[0]
     if rows.certification[row] == Certification.NOT_ASKED.code:
         return None
-    bounded = all(block.system.bends_boundedly for block in solver.blocks)
+    bounded = all(block.system.has_curvature_bound for block in solver.blocks)
     why = Certification.POSITION_NOT_PROVED if bounded else Certification.NO_BOUND
     rows.certification[row] = why.code
-    rounding = 4.0 * _UNIT * np.abs(here[:, solver.unknowns :])
+    rounding = 4.0 * EPSILON * np.abs(here[:, solver.unknowns :])
     return prove(solver, here, rounding) if bounded else None
 
 
@@ -112,12 +113,15 @@ def _fill(
     v = _position(drive, ahead, t) if ahead.located else None
     if v is None:
         return False
-    proof, own = _enter(drive, v, row, rows), drive.leads.by(drive.leads.parameter)
+    proof, own = _enter(drive, v, row, rows), drive.leads.with_parameter(drive.leads.parameter)
     if proof is None or own is None or not proof.holds[0]:
         return True
     if same_solution(ahead.leg.led, own, v):
         rows.certification[row] = end.certification.code
-        rows.radius[row], rows.unique[row] = proof.radius[0], proof.alone_within[0]
+        rows.radius[row], rows.uniqueness_radius[row] = (
+            proof.radius[0],
+            proof.least_uniqueness_radius[0],
+        )
     return True
 
 
@@ -134,7 +138,7 @@ def _position(drive: Drive, ahead: TurnAhead, t: float) -> Array | None:
         v[drive.solver.unknowns :] = drive.path.at(t)
         found = drive.solver.solve(v[None, :])
         moved = np.abs((found.v[0] - v) / drive.solver.variable_scale).max()
-        if found.status[0] == Status.CONVERGED.code and moved < _SAME:
+        if found.status[0] == Status.CONVERGED.code and moved < LARGEST_POLISH:
             after = drive.solver.rates(found.v, drive.path.rate).orientation
             if np.array_equal(side, after):
                 return np.asarray(found.v[0])

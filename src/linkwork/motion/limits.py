@@ -1,4 +1,4 @@
-"""Where a branch ends: dead points and change points, with the loop that locks and its links."""
+"""Limits of a branch: dead points and change points, with the locking loop and its links."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
 from linkwork.motion.lined_up import links_in_line
@@ -23,7 +24,7 @@ from linkwork.numerics.continuation.change_point import (
     most_singular,
 )
 from linkwork.numerics.continuation.curve_proof import same_solution
-from linkwork.numerics.continuation.local_parametrization import Led
+from linkwork.numerics.continuation.local_parametrization import Parametrization
 from linkwork.numerics.continuation.passage import Passage, pass_change_points
 from linkwork.numerics.continuation.turning_point import TurnAhead, TurningPoint, turn_beyond
 from linkwork.results.motion import Limit, LimitKind
@@ -37,7 +38,6 @@ __all__ = [
     "ends_of",
 ]
 
-_UNIT = float(np.finfo(float).eps)
 _MOVES = 1e-7  # weighted: a direction along which the input moves at all
 _SOUND = 1e4  # condition up to which a node is as good as any
 _TOUCHING = 1e-12  # residual at a located crossing, where Newton-Raphson must not take a step
@@ -53,7 +53,7 @@ class BranchEnd:
     ``nodes``, the track that led there in the order of travel, and the ``passage`` straight on.
     ``led``, ``node``: a dead point as another leader sees it; ``ahead``: the way to it from the
     last position that the input leads to well.
-    ``radius``, ``unique``: of its proof.
+    ``radius``, ``uniqueness_radius``: of its proof.
     """
 
     side: float
@@ -65,18 +65,18 @@ class BranchEnd:
     crossings: tuple[ChangePoint, ...] = ()
     nodes: tuple[Node, ...] = ()
     passage: Passage | None = None
-    led: Led | None = None
+    led: Parametrization | None = None
     node: Node | None = None
     ahead: TurnAhead | None = None
     certification: Certification = Certification.NOT_ASKED
     radius: float = np.nan
-    unique: float = np.nan
+    uniqueness_radius: float = np.nan
 
-    def named(self, value: float) -> BranchEnd:
+    def with_input_named(self, value: float) -> BranchEnd:
         """The end with its limit at the input value of its row in a table, whole turns away."""
         low, high = self.limit.bracket
         shift = value - self.limit.input
-        rounding = _UNIT * (abs(value) + abs(shift))  # whole turns in radians are no floats
+        rounding = EPSILON * (abs(value) + abs(shift))  # whole turns in radians are no floats
         bracket = (low + shift - rounding, high + shift + rounding)
         limit = replace(self.limit, input=value, bracket=bracket)
         return replace(self, limit=limit) if shift else self
@@ -85,7 +85,7 @@ class BranchEnd:
         """Whether a value of the path that was asked for is this end's, and a position is there."""
         return self.v is not None and abs(t - self.t) <= self.slack + rounding
 
-    def demoted(self, standing: Certification) -> BranchEnd:
+    def demote(self, standing: Certification) -> BranchEnd:
         """The end with what the way to its branch is worth, if it is proved on it."""
         if self.certification is not Certification.CERTIFIED:
             return self
@@ -141,7 +141,7 @@ def _turn_ahead(drive: Drive, nodes: Sequence[Node], side: float) -> TurnAhead |
 
 
 def _dead_end(drive: Drive, last: Node, ahead: TurnAhead, side: float, certify: bool) -> BranchEnd:
-    leg, own = ahead.leg, drive.leads.by(drive.leads.parameter)
+    leg, own = ahead.leg, drive.leads.with_parameter(drive.leads.parameter)
     begin = leg.led.whole(leg.nodes[0].v)
     joined = ahead.located and own is not None and same_solution(own, leg.led, begin)
     turn = ahead.turn
@@ -153,7 +153,7 @@ def _dead_end(drive: Drive, last: Node, ahead: TurnAhead, side: float, certify: 
 
 
 def end_at_dead_point(
-    drive: Drive, turn: TurningPoint, led: Led, certify: bool, joined: bool = False
+    drive: Drive, turn: TurningPoint, led: Parametrization, certify: bool, joined: bool = False
 ) -> BranchEnd:
     """The end of a branch at a dead point, seen by the leader ``led``.
 
@@ -173,20 +173,20 @@ def end_at_dead_point(
     if not certify:
         return found
     if turn.proof is None:
-        bounded = all(block.system.bends_boundedly for block in drive.solver.blocks)
+        bounded = all(block.system.has_curvature_bound for block in drive.solver.blocks)
         why = Certification.POSITION_NOT_PROVED if bounded else Certification.NO_BOUND
         return replace(found, certification=why)
     return replace(
         found,
         certification=Certification.CERTIFIED if joined else Certification.MOTION_NOT_PROVED,
         radius=turn.proof.radius,
-        unique=turn.proof.unique,
+        uniqueness_radius=turn.proof.uniqueness_radius,
     )
 
 
 def dead_point_limit(drive: Drive, turn: TurningPoint) -> Limit:
-    """What is told of a dead point, everyday units."""
-    return _located(drive, turn, LimitKind.DEAD_POINT, _locking(drive, turn.v))
+    """What is told of a dead point, in file units."""
+    return _locate_limit(drive, turn, LimitKind.DEAD_POINT, _locking(drive, turn.v))
 
 
 def _locking(drive: Drive, v: Array) -> tuple[int, ...]:
@@ -196,7 +196,7 @@ def _locking(drive: Drive, v: Array) -> tuple[int, ...]:
 
 
 def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
-    """What is told of a change point between two curves, everyday units."""
+    """What is told of a change point between two curves, in file units."""
     leads = drive.leads
     p = leads.parameter
     rates = []
@@ -206,7 +206,7 @@ def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
     taking_part = np.any(crossing.directions != 0.0, axis=0)
     onward, other = (_rates(drive.model, np.where(taking_part, rate, np.nan)) for rate in rates)
     blocks = _locking(drive, crossing.v)
-    limit = _located(drive, crossing, LimitKind.CHANGE_POINT, blocks)
+    limit = _locate_limit(drive, crossing, LimitKind.CHANGE_POINT, blocks)
     return replace(limit, onward=onward, other=other)
 
 
@@ -259,7 +259,7 @@ def end_at_change_point(
     return BranchEnd(
         side=side,
         limit=replace(
-            _located(drive, place, LimitKind.CHANGE_POINT, blocks), onward=onward, other=other
+            _locate_limit(drive, place, LimitKind.CHANGE_POINT, blocks), onward=onward, other=other
         ),
         t=t,
         slack=max(high - t, t - low),
@@ -270,7 +270,7 @@ def end_at_change_point(
     )
 
 
-class _Place(Protocol):
+class _EndPlace(Protocol):
     """A singular position (N,) at a value of the path's parameter, with a bracket around it."""
 
     @property
@@ -283,7 +283,7 @@ class _Place(Protocol):
     def located(self) -> bool: ...
 
 
-def _located(drive: Drive, place: _Place, kind: LimitKind, blocks: Sequence[int]) -> Limit:
+def _locate_limit(drive: Drive, place: _EndPlace, kind: LimitKind, blocks: Sequence[int]) -> Limit:
     """What is told of it: ``blocks`` are the numbers of those that lock."""
     model = drive.model
     low, high = (edge / drive.unit for edge in place.bracket)

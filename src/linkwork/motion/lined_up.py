@@ -1,4 +1,4 @@
-"""Which links line up at a singular position, by the vectors between their joints."""
+"""The links that are in line at a singular position."""
 
 from __future__ import annotations
 

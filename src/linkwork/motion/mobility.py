@@ -1,4 +1,4 @@
-"""Degrees of freedom: counted by Grübler's formula, and by rank at a position; why they differ."""
+"""Mobility by Grübler's count and by rank, and why the two differ."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.rounding import RANK_TOLERANCE
 from linkwork.foundation.status import Status
 from linkwork.mechanism.linkage import Linkage
 from linkwork.motion.model import Model
@@ -14,9 +15,7 @@ from linkwork.motion.redundancy import FITS, misfit, mobility_by_rank
 
 __all__ = ["Mobility", "grubler_count", "mobility_of", "pins"]
 
-_TWO_FREEDOMS = ("slots", "gears", "belts", "racks", "cams", "curves")
 _LARGEST = 100  # unknowns up to which a singular mechanism is looked at as one matrix
-_RANK_TOLERANCE = 1e-9  # relative to the largest singular value of the scaled Jacobian
 _BESIDE = 1e-3  # how far beside a position its neighbour is sought, in weighted variables
 _TRIES = 6
 
@@ -52,32 +51,30 @@ def grubler_count(linkage: Linkage) -> int:
     as teeth do. A wheel that rolls without slipping has one freedom; a weld has none, of its two
     links' pin.
     """
-    bodies = len(linkage.links) + len(linkage.cylinders)
-    one = pins(linkage) + len(linkage.sliders) + len(linkage.rolling)
-    two = sum(len(getattr(linkage, kind)) for kind in _TWO_FREEDOMS)
-    return 3 * (bodies - 1) - 2 * one - two - len(linkage.welds) + len(linkage.cylinders)
+    rigid = 3 * (len(linkage.links) - 1) - 2 * pins(linkage)
+    return rigid + sum(part.mobility for part in linkage.parts)
 
 
 def _why(model: Model, v: Array, count: int, rank: int) -> str:
     """Why a rank and a count are not the same, from what the rank is beside the position."""
     if rank < count:
-        return "some links move in ways that the equations do not ask for"
+        return "some links have freedoms that do not occur in the equations"
     beside = _rank_beside(model, v)
     redundant = len(model.equations.redundant)
     if redundant and beside == rank:
         several = "conditions follow" if redundant > 1 else "condition follows"
         return (
             f"{redundant} {several} from the others, because of special lengths such as parallel "
-            "or equal links: it is overconstrained and moves all the same"
+            "or equal links: it is overconstrained, but it moves"
         )
     if beside is not None and beside < rank:
         return (
-            "at this position alone the constraints repeat each other, as they do at dead points "
-            f"and change points; beside it the rank gives {beside}"
+            "only at this position are the constraints dependent, as at dead points and change "
+            f"points; near it the rank gives {beside}"
         )
     return (
-        "at this position the constraints repeat each other, and no position was found beside it: "
-        "it may be able to move no more than infinitely little"
+        "at this position the constraints are dependent, and no position was found near it: its "
+        "motion may be infinitesimal only"
     )
 
 
@@ -121,4 +118,4 @@ def _by_rank(model: Model, v: Array) -> int | None:
 def _rank_of(scaled: Array) -> int:
     if not scaled.size:
         return 0
-    return int(np.linalg.matrix_rank(scaled, tol=_RANK_TOLERANCE * np.linalg.norm(scaled, 2)))
+    return int(np.linalg.matrix_rank(scaled, tol=RANK_TOLERANCE * np.linalg.norm(scaled, 2)))

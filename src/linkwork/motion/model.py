@@ -1,4 +1,4 @@
-"""A mechanism made ready to be solved: description, equations, arrays."""
+"""The model of a mechanism: description, equations, arrays."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from linkwork.foundation.errors import (
     UnknownNameError,
     choices,
 )
-from linkwork.foundation.names import canonical
+from linkwork.foundation.names import GROUND, canonical
 from linkwork.foundation.plain_numbers import finite_number
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.skeleton import DrivenPart, Skeleton
 from linkwork.motion.lock_step import lock_step
@@ -65,8 +65,8 @@ class Model:
         equations = replace(self.equations, start=start)
         return replace(self, equations=equations, branch=position.configuration or self.branch)
 
-    def guessed(self, values: Mapping[str, float]) -> Model:
-        """The model with another guess for some unknowns, everyday units.
+    def with_guess(self, values: Mapping[str, float]) -> Model:
+        """The model with another guess for some unknowns, in file units.
 
         Raises
         ------
@@ -128,7 +128,7 @@ class Model:
 
     @cached_property
     def input_scale(self) -> Array:
-        """Internal units per everyday unit of each input, (p,)."""
+        """Internal units per file unit of each input, (p,)."""
         return np.array([self.units.scale(Kind(v.kind)) for v in self.equations.inputs])
 
     @property
@@ -143,11 +143,11 @@ class Model:
             raise InputError(
                 f'mechanism "{self.description.name}" has no input: add [input] to sweep it'
             )
-        return self.everyday_rows * self.input_scale
+        return self.rows_in_file_units * self.input_scale
 
     @cached_property
-    def everyday_rows(self) -> Array:
-        """The table's input values as asked, everyday units, (rows, p)."""
+    def rows_in_file_units(self) -> Array:
+        """The table's input values as asked, in file units, (rows, p)."""
         columns = [self.description.rows(which) for which in self.description.inputs]
         if not columns:
             return np.zeros((1, 0))
@@ -155,8 +155,8 @@ class Model:
         return np.stack([np.broadcast_to(column, count) for column in columns], axis=1)
 
     @cached_property
-    def everyday_start(self) -> Array:
-        """The input values the guess belongs to, everyday units, (p,)."""
+    def start_in_file_units(self) -> Array:
+        """The input values the guess belongs to, in file units, (p,)."""
         values = [
             self.units.angle.from_radians(float(value)) if variable.kind == "angle" else value
             for variable, value in zip(self.equations.inputs, self.start_inputs, strict=True)
@@ -175,7 +175,7 @@ class Model:
 
     @property
     def input_units(self) -> dict[str, str]:
-        """The everyday unit of every input."""
+        """The file unit of every input."""
         return {v.name: self.units.of(Kind(v.kind)) for v in self.equations.inputs}
 
     @cached_property
@@ -193,7 +193,7 @@ class Model:
         return input_speed(self.description, self.equations.inputs, self.rows)
 
     def input_values(self, at: dict[str, float]) -> Array:
-        """Named everyday input values as an array, everyday units, (p,).
+        """Named input values as an array, in file units, (p,).
 
         Raises
         ------
@@ -234,7 +234,7 @@ def model_of(description: Description) -> Model:
             skeleton = Skeleton.of_linkage(description, equations.outlines)
         case Loops():
             equations = read_loops(description)
-            fixed = description.links.get("ground", equations.fixed)
+            fixed = description.links.get(GROUND, equations.fixed)
             driven = tuple(
                 _driven_part(description, equations, variable, description.falls(which))
                 for variable, which in zip(equations.inputs, description.inputs, strict=True)

@@ -1,4 +1,4 @@
-"""Solved rows as a motion: every quantity by its name, in everyday units."""
+"""Solved rows as a motion: every quantity by its name, in file units."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from linkwork.foundation.arrays import BoolArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.motion.model import Model
-from linkwork.motion.named_quantities import named_series
+from linkwork.motion.named_quantities import name_series
 from linkwork.motion.redundancy import FITS, largest_misfits, misfit
 from linkwork.motion.rows import SolvedRows
 from linkwork.results.motion import Motion
@@ -20,7 +20,7 @@ def motion_of_rows(model: Model, rows: SolvedRows, message: str, added: BoolArra
     """Name the columns of solved rows; ``added`` marks rows that were not asked for."""
     rows = fitting(model, rows)
     found = rows.status == Status.CONVERGED.code
-    named = named_series(model, rows.v, rows.first, rows.second, rows.inputs, found)
+    named = name_series(model, rows.v, rows.first, rows.second, rows.inputs, found)
     return Motion(
         mechanism=model.description.name,
         units=model.units,
@@ -42,7 +42,7 @@ def motion_of_rows(model: Model, rows: SolvedRows, message: str, added: BoolArra
         condition=rows.condition,
         certification=Certification.of_codes(rows.certification),
         radius=rows.radius,
-        unique_within=rows.unique,
+        unique_within=rows.uniqueness_radius,
         branch=tuple(rows.branch),
         limit=tuple(rows.limit),
         added=added,

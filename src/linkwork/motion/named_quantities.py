@@ -14,7 +14,7 @@ from linkwork.motion.quantity_values import QuantityValues
 from linkwork.results.motion import Series
 from linkwork.results.quantities.definition import Vector
 
-__all__ = ["Named", "RowValues", "named_series"]
+__all__ = ["Named", "RowValues", "name_series"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,7 +78,7 @@ class RowValues(QuantityValues):
         return Series(quantity=asked.own, value=jet.v, first=jet.d1, second=jet.d2)
 
 
-def named_series(
+def name_series(
     model: Model,
     v: Array,
     first: Array,

@@ -1,4 +1,4 @@
-"""A mechanism that cannot close, put together as well as it will go."""
+"""The position nearest to closure of a mechanism whose loops do not close."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.linkage import Linkage
 from linkwork.motion.model import Model
-from linkwork.motion.named_quantities import Named, named_series
+from linkwork.motion.named_quantities import Named, name_series
 from linkwork.motion.positions import target_values
 from linkwork.numerics.least_squares import nearest_miss
 from linkwork.results.nearest_assembly import LinkEnd, NearestAssembly
@@ -30,7 +31,7 @@ def nearest_assembly(
     Parameters
     ----------
     at : number or Mapping[str, number], optional
-        Input value(s) in everyday units; the guess's own if left out.
+        Input value(s) in file units; the guess's own if left out.
 
     Raises
     ------
@@ -51,7 +52,7 @@ def nearest_assembly(
             v[block.unknowns] = nearest[: len(block.unknowns)]
         f = model.compiled.table.residual(v[None, :])[0]
     none = np.zeros((1, len(v)))
-    named = named_series(model, v[None, :], none, none, target[None, :], np.ones(1, dtype=bool))
+    named = name_series(model, v[None, :], none, none, target[None, :], np.ones(1, dtype=bool))
     count = len(equations.loops)
     vectors = f[:count] + 1j * f[count : 2 * count]
     points = {p: (float(x.value[0]), float(y.value[0])) for p, (x, y) in named.points.items()}

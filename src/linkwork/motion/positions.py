@@ -17,12 +17,19 @@ from linkwork.results.failure import Failure
 from linkwork.results.motion import Series
 from linkwork.results.position import Certificate, NewtonTrail, Position
 
-__all__ = ["Evidence", "Found", "found_message", "input_rate", "position_of", "target_values"]
+__all__ = [
+    "Evidence",
+    "SolvedPosition",
+    "found_message",
+    "input_rate",
+    "position_of",
+    "target_values",
+]
 
 _HOPELESS = 1e12  # condition beyond which derivatives mean nothing
 _SINGULAR = (
-    "position found, at a dead point or change point: there its derivatives do not exist, "
-    "and a motion cannot start"
+    "position found at a dead point or change point, where its derivatives do not exist and no "
+    "motion can start"
 )
 
 
@@ -42,7 +49,7 @@ class Evidence:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Found:
+class SolvedPosition:
     """A position that was found (or not, as ``status`` tells): variables v (N,) and evidence.
 
     ``first`` (N,): derivatives at a dead point or change point, NaN where there are none.
@@ -64,7 +71,7 @@ def found_message(status: Status, condition: float, failure: Failure | None = No
 
 
 def target_values(model: Model, at: float | Mapping[str, float] | None) -> Array:
-    """The input values asked for, everyday units, (p,); the guess's own for ``None``.
+    """The input values asked for, in file units, (p,); the guess's own for ``None``.
 
     Raises
     ------
@@ -72,7 +79,7 @@ def target_values(model: Model, at: float | Mapping[str, float] | None) -> Array
         For input values that do not fit the mechanism.
     """
     if at is None:
-        return model.everyday_start
+        return model.start_in_file_units
     if not isinstance(at, Mapping):
         inputs = model.equations.inputs
         at = {inputs[0].name if len(inputs) == 1 else "": at}

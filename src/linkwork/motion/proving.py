@@ -1,4 +1,4 @@
-"""Certificates of solved rows: each position, and the motion that leads to it from the start."""
+"""Certificates of solved rows: the position, and the motion from the start to it."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray, StatusArray
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Rows, Track
-from linkwork.numerics.continuation.path_proof import Beads, prove_path
+from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Track, TrackRows
+from linkwork.numerics.continuation.path_proof import PathPoints, prove_path
 from linkwork.numerics.proof.position_proof import rounding_of_inputs
 
 __all__ = ["RowProofs", "inputs_apart", "prove_rows", "unproved", "way_is_proved"]
 
 _FAR_FROM_SINGULAR = 1e5  # condition up to which a track's nodes must be proved
-_UNIT = np.finfo(float).eps / 2
 _TURN = 1e-9  # rad: an input this near to whole turns away from what was asked is the same one
 
 
@@ -31,7 +31,7 @@ class RowProofs:
 
     code: StatusArray
     radius: Array
-    unique: Array
+    uniqueness_radius: Array
     up_to_ends: bool = True
 
 
@@ -40,7 +40,7 @@ def unproved(count: int, why: Certification) -> RowProofs:
     return RowProofs(
         code=np.full(count, why.code, dtype=np.int8),
         radius=np.full(count, np.nan),
-        unique=np.full(count, np.nan),
+        uniqueness_radius=np.full(count, np.nan),
     )
 
 
@@ -48,7 +48,7 @@ def prove_rows(
     solver: BlockSolver,
     path: InputPath,
     track: Track,
-    rows: Rows,
+    rows: TrackRows,
     asked: Array,
     progress: Callable[[float], None] | None = None,
 ) -> RowProofs:
@@ -59,15 +59,15 @@ def prove_rows(
     track's start.
     """
     count = len(rows.t)
-    if not all(block.system.bends_boundedly for block in solver.blocks):
+    if not all(block.system.has_curvature_bound for block in solver.blocks):
         return unproved(count, Certification.NO_BOUND)
     found = np.flatnonzero(rows.status == Status.CONVERGED.code)
     if not len(found):
         return unproved(count, Certification.NO_POSITION)
     nodes = _nodes_around(track, rows.t[found])
-    beads, place = _beads(solver, [track.nodes[k] for k in nodes], rows, asked, found)
+    points, place = _path_points(solver, [track.nodes[k] for k in nodes], rows, asked, found)
     anchor = int(place[nodes.index(track.start)])
-    proof = prove_path(solver, path, beads, anchor=anchor, progress=progress)
+    proof = prove_path(solver, path, points, anchor=anchor, progress=progress)
     joined = proof.connected_to(anchor)
     mine = place[len(nodes) :]
     proofs = unproved(count, Certification.NO_POSITION)
@@ -82,7 +82,9 @@ def prove_rows(
         default=Certification.MOTION_NOT_PROVED.code,
     )
     proofs.radius[found] = np.where(position, proof.position.radius[mine], np.nan)
-    proofs.unique[found] = np.where(position, proof.position.alone_within[mine], np.nan)
+    proofs.uniqueness_radius[found] = np.where(
+        position, proof.position.least_uniqueness_radius[mine], np.nan
+    )
     return replace(proofs, up_to_ends=bool(joined[place[: len(nodes)]].all()))
 
 
@@ -97,9 +99,9 @@ def _nodes_around(track: Track, t: Array) -> list[int]:
     ]
 
 
-def _beads(
-    solver: BlockSolver, nodes: Sequence[Node], rows: Rows, asked: Array, found: IndexArray
-) -> tuple[Beads, IndexArray]:
+def _path_points(
+    solver: BlockSolver, nodes: Sequence[Node], rows: TrackRows, asked: Array, found: IndexArray
+) -> tuple[PathPoints, IndexArray]:
     """Nodes and rows sorted along the path; where each of them stands, the nodes first."""
     t = np.concatenate([[node.t for node in nodes], rows.t[found]])
     order = np.argsort(t, kind="stable")
@@ -108,32 +110,34 @@ def _beads(
         joined: Array = np.concatenate([np.stack(of_nodes), of_rows])[order]
         return joined
 
-    spread = [rounding_of_inputs(node.v[None, :], solver.unknowns)[0] for node in nodes]
-    beads = Beads(
+    input_radius = [rounding_of_inputs(node.v[None, :], solver.unknowns)[0] for node in nodes]
+    points = PathPoints(
         t=t[order],
         v=gathered([node.v for node in nodes], rows.v[found]),
         first=gathered([node.first for node in nodes], rows.rates.first[found]),
         second=gathered([node.second for node in nodes], rows.rates.second[found]),
-        spread=gathered(spread, inputs_apart(rows.v[found][:, solver.unknowns :], asked[found])),
+        input_radius=gathered(
+            input_radius, inputs_apart(rows.v[found][:, solver.unknowns :], asked[found])
+        ),
     )
     place = np.empty(len(order), dtype=np.intp)
     place[order] = np.arange(len(order))
-    return beads, place
+    return points, place
 
 
 def way_is_proved(solver: BlockSolver, path: InputPath, nodes: Sequence[Node]) -> bool:
     """Whether every position and every step of a track is proved."""
-    if not all(block.system.bends_boundedly for block in solver.blocks):
+    if not all(block.system.has_curvature_bound for block in solver.blocks):
         return False
     v = np.stack([node.v for node in nodes])
-    beads = Beads(
+    points = PathPoints(
         t=np.array([node.t for node in nodes]),
         v=v,
         first=np.stack([node.first for node in nodes]),
         second=np.stack([node.second for node in nodes]),
-        spread=rounding_of_inputs(v, solver.unknowns),
+        input_radius=rounding_of_inputs(v, solver.unknowns),
     )
-    return bool(prove_path(solver, path, beads, anchor=0).connected_to(0).all())
+    return bool(prove_path(solver, path, points, anchor=0).connected_to(0).all())
 
 
 def inputs_apart(inputs: Array, asked: Array) -> Array:
@@ -143,7 +147,9 @@ def inputs_apart(inputs: Array, asked: Array) -> Array:
     """
     gap = np.abs(inputs - asked)
     turns = np.round(gap / (2.0 * np.pi))
-    rest = np.abs(gap - turns * (2.0 * np.pi)) + _UNIT * 2.0 * (np.abs(inputs) + np.abs(asked))
+    rest = np.abs(gap - turns * (2.0 * np.pi)) + UNIT_ROUNDOFF * 2.0 * (
+        np.abs(inputs) + np.abs(asked)
+    )
     turned = (turns > 0) & (rest < _TURN)
     apart: Array = rounding_of_inputs(inputs, 0) + np.where(turned, rest, gap)
     return apart

@@ -1,4 +1,4 @@
-"""Straight lines that points of a mechanism given by loop equations run along."""
+"""Straight guides of points in a mechanism given by loop equations."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
 
 from linkwork.equations.model import LoopEquations, Term
-from linkwork.mechanism.linkage import GROUND
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.skeleton import Rail
 
 __all__ = ["rails_of"]
@@ -60,13 +60,13 @@ def _on_links(
         if link == GROUND or name in points or len(points) < 2:
             continue
         foot, tip = points[:2]
-        line = _added([(1, places[tip]), (-1, places[foot])])
+        line = _add([(1, places[tip]), (-1, places[foot])])
         if len(line) != 1:
             continue
         ((length, turn),) = line
         if length is not None or not turn:
             continue
-        for way in _ways(_added([(1, places[name]), (-1, places[foot])]), loops):
+        for way in _ways(_add([(1, places[name]), (-1, places[foot])]), loops):
             if len(way) == 1:
                 ((far, way_turn),) = way
                 if far in lengths and turn == way_turn:
@@ -75,10 +75,10 @@ def _on_links(
 
 
 def _sum(terms: Iterable[Term]) -> _Sum:
-    return _added([(1, {(term.length, term.phase): term.value}) for term in terms])
+    return _add([(1, {(term.length, term.phase): term.value}) for term in terms])
 
 
-def _added(parts: Iterable[tuple[int, _Sum]]) -> _Sum:
+def _add(parts: Iterable[tuple[int, _Sum]]) -> _Sum:
     """A sum of sums, without what cancels."""
     total: _Sum = {}
     largest = 0.0
@@ -94,9 +94,9 @@ def _ways(place: _Sum, loops: list[_Sum]) -> Iterator[_Sum]:
     if len(loops) > _MOST_LOOPS:
         yield place
         for loop in loops:
-            yield _added([(1, place), (1, loop)])
-            yield _added([(1, place), (-1, loop)])
+            yield _add([(1, place), (1, loop)])
+            yield _add([(1, place), (-1, loop)])
         return
     signs = product((0, 1, -1), repeat=len(loops))
     for chosen in sorted(signs, key=lambda one: sum(map(abs, one))):
-        yield _added([(1, place), *zip(chosen, loops, strict=True)])
+        yield _add([(1, place), *zip(chosen, loops, strict=True)])

@@ -1,4 +1,4 @@
-"""Redundant conditions: do they hold, at the start and at every position?
+"""Check redundant conditions at the start and at every position.
 
 The length of a redundant link is an unknown of the equations. Positions at which it does not come
 out as given are no positions of the mechanism.
@@ -14,6 +14,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.names import canonical
+from linkwork.foundation.rounding import RANK_TOLERANCE
 from linkwork.foundation.status import Status
 from linkwork.numerics.newton import NewtonOptions
 
@@ -29,7 +30,6 @@ __all__ = [
 
 #: Relative to the longest link: a redundant link this near to its length fits.
 FITS = 1e-9
-_RANK_TOLERANCE = 1e-9  # relative to the largest singular value of the scaled Jacobian
 
 
 def misfit(equations: LoopEquations, v: Array) -> Array:
@@ -89,18 +89,18 @@ def check_redundancy(compiled: Compiled, where: str) -> None:
     fits = misfit(equations, done.v)[0] <= FITS
     if not fits and (freedoms >= inputs or inputs < 2):
         wanted = ", ".join(
-            f"{part.link} would have to be {length:.10g} long, not {part.length:.10g}"
+            f"{part.link} needs the length {length:.10g}, not {part.length:.10g}"
             for part, length in zip(equations.redundant, found, strict=True)
             if abs(length - part.length) > FITS * equations.length_scale
         )
-        raise _refused(surplus, f"as drawn it does not fit: {wanted}", where)
+        raise _refuse(surplus, f"it does not fit the sketch: {wanted}", where)
     if freedoms < inputs:
         how = f"{freedoms} degree{'s' if freedoms != 1 else ''} of freedom"
         driven = f"{inputs} input{'s' if inputs != 1 else ''}"
-        raise _refused(surplus, f"as assembled it has {how} for {driven}", where)
+        raise _refuse(surplus, f"as assembled it has {how} for {driven}", where)
 
 
-def _refused(surplus: Problem, why: str, where: str) -> MechanismError:
+def _refuse(surplus: Problem, why: str, where: str) -> MechanismError:
     return MechanismError(
         [Problem(key=surplus.key, message=f"{surplus.message} ({why})", line=surplus.line)], where
     )
@@ -114,5 +114,5 @@ def mobility_by_rank(compiled: Compiled, v: Array) -> int:
     scaled = np.delete(scaled, columns, axis=1)
     if not scaled.size:
         return int(scaled.shape[1])
-    tolerance = _RANK_TOLERANCE * np.linalg.norm(scaled, 2)
+    tolerance = RANK_TOLERANCE * np.linalg.norm(scaled, 2)
     return int(scaled.shape[1] - np.linalg.matrix_rank(scaled, tol=tolerance))

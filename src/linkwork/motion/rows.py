@@ -19,7 +19,7 @@ __all__ = ["SolvedRows"]
 class SolvedRows:
     """B rows; ``v``, ``first``, ``second`` (B, N) are NaN where there is no position.
 
-    ``inputs`` (B, p): what was asked, everyday units. ``branch``, ``limit``: names, or "".
+    ``inputs`` (B, p): what was asked, in file units. ``branch``, ``limit``: names, or "".
     """
 
     inputs: Array
@@ -32,7 +32,7 @@ class SolvedRows:
     condition: Array
     certification: StatusArray
     radius: Array
-    unique: Array
+    uniqueness_radius: Array
     branch: AnyArray
     limit: AnyArray
 
@@ -57,7 +57,7 @@ class SolvedRows:
             condition=unknown.copy(),
             certification=np.full(count, Certification.NO_POSITION.code, dtype=np.int8),
             radius=unknown.copy(),
-            unique=unknown.copy(),
+            uniqueness_radius=unknown.copy(),
             branch=names,
             limit=names.copy(),
         )
@@ -65,7 +65,7 @@ class SolvedRows:
     def prove(self, where: IndexArray, proofs: RowProofs) -> None:
         """Note the proofs of some rows."""
         self.certification[where] = proofs.code
-        self.radius[where], self.unique[where] = proofs.radius, proofs.unique
+        self.radius[where], self.uniqueness_radius[where] = proofs.radius, proofs.uniqueness_radius
 
     def demote(self, standing: Certification) -> None:
         """Rows that are proved on a branch say what the way to the branch is worth."""
@@ -81,7 +81,7 @@ class SolvedRows:
         return SolvedRows(**{f.name: getattr(self, f.name)[where] for f in fields(self)})
 
     @classmethod
-    def joined(cls, parts: Sequence[SolvedRows]) -> SolvedRows:
+    def concatenate(cls, parts: Sequence[SolvedRows]) -> SolvedRows:
         """Rows one behind the other."""
 
         def stacked(name: str) -> AnyArray:

@@ -11,13 +11,12 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
-from linkwork.motion import failure as why
-from linkwork.motion import following
+from linkwork.motion import failure as why, following
 from linkwork.motion.model import Model
-from linkwork.motion.named_quantities import named_series
+from linkwork.motion.named_quantities import name_series
 from linkwork.motion.positions import (
     Evidence,
-    Found,
+    SolvedPosition,
     found_message,
     input_rate,
     position_of,
@@ -52,7 +51,7 @@ def solve(
     Parameters
     ----------
     at : number or Mapping[str, number], optional
-        Input value(s) in everyday units; the guess's own if left out.
+        Input value(s) in file units; the guess's own if left out.
     from_guess : bool
         Start Newton-Raphson at the asked value directly, as the textbook's example does.
     certify : bool
@@ -86,7 +85,7 @@ def solve(
         found = _arrived(model, start, certify)
         position = _position(model, target, found, start, _other_root(model, start.v))
     else:
-        reached = following.followed(model, start.v, target, certify)
+        reached = following.follow_to_value(model, start.v, target, certify)
         if isinstance(reached, following.OutOfReach):
             position = failed_position(model, target, reached.status, reached.failure, start)
         else:
@@ -97,9 +96,9 @@ def solve(
     return position
 
 
-def _arrived(model: Model, start: Start, certify: bool) -> Found:
+def _arrived(model: Model, start: Start, certify: bool) -> SolvedPosition:
     """The start itself is the position asked for."""
-    return Found(
+    return SolvedPosition(
         v=start.v,
         status=start.status,
         residual=start.residual,
@@ -111,7 +110,7 @@ def _arrived(model: Model, start: Start, certify: bool) -> Found:
 def _certificate(model: Model, v: Array) -> Certificate:
     """Of one position (N,) that nothing was followed to."""
     solver = model.compiled.solver
-    if not all(block.system.bends_boundedly for block in solver.blocks):
+    if not all(block.system.has_curvature_bound for block in solver.blocks):
         return Certificate(certification=Certification.NO_BOUND)
     proof = prove(solver, v[None, :], rounding_of_inputs(v[None, :], solver.unknowns))
     if not proof.holds[0]:
@@ -119,7 +118,7 @@ def _certificate(model: Model, v: Array) -> Certificate:
     return Certificate(
         certification=Certification.CERTIFIED,
         radius=float(proof.radius[0]),
-        unique_within=float(proof.alone_within[0]),
+        unique_within=float(proof.least_uniqueness_radius[0]),
     )
 
 
@@ -140,9 +139,9 @@ def _other_root(model: Model, found: Array) -> Failure | None:
 def failed_position(
     model: Model, target: Array, status: Status, failure: Failure | None, start: Start
 ) -> Position:
-    """No position at the values (p,), everyday units, with the reason and what was tried."""
+    """No position at the values (p,), in file units, with the reason and what was tried."""
     nothing = np.full((1, model.compiled.solver.variables), np.nan)
-    named = named_series(model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool))
+    named = name_series(model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool))
     evidence = Evidence(
         status=status,
         message=status.value if failure is None else failure.message,
@@ -178,7 +177,7 @@ def _at_limit(first: Array) -> Rates:
 
 
 def _position(
-    model: Model, target: Array, found: Found, start: Start, failure: Failure | None = None
+    model: Model, target: Array, found: SolvedPosition, start: Start, failure: Failure | None = None
 ) -> Position:
     """What was found, named and with its derivatives."""
     solver = model.compiled.solver
@@ -189,7 +188,7 @@ def _position(
         )
     rates = solver.rates(v, input_rate(model)) if found.first is None else _at_limit(found.first)
     ok = np.array([found.status.ok])
-    named = named_series(model, v, rates.first, rates.second, target[None, :], ok)
+    named = name_series(model, v, rates.first, rates.second, target[None, :], ok)
     condition = float(rates.condition[0])
     evidence = Evidence(
         status=found.status,

@@ -1,4 +1,4 @@
-"""Reading the speed of an input: ``"300 rpm"``, ``"25 rad/s"``, ``"50 mm/s"``."""
+"""Read the speed of an input: ``"300 rpm"``, ``"25 rad/s"``, ``"50 mm/s"``."""
 
 from __future__ import annotations
 
@@ -28,7 +28,10 @@ def input_speed(description: Description, inputs: Sequence[Variable], rows: Arra
     for k, leading in rates.items():
         assert first is not None
         if not math.isclose(leading, first, rel_tol=1e-9):
-            message = "contradicts the first speed: in lock-step, speeds are as the steps"
+            message = (
+                "contradicts the first speed: speeds of inputs in lock-step have the ratio of "
+                "their steps"
+            )
             problem = Problem(key=(*description.input_key(k), "speed"), message=message)
             raise MechanismError([problem], f'mechanism "{description.name}"')
     return first

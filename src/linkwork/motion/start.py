@@ -1,4 +1,4 @@
-"""The first position: Newton-Raphson from the guess at its own input value."""
+"""The start position: Newton-Raphson from the guess at its input value."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def first_position(
 
 
 class _Watcher:
-    """Notes the iterates of one block in everyday units."""
+    """Notes the iterates of one block in file units."""
 
     def __init__(self, model: Model, number: int) -> None:
         self.block = model.compiled.solver.blocks[number]

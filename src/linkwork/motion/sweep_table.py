@@ -1,4 +1,4 @@
-"""The table of a sweep as it fills: rows asked for, and rows of limits in their places."""
+"""The table of a sweep: requested rows, and rows of limits in their places."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.short_number import short_number
 from linkwork.foundation.status import Status
 from linkwork.motion.branch_rows import Asked, BranchRows
@@ -20,7 +21,6 @@ from linkwork.motion.rows import SolvedRows
 __all__ = ["NamedEnd", "SweepTable"]
 
 _SAME_PLACE = 1e-11  # relative: values of the path so near to each other are one place
-_UNIT = np.finfo(float).eps
 
 
 class _PlaceOfEnd(NamedTuple):
@@ -73,7 +73,7 @@ class SweepTable:
         """Rows beyond the end of a branch that are not there, or only whole turns around."""
         missing = self.rows.status != Status.CONVERGED.code
         missing |= self._placed != self.asked.t
-        slack = end.slack + 4.0 * _UNIT * abs(end.t)
+        slack = end.slack + 4.0 * EPSILON * abs(end.t)
         return np.flatnonzero(missing & (end.side * (self.asked.t - end.t) > slack))
 
     def take(self, found: BranchRows, where: IndexArray) -> BoolArray:
@@ -112,7 +112,7 @@ class SweepTable:
         one put between them does the same, inside the table's range if it can.
         """
         lead, scale = self.drive.lead, self.drive.unit
-        named = self.asked.everyday[:, lead] * scale
+        named = self.asked.in_file_units[:, lead] * scale
         beside = np.argsort(np.abs(self.asked.t - here), kind="stable")[:2]
         turns = [round(float(named[k] - self.asked.t[k]) / FULL_TURN) for k in beside]
         slack = _slack_at(abs(here))
@@ -142,12 +142,12 @@ class SweepTable:
     def _named(self, end: BranchEnd, here: float) -> BranchEnd:
         """The end named at a place; as a row that was asked for there is, if it may be that."""
         lead = self.drive.lead
-        named = end.named(float(self._inputs(end, here)[0, lead]))
+        named = end.with_input_named(float(self._inputs(end, here)[0, lead]))
         low, high = named.limit.bracket
         if not named.limit.located:
             return named
         for row in np.flatnonzero(np.abs(self.asked.t - here) <= _slack_at(here)):
-            asked = float(self.asked.everyday[row, lead])
+            asked = float(self.asked.in_file_units[row, lead])
             if low <= asked <= high:
                 return replace(named, limit=replace(named.limit, input=asked))
         return named
@@ -174,7 +174,7 @@ class SweepTable:
     def _put_at(self, end: BranchEnd, branch: str, here: float) -> bool:
         if end.v is None or end.first is None:
             return True
-        slack = end.slack + 4.0 * _UNIT * abs(here)
+        slack = end.slack + 4.0 * EPSILON * abs(here)
         return self.put(self._row_of(end, end.v, end.first, branch, here), here, slack)
 
     def _row_of(
@@ -186,7 +186,7 @@ class SweepTable:
         row.residual[0] = float(solver.residual(v[None, :])[0])
         row.condition[0] = np.inf
         row.certification[0] = end.certification.code
-        row.radius[0], row.unique[0] = end.radius, end.unique
+        row.radius[0], row.uniqueness_radius[0] = end.radius, end.uniqueness_radius
         row.branch[0], row.limit[0] = branch, end.limit.kind.word
         return row
 
@@ -209,7 +209,7 @@ class SweepTable:
             self._extra_t.append(here)
         return bool(fresh) or not len(same)
 
-    def finished(self) -> tuple[SolvedRows, BoolArray]:
+    def finish(self) -> tuple[SolvedRows, BoolArray]:
         """All rows in the table's order, and which of them were not asked for."""
         everywhere = [(p, k) for k, (end, _) in enumerate(self._ends) for p in self._places(end)]
         for place, k in sorted(everywhere):  # where nothing else is, whole turns away
@@ -220,7 +220,7 @@ class SweepTable:
         t = np.concatenate([self.asked.t, self._extra_t])
         backwards = len(self.asked.t) > 1 and self.asked.t[-1] < self.asked.t[0]
         order = np.argsort(-t if backwards else t, kind="stable")
-        return SolvedRows.joined([self.rows, *self._extra]).take(order), added[order]
+        return SolvedRows.concatenate([self.rows, *self._extra]).take(order), added[order]
 
     def is_among(self, here: float, own: BoolArray) -> bool:
         """Whether one of the rows beside a value of t is among some rows (B,)."""
@@ -235,7 +235,7 @@ class SweepTable:
     def _inputs(self, end: BranchEnd, here: float) -> Array:
         """Everyday inputs at an end, shifted by the whole turns to ``here``, (1, p)."""
         scale, path = self.drive.model.input_scale, self.drive.path
-        everyday = np.array([short_number(x) for x in path.at(end.t) / scale])
-        everyday[self.drive.lead] = end.limit.input
+        in_file_units = np.array([short_number(x) for x in path.at(end.t) / scale])
+        in_file_units[self.drive.lead] = end.limit.input
         turns = round((here - end.t) / FULL_TURN) + self.turns_at(here)
-        return (everyday + turns * path.rate * (FULL_TURN / scale))[None, :]
+        return (in_file_units + turns * path.rate * (FULL_TURN / scale))[None, :]

@@ -34,14 +34,14 @@ from linkwork.numerics.continuation.passage import Passage
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Limit, Motion, OutputLimit
 
-__all__ = ["sweep", "swept_rows"]
+__all__ = ["sweep", "sweep_rows"]
 
 _ENTRIES = (
     24  # rows, from the nearest on, at which a table of several inputs is tried to be entered
 )
 _MOST_CROSSINGS = 64
 _ROUNDING = 1e-14  # of whole turns, which are no floats
-_SAME = 1e-6  # of the leading input: extremes nearer to each other are one
+_SAME_EXTREME = 1e-6  # of the leading input: extremes nearer to each other are one
 
 
 def sweep(
@@ -90,7 +90,7 @@ def sweep(
     _ = model.rows  # without an input there is nothing to sweep: an error
     quantities = check_quantities(model, limits_of)
     opt = options or NewtonOptions()
-    work = _begun(model, certify, opt, policy, progress, explained=explained)
+    work = _begin_sweep(model, certify, opt, policy, progress, explained=explained)
     if isinstance(work, Start):
         return _without_start(model, work)
     if through:
@@ -100,21 +100,21 @@ def sweep(
     return work.motion()
 
 
-def swept_rows(model: Model, *, certify: bool = True) -> tuple[SolvedRows, tuple[BranchEnd, ...]]:
+def sweep_rows(model: Model, *, certify: bool = True) -> tuple[SolvedRows, tuple[BranchEnd, ...]]:
     """What :func:`sweep` finds for the rows of the table, and the ends of the branch they lie on.
 
     No row is added for limits, and limits are told where they were met, not whole turns away.
     """
     options, policy = NewtonOptions(), ChangePointPolicy.STOP
-    work = _begun(model, certify, options, policy, None, explained=False)
+    work = _begin_sweep(model, certify, options, policy, None, explained=False)
     if isinstance(work, Start):
         return _no_rows(model), ()
-    rows, added = work.tables[0].finished()
+    rows, added = work.tables[0].finish()
     asked = rows.take(np.flatnonzero(~added))
     return fitting(model, asked), work.branches[0].found.ends
 
 
-def _begun(
+def _begin_sweep(
     model: Model,
     certify: bool,
     options: NewtonOptions,
@@ -130,10 +130,10 @@ def _begun(
         return start
     lead, rate = lock_step(rows)
     drive = Drive.through(model, rows[0], rate, lead)
-    asked = Asked(t=rows[:, lead], inputs=rows, everyday=model.everyday_rows)
+    asked = Asked(t=rows[:, lead], inputs=rows, in_file_units=model.rows_in_file_units)
     entry = _onto_path(drive, start, asked.t, certify)
     if entry is None:
-        message = "no row of the table could be reached from the guess's own input values"
+        message = "no row of the table can be reached from the input values of the guess"
         return replace(start, message=message)
     work = _Sweep(drive, certify, Report(progress, entry[0].t, *_span(asked.t)))
     work.message = start.message
@@ -184,7 +184,7 @@ class _Sweep:
         below: list[NamedEnd] = []
         above: list[NamedEnd] = []
         for end in found.ends:
-            met = self._cross(first, end.demoted(standing), policy)
+            met = self._cross(first, end.demote(standing), policy)
             (below if end.side < 0 else above).extend(met)
         self.ends = table.put_ends([*below[::-1], *above])
         self.limits = [end.limit for end in self.ends]
@@ -244,7 +244,7 @@ class _Sweep:
             ahead = [other for other in found.ends if other.side == end.side]
             if not ahead:
                 return met
-            end = ahead[0].demoted(standing)
+            end = ahead[0].demote(standing)
         return [*met, (end, name)]
 
     def go_around(self, asked: Asked) -> None:
@@ -307,7 +307,7 @@ class _Sweep:
                     here
                     for here in table.places_of(t)
                     if table.is_among(here, branch.own)
-                    and not any(abs(here - other) < _SAME for other in places)
+                    and not any(abs(here - other) < _SAME_EXTREME for other in places)
                 ]
                 for here in mine:
                     row = self._branch_row(branch, t, here)
@@ -333,16 +333,16 @@ class _Sweep:
         path, scale = self.drive.path, self.model.input_scale
         inputs = path.at(np.array([t]))
         turns = round((here - t) / FULL_TURN) + table.turns_at(here)
-        everyday = inputs / scale + turns * path.rate * (FULL_TURN / scale)
-        asked = Asked(t=np.array([t]), inputs=inputs, everyday=everyday)
+        in_file_units = inputs / scale + turns * path.rate * (FULL_TURN / scale)
+        asked = Asked(t=np.array([t]), inputs=inputs, in_file_units=in_file_units)
         anchor = track.nodes[track.start]
         return self._branch(anchor, asked, branch.name, branch.standing).rows
 
     def motion(self) -> Motion:
         """Everything in one result."""
-        first, *further = (table.finished() for table in self.tables)
+        first, *further = (table.finish() for table in self.tables)
         added = [first[1], *(np.ones(len(rows), dtype=bool) for rows, _ in further)]
-        rows = SolvedRows.joined([first[0], *(rows for rows, _ in further)])
+        rows = SolvedRows.concatenate([first[0], *(rows for rows, _ in further)])
         motion = replace(
             motion_of_rows(self.model, rows, self.message, np.concatenate(added)),
             limits=tuple(self.limits),
@@ -381,13 +381,13 @@ def _onto_path(drive: Drive, start: Start, t: Array, certify: bool) -> tuple[Nod
     nearest = np.argsort(distance, kind="stable")
     spread = np.linspace(0, len(t) - 1, min(len(t), _ENTRIES)).astype(np.intp)
     for row in (nearest[0], *nearest[spread[1:]]):
-        entry = _led_to(drive, start, float(t[row]), certify)
+        entry = _lead_to_row(drive, start, float(t[row]), certify)
         if entry is not None:
             return entry
     return None
 
 
-def _led_to(drive: Drive, start: Start, t: float, certify: bool) -> tuple[Node, bool] | None:
+def _lead_to_row(drive: Drive, start: Start, t: float, certify: bool) -> tuple[Node, bool] | None:
     """The start led to one row of the table along the straight line between their inputs."""
     solver, path, own = drive.solver, drive.path, drive.model.start_inputs
     way = InputPath(origin=own, rate=path.at(t) - own)
@@ -400,7 +400,9 @@ def _led_to(drive: Drive, start: Start, t: float, certify: bool) -> tuple[Node, 
 
 
 def _no_rows(model: Model) -> SolvedRows:
-    return SolvedRows.blank(model.everyday_rows, model.compiled.solver.variables, Status.NO_START)
+    return SolvedRows.blank(
+        model.rows_in_file_units, model.compiled.solver.variables, Status.NO_START
+    )
 
 
 def _without_start(model: Model, start: Start) -> Motion:

@@ -48,7 +48,7 @@ def turns_freely(model: Model) -> bool:
         left = float(weights @ turns)
         if not left:
             continue
-        free = np.flatnonzero((weights != 0.0) & table.turns & ~given)
+        free = np.flatnonzero((weights != 0.0) & table.is_angle & ~given)
         whole = [k for k in free.tolist() if (left / weights[k]).is_integer()]
         if not whole:
             return False

@@ -1,4 +1,4 @@
-"""The cycle of a design beside one whose cycle is known: while a dimension is being changed."""
+"""The cycle of a design, started from the cycle of a neighbouring design."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Limit, LimitKind, Motion
 
-__all__ = ["renewed"]
+__all__ = ["warm_started"]
 
 _STEPS = 8  # of Newton-Raphson; a neighbour needs three or four
 _NEAR = 0.2  # rad, or of the longest link: what a row may move by from one design to the next
 _NEAR_FOLD = 0.6  # the same from a parabola, beside a dead point
 _GROWTH = 12  # rows by which a dead point may recede from one design to the next
-_SAME = 1e-9  # rad: a table over a whole turn ends where it begins
+_SAME_DIRECTION = 1e-9  # rad: a table over a whole turn ends where it begins
 
 
-def renewed(model: Model, before: Motion) -> Motion | None:
+def warm_started(model: Model, before: Motion) -> Motion | None:
     """The positions of a design from those of a neighbour, all rows at once.
 
     Newton-Raphson starts every row from the neighbour's. Where dead points bound the motion, rows
@@ -66,7 +66,7 @@ def renewed(model: Model, before: Motion) -> Motion | None:
     lost = int((~work.found).sum())
     message = f"{lost} of {len(rows)} positions were not found" if lost else Status.CONVERGED.value
     none_added = np.zeros(len(rows), dtype=bool)
-    motion = motion_of_rows(model, work.solved(names[0]), message, none_added)
+    motion = motion_of_rows(model, work.solve(names[0]), message, none_added)
     return replace(motion, limits=limits)
 
 
@@ -166,7 +166,7 @@ class _Renewal:
                 if not self.found[ahead]:
                     if won == _GROWTH:
                         return None
-                    if not self._won(last, ahead, sign):
+                    if not self._win_row(last, ahead, sign):
                         ends.append((last, ahead))
                         break
                     won += 1
@@ -179,7 +179,7 @@ class _Renewal:
     def _around(self) -> bool:
         """Whether the table leads once around, to where it began."""
         span = abs(float(np.ptp(self.model.rows[:, 0])))
-        return abs(span - FULL_TURN) < _SAME and turns_freely(self.model)
+        return abs(span - FULL_TURN) < _SAME_DIRECTION and turns_freely(self.model)
 
     def _row_of_start(self) -> int | None:
         """The row nearest to the start's own input; ``None`` if the table does not lead by it."""
@@ -198,7 +198,7 @@ class _Renewal:
             return ahead
         return ahead % len(self.v) if self._around else None
 
-    def _won(self, last: int, ahead: int, sign: StatusArray) -> bool:
+    def _win_row(self, last: int, ahead: int, sign: StatusArray) -> bool:
         """Whether a row is found from the one beside it."""
         n = self.model.compiled.solver.unknowns
         step = self.model.rows[ahead, 0] - self.model.rows[last, 0]
@@ -216,7 +216,7 @@ class _Renewal:
 
     def limit(self, last: int, ahead: int) -> Limit:
         """The dead point between two rows, estimated."""
-        t = self.model.everyday_rows[:, 0]
+        t = self.model.rows_in_file_units[:, 0]
         here, step = float(t[last]), float(t[1] - t[0])
         upwards = (ahead > last) == (abs(ahead - last) == 1)  # not so around the table's end
         beyond = here + (step if upwards else -step)
@@ -231,13 +231,15 @@ class _Renewal:
             status=Status.OUT_OF_REACH,
         )
 
-    def solved(self, branch: str) -> SolvedRows:
+    def solve(self, branch: str) -> SolvedRows:
         """The rows with what is known of them."""
         count, ok = len(self.v), self.found
-        blank = SolvedRows.blank(self.model.everyday_rows, self.v.shape[1], Status.OUT_OF_REACH)
+        blank = SolvedRows.blank(
+            self.model.rows_in_file_units, self.v.shape[1], Status.OUT_OF_REACH
+        )
         nothing = np.full(count, np.nan)
         found = SolvedRows(
-            inputs=self.model.everyday_rows,
+            inputs=self.model.rows_in_file_units,
             v=self.v,
             first=self.first,
             second=self.second,
@@ -247,7 +249,7 @@ class _Renewal:
             condition=self.condition,
             certification=np.full(count, Certification.NOT_ASKED.code, dtype=np.int8),
             radius=nothing,
-            unique=nothing.copy(),
+            uniqueness_radius=nothing.copy(),
             branch=np.full(count, branch, dtype=object),
             limit=np.full(count, "", dtype=object),
         )

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from linkwork.foundation.arrays import Array, CountArray, IndexArray, StatusArray
-from linkwork.foundation.status import Status
+from linkwork.foundation.products import matrix_vector
+from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.newton import NewtonOptions, Watch, newton
 from linkwork.numerics.system import System
 
-__all__ = ["Block", "BlockSolution", "BlockSolver", "Linearised", "Rates", "linearised"]
+__all__ = ["Block", "BlockSolution", "BlockSolver", "Linearised", "Rates", "linearise_block"]
 
-_CONVERGED = Status.CONVERGED.code
 _LARGE = 1e3  # condition up to which nobody asks whether balanced columns would do better
 
 
@@ -100,7 +100,7 @@ class BlockSolver:
         """
         v = start.copy()
         count = len(v)
-        status = np.full(count, _CONVERGED, dtype=np.int8)
+        status = np.full(count, CONVERGED, dtype=np.int8)
         failed = np.full(count, -1)
         iterations = np.zeros(count, dtype=np.int64)
         residual = np.zeros(count)
@@ -118,7 +118,7 @@ class BlockSolver:
             residual[live] = np.maximum(residual[live], done.residual)
             first[live] = np.maximum(first[live], done.first_step)
             contraction[live] = np.maximum(contraction[live], done.contraction)
-            wrong = done.status != _CONVERGED
+            wrong = done.status != CONVERGED
             if wrong.any():
                 failed[live[wrong]] = k
                 live = live[~wrong]
@@ -136,7 +136,7 @@ class BlockSolver:
 
     def linearise(self, v: Array) -> list[Linearised]:
         """Jacobian, its inverse and the sign of its determinant for every block at v (B, N)."""
-        return [linearised(block, v) for block in self.blocks]
+        return [linearise_block(block, v) for block in self.blocks]
 
     def rates(
         self, v: Array, input_rate: Array, linear: Sequence[Linearised] | None = None
@@ -170,11 +170,13 @@ class BlockSolver:
             known = block.variables[n:]
             direction = np.empty_like(here)
             direction[:, n:] = first[:, known]
-            x1 = -_apply(inverse, _apply(jacobian[:, :, n:], direction[:, n:]))
+            x1 = -matrix_vector(inverse, matrix_vector(jacobian[:, :, n:], direction[:, n:]))
             direction[:, :n] = x1
-            bend = system.second(here, direction) + _apply(jacobian[:, :, n:], second[:, known])
+            bend = system.second_directional_derivative(here, direction) + matrix_vector(
+                jacobian[:, :, n:], second[:, known]
+            )
             first[:, block.unknowns] = x1
-            second[:, block.unknowns] = -_apply(inverse, bend)
+            second[:, block.unknowns] = -matrix_vector(inverse, bend)
             own = _condition(system, jacobian[:, :, :n], inverse)
             condition = np.maximum(condition, own)
             if own.max(initial=0.0) > _LARGE:
@@ -198,16 +200,11 @@ class BlockSolver:
         return worst
 
 
-def linearised(block: Block, v: Array) -> Linearised:
+def linearise_block(block: Block, v: Array) -> Linearised:
     """One block at v (B, N)."""
     jacobian = block.system.jacobian(v[:, block.variables])
     inverse, sign = _inverse(jacobian[:, :, : len(block.unknowns)])
     return Linearised(jacobian=jacobian, inverse=inverse, sign=sign)
-
-
-def _apply(matrix: Array, vector: Array) -> Array:
-    product: Array = (matrix @ vector[:, :, None])[:, :, 0]
-    return product
 
 
 def _inverse(jacobian: Array) -> tuple[Array, StatusArray]:

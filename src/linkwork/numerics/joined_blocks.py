@@ -71,11 +71,11 @@ class JoinedBlocks:
         return self.solver.variable_scale[self.order]
 
     @property
-    def turns(self) -> BoolArray:
+    def is_angle(self) -> BoolArray:
         """(N,)."""
         found = np.zeros(self.solver.variables, dtype=bool)
         for block in self.blocks:
-            found[block.variables] |= block.system.turns
+            found[block.variables] |= block.system.is_angle
         return found[self.order]
 
     def _whole(self, v: Array) -> Array:
@@ -118,16 +118,21 @@ class JoinedBlocks:
             row += f.shape[1]
         return np.concatenate(residual, axis=1), jacobian
 
-    def second(self, v: Array, d: Array) -> Array:
+    def second_directional_derivative(self, v: Array, d: Array) -> Array:
         """D²F[d, d], (B, n)."""
         whole, direction = self._whole(v), self._whole(d)
         parts = [
-            block.system.second(whole[:, block.variables], direction[:, block.variables])
+            block.system.second_directional_derivative(
+                whole[:, block.variables], direction[:, block.variables]
+            )
             for block in self.blocks
         ]
         return np.concatenate(parts, axis=1)
 
     def mixed(self, v: Array, a: Array, b: Array) -> Array:
         """D²F[a, b], (B, n), by polarisation."""
-        half: Array = 0.25 * (self.second(v, a + b) - self.second(v, a - b))
+        half: Array = 0.25 * (
+            self.second_directional_derivative(v, a + b)
+            - self.second_directional_derivative(v, a - b)
+        )
         return half

@@ -59,11 +59,11 @@ def nearest_miss(system: System, start: Array, steps: int = 200) -> tuple[Array,
             if damping > 1e12:
                 break
     if n <= _MOST_UNKNOWNS and np.isfinite(r).all() and r @ r > _CLOSED:
-        v, f = _refined(system, v, f)
+        v, f = _refine_minimum(system, v, f)
     return v[0], f[0]
 
 
-def _refined(system: System, v: Array, f: Array) -> tuple[Array, Array]:
+def _refine_minimum(system: System, v: Array, f: Array) -> tuple[Array, Array]:
     """Newton's method for the minimum beside v (1, N); stops where it would lead uphill."""
     n = system.unknowns
     scale, weights = system.equation_scale, system.variable_scale[:n]
@@ -100,7 +100,7 @@ def _curvature(system: System, v: Array, weighted: Array) -> Array:
     lanes = np.arange(len(first))
     along[lanes, first] = system.variable_scale[first]
     along[lanes, second] = system.variable_scale[second]  # the same one where both are one
-    bends = system.second(np.repeat(v, len(first), axis=0), along) @ weighted
+    bends = system.second_directional_derivative(np.repeat(v, len(first), axis=0), along) @ weighted
     curvature = np.zeros((n, n))
     curvature[first, second] = bends
     own = np.diag(curvature).copy()

@@ -9,18 +9,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, CountArray, StatusArray
-from linkwork.foundation.status import Status
+from linkwork.foundation.status import CONVERGED, Status
 from linkwork.numerics.system import System
 
 __all__ = ["NewtonOptions", "NewtonResult", "corrections", "newton"]
 
-_CONVERGED = Status.CONVERGED.code
 _FAR = 1e9  # weighted size of a correction beyond which the iteration has run away
 
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonOptions:
-    """When to stop, and how far one step may go.
+    """Stopping criteria of Newton-Raphson, and the limit of one step.
 
     Parameters
     ----------
@@ -31,8 +30,15 @@ class NewtonOptions:
     max_steps : int
         m: stop without a solution after so many steps.
     largest_turn : float
-        A step that would turn an angle further [rad] is shortened as a whole; ``inf`` gives the
-        textbook's bare method.
+        A step that turns an angle further than this [rad] is shortened as a whole; ``inf`` gives
+        the plain textbook method.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> options = lw.NewtonOptions(max_steps=1)
+    >>> lw.example("four-bar").solve(at=60, from_guess=True, options=options).status.name
+    'STEP_LIMIT'
     """
 
     equation_tolerance: float = 1e-14
@@ -101,7 +107,7 @@ class _Iteration:
         count, n = len(start), system.unknowns
         self.system, self.options, self.watch = system, options, watch
         self.v = start.copy()
-        self.status = np.full(count, _CONVERGED, dtype=np.int8)
+        self.status = np.full(count, CONVERGED, dtype=np.int8)
         self.iterations = np.zeros(count, dtype=np.int64)
         self.residual = np.full(count, np.inf)
         self.first = np.zeros(count)
@@ -109,7 +115,7 @@ class _Iteration:
         self.live = np.arange(count)
         self.last = np.full(count, np.inf)  # weighted size of each live row's latest correction
         self.weights = system.variable_scale[:n]
-        turns = system.turns[:n]
+        turns = system.is_angle[:n]
         self.turns = turns if turns.any() and not math.isinf(options.largest_turn) else None
 
     def run(self) -> NewtonResult:
@@ -150,7 +156,7 @@ class _Iteration:
             if jacobian is None or not len(self.live):
                 return
             here, f, jacobian = here[stay], f[stay], jacobian[stay]
-        change = self._corrected(k, here, f, jacobian[:, :, :n])
+        change = self._correct(k, here, f, jacobian[:, :, :n])
         if not len(self.live):
             return
         self.v[self.live, :n] += change
@@ -163,7 +169,7 @@ class _Iteration:
             self.contraction[self.live] = np.maximum(self.contraction[self.live], ratio)
         self.last = size
 
-    def _corrected(self, k: int, here: Array, f: Array, jacobian: Array) -> Array:
+    def _correct(self, k: int, here: Array, f: Array, jacobian: Array) -> Array:
         """The corrections of the live rows; rows with a singular Jacobian leave."""
         change, singular = corrections(jacobian, f)
         if singular.any():
@@ -173,7 +179,7 @@ class _Iteration:
             self._keep(~singular)
             change = change[~singular]
         if self.turns is not None:
-            change = _shortened(change, self.turns, self.options.largest_turn)
+            change = _shorten(change, self.turns, self.options.largest_turn)
         if self.watch is not None and len(change):
             self.watch(k, here, f, change)
         return change
@@ -201,7 +207,7 @@ def corrections(jacobian: Array, f: Array) -> tuple[Array, BoolArray]:
     return np.asarray(change, dtype=float), singular
 
 
-def _shortened(change: Array, turns: BoolArray, largest: float) -> Array:
+def _shorten(change: Array, turns: BoolArray, largest: float) -> Array:
     """Corrections scaled down so that no angle turns further than allowed."""
     turn = np.abs(change[:, turns]).max(axis=1)
     if not (turn > largest).any():

@@ -6,10 +6,10 @@ from typing import Protocol
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 
-__all__ = ["Curvature", "System"]
+__all__ = ["Curvature", "SmallSystem", "System"]
 
 
-class System(Protocol):
+class SmallSystem(Protocol):
     """Equations F(v) = 0 with v = (unknowns, inputs), batched over the first axis of v (B, N)."""
 
     @property
@@ -24,8 +24,15 @@ class System(Protocol):
     def variable_scale(self) -> Array:
         """(N,) weights of the variables."""
 
+    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
+        """F, (B, m), and dF/dv, (B, m, N)."""
+
+
+class System(SmallSystem, Protocol):
+    """Equations with all that tracking and proving need."""
+
     @property
-    def turns(self) -> BoolArray:
+    def is_angle(self) -> BoolArray:
         """(N,) which variables are angles."""
 
     def residual(self, v: Array) -> Array:
@@ -36,17 +43,14 @@ class System(Protocol):
         bound of its error.
         """
 
-    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
-        """F, (B, m), and dF/dv, (B, m, N)."""
-
     def jacobian(self, v: Array) -> Array:
         """dF/dv, (B, m, N)."""
 
-    def second(self, v: Array, d: Array) -> Array:
+    def second_directional_derivative(self, v: Array, d: Array) -> Array:
         """D²F[d, d], (B, m)."""
 
     @property
-    def bends_boundedly(self) -> bool:
+    def has_curvature_bound(self) -> bool:
         """Whether :meth:`curvature` knows a bound."""
 
     def curvature(self, v: Array, matrix: Array) -> Curvature:

@@ -1,1 +1,1 @@
-"""What came out: positions and motions as plain immutable data, with their evidence."""
+"""Results: positions, motions and lists as immutable data with their evidence."""

@@ -1,4 +1,4 @@
-"""What the program understood of a mechanism, before a cycle is solved."""
+"""The report of a check: how a mechanism was read, before a cycle is solved."""
 
 from __future__ import annotations
 
@@ -34,34 +34,58 @@ class BlockSummary:
 
 @dataclass(frozen=True, kw_only=True)
 class CheckReport:
-    """Form, equations, mobility and the start of a mechanism.
+    """How a mechanism was read: its equations, mobility, classification and start position.
 
     Parameters
     ----------
+    mechanism : str
+        The name of the mechanism.
     form : str
         ``points and links``, ``loops`` or ``equations``.
     links, joints : int
-        How many there are; those of loops are read off the equations, 0 if that fails.
+        Their numbers; for loops they are read from the equations, and 0 if that fails.
+    loops : tuple of str
+        Labels of the loop equations, or of plain equations.
+    unknowns, inputs : tuple of (name, unit)
+        The variables with their units.
+    rows : int
+        Number of rows of the input's table.
+    blocks : tuple of BlockSummary
+        Equations that are solved together, in solving order.
     mobility_count : int or None
-        Grübler's count, where there are links and joints.
+        Mobility by Grübler's count; ``None`` without links and joints.
     mobility_rank : int or None
-        Variables minus the rank of the full Jacobian at the start position, if one was found.
-    mobility_why : str
-        Why the two differ, "" if they do not.
-    redundant : tuple of (link, length, gap)
-        Links whose length follows from the others: what was given, and how far it is from that at
-        the start, of the longest link.
+        Variables minus the rank of the full Jacobian at the start position; ``None`` without one.
     measured : tuple of (link, "A B", length)
-        Dimensions that were measured between sketched points.
-    start : Status, str
-        How Newton-Raphson ended at the guess's own input value, and the sentence.
-    start_input : mapping of the guess's input values, everyday units.
+        Dimensions that were measured between sketched points [file's length unit].
+    start : Status
+        How Newton-Raphson ended at the input value of the guess.
+    start_message : str
+        The same as a sentence.
+    start_input : dict[str, float]
+        The input values of the guess, in file units.
+    residual : float
+        Largest closure error at the start, relative to the longest link.
     failure : Failure, optional
         Why there is no position at the start.
+    mobility_why : str
+        Why the two mobilities differ; "" if they do not.
+    redundant : tuple of (link, length, gap)
+        Links whose length follows from the others: the given length, and its error at the start
+        relative to the longest link.
     classification : Classification, optional
-        What a textbook calls the mechanism.
+        Chain, type and Assur groups.
     unclassified : str
-        Why there is no classification, "" if there is one.
+        Why there is no classification; "" if there is one.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> report = lw.example("four-bar").check()
+    >>> report.mobility_count, report.mobility_rank
+    (1, 1)
+    >>> report.classification.type
+    'crank-rocker (GCRR): Grashof, s + l < p + q by 20 mm'
     """
 
     mechanism: str

@@ -1,4 +1,4 @@
-"""All circuits of a mechanism: what can be reached without taking it apart, and its branches."""
+"""Circuits of a mechanism, each reachable without disassembly, and their branches."""
 
 from __future__ import annotations
 
@@ -13,30 +13,45 @@ from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
-from linkwork.foundation.showing import shower
+from linkwork.foundation.presenting import presenter
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit, Motion
-from linkwork.results.summary import circuits_summary
+from linkwork.results.summary import Summary
 
-__all__ = ["Branch", "Circuit", "Circuits"]
+__all__ = ["Branch", "Circuit", "Circuits", "circuits_summary"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Branch:
-    """A piece of a circuit between dead points or change points (Chase & Mirth 1993).
+    """A part of a circuit between dead points or change points (Chase & Mirth 1993).
 
     Parameters
     ----------
     name : str
         ``circuit 1 branch 2``.
     input_range : (float, float)
-        Smallest and largest value of the leading input, everyday units, unwrapped.
+        Smallest and largest value of the leading input, in file units, unwrapped.
     configuration : str
-        The name of its configuration at the guess's own input, "" if it does not come by there.
+        The name of its configuration at the input value of the guess; "" if the branch does not
+        contain that value.
     certified : bool
-        Whether the way to it and along it is proved.
+        Whether the branch, and the way to it, is proved.
     end : CircuitEnd
-        How the curve that it is a part of ends; ``INPUT_CONSTANT`` if the input rests all along.
+        How the curve that contains the branch ends; ``INPUT_CONSTANT`` if the input is at rest
+        along the whole branch.
+
+    References
+    ----------
+    T. R. Chase, J. A. Mirth: Circuits and branches of single-degree-of-freedom planar linkages.
+    Journal of Mechanical Design 115 (1993) 223-230, doi:10.1115/1.2919181
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> circuits = lw.example("four-bar").circuits()
+    >>> branch = circuits.branch("circuit 2 branch 1")
+    >>> branch.configuration, branch.certified
+    ('crossed', True)
     """
 
     name: str
@@ -48,34 +63,46 @@ class Branch:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Circuit:
-    """All positions that can be reached from one without taking the mechanism apart.
+    """The set of all positions that a mechanism can reach from one of them without disassembly.
 
     Parameters
     ----------
     name : str
-        ``circuit 1`` holds the guess.
+        ``circuit 1`` contains the guess.
     end : CircuitEnd
-        That the curve closes, or why not.
+        Whether the curve of positions closes, or why not.
     certified : bool
-        Whether the curve is proved to be one curve, and to close; up to a millionth of a radian
-        at change points.
+        Whether the curve is proved to be one curve, and to close; at change points to a millionth
+        of a radian.
     input_range : (float, float)
-        Of the leading input, everyday units, unwrapped.
+        Smallest and largest value of the leading input, in file units, unwrapped.
     turns : int, optional
-        Turns of the input until the circuit closes: 0 if it turns back; ``None`` if it does not
-        close or the input is a length.
+        Turns of the input until the circuit closes; 0 if the input reverses; ``None`` if the
+        circuit does not close or the input is a length.
     turning : Mapping[str, int]
-        Whole turns of every moving link once around a closed circuit, positive counter-clockwise:
-        0 for a link that rocks.
+        Whole turns of every moving link in one pass of a closed circuit, positive
+        counter-clockwise; 0 for a link that rocks.
     branches : tuple of Branch
+        In the order of travel.
     dead_points, change_points : tuple of Limit
+        Where the input reverses, and where curves cross.
     smallest_singular_value : float
-        Of diag(1/s) J diag(w) along the circuit, 0 at dead points and change points: J by all
-        unknowns, the input known; the equations divided by a length s of their loop, the unknowns
-        measured by w, 1 rad or a length. ``weakest`` is the input value at which it is smallest
-        [everyday units]. Both to rounding.
+        σ_min of diag(1/s) J diag(w) along the circuit, to rounding; 0 at dead points and change
+        points. J is the Jacobian with respect to all unknowns at a fixed input, s a length of each
+        loop, w 1 rad or a length for each unknown.
+    weakest : float
+        The input value at which that singular value is smallest [file units].
     motion : Motion
         Positions along the circuit in the order of travel, branch by branch.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> circuit = lw.example("four-bar").circuits()[0]
+    >>> circuit.closed, circuit.turns, circuit.turning["rocker"]
+    (True, 1, 0)
+    >>> [round(angle) for angle in circuit.range("rocker")]
+    [55, 129]
     """
 
     name: str
@@ -93,7 +120,7 @@ class Circuit:
 
     @property
     def closed(self) -> bool:
-        """Whether the motion comes back to where it began."""
+        """Whether the motion returns to its start."""
         return self.end.closed
 
     def __getitem__(self, name: str) -> Array:
@@ -108,21 +135,33 @@ class Circuit:
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Circuits:
-    """All circuits of a mechanism, that of the guess first; by number (from 0) or name.
+    """All circuits of a mechanism, that of the guess first; indexed by number (from 0) or by name.
 
     Parameters
     ----------
+    mechanism : str
+        The name of the mechanism.
+    circuits : tuple of Circuit
+        The circuits.
     completeness : Completeness
         Whether the list is complete.
     message : str
         The same as a sentence.
-    input : str
-        The leading input, which the branches refer to.
-    input_unit : str
+    input, input_unit : str
+        The leading input, to whose values the branches refer, and its unit.
     seeded : int
-        At how many input values all configurations were listed to find the circuits.
+        The number of input values at which all configurations were listed to find the circuits.
     failure : Failure, optional
         Why there is no position at the guess, or no motion from it, if no circuit was found.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> circuits = lw.example("four-bar").circuits()
+    >>> [circuit.name for circuit in circuits]
+    ['circuit 1', 'circuit 2']
+    >>> circuits.completeness.complete
+    True
     """
 
     mechanism: str
@@ -197,15 +236,14 @@ class Circuits:
         UnknownNameError
             For a name that does not exist.
         """
-        return shower("Circuits.plot")(self, *names, kind=kind, ax=ax, theme=theme, title=title)
+        return presenter(Circuits.plot)(self, *names, kind=kind, ax=ax, theme=theme, title=title)
 
     def __repr__(self) -> str:
         return str(circuits_summary(self))
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        shown: str = shower("Circuits.html")(self)
-        return shown
+        return presenter(Circuits._repr_html_)(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as in the command line's JSON."""
@@ -244,3 +282,15 @@ def _circuit_data(circuit: Circuit) -> dict[str, Any]:
         "smallest_singular_value": circuit.smallest_singular_value,
         "weakest": circuit.weakest,
     }
+
+
+def circuits_summary(circuits: Circuits) -> Summary:
+    """One line per branch."""
+    unit = circuits.input_unit
+    head = f"{len(circuits)} circuit{'' if len(circuits) == 1 else 's'} of {circuits.mechanism}"
+    rows = []
+    for circuit in circuits:
+        for branch in circuit.branches:
+            low, high = branch.input_range
+            rows.append((branch.name, f"{circuits.input} {low:.10g} to {high:.10g} {unit}"))
+    return Summary(head, tuple(rows))

@@ -1,4 +1,4 @@
-"""What kind of mechanism it is: chain, inversion, type by lengths, Assur groups."""
+"""The classification of a mechanism: chain, inversion, type by lengths, Assur groups."""
 
 from __future__ import annotations
 
@@ -22,22 +22,35 @@ class LoopType:
     Parameters
     ----------
     links : tuple of str
-        Around the loop: ground, the driven link (else the first one), coupler, output.
+        Around the loop: ground, driven link (or the first one), coupler, output.
     name : str
         ``crank-rocker``, ``crank shaper``, …
     barker : str
-        Barker's name of a four-bar (``GCRR``), empty for other loops.
+        Barker's code of a four-bar (``GCRR``); "" for other loops.
     grashof : bool or None
-        Whether a link turns fully; ``None`` for a change point.
+        Whether a link turns fully; ``None`` at a change point.
     margin : float
-        p + q - s - l of a four-bar, l - s - e of a slider-crank; positive if a link turns fully.
+        p + q - s - l of a four-bar, l - s - e of a slider-crank [length]; positive if a link turns
+        fully. s is the shortest link, l the longest, p and q are the others, e is the offset.
     relative_margin : float
-        The margin by the longest of the lengths compared.
+        The margin divided by the longest of these lengths.
     turns_fully : bool or None
-        Whether the driven joint can turn fully; ``None`` if no joint of this loop is driven, or a
-        sliding one, or at a change point.
+        Whether the driven joint turns fully; ``None`` at a change point, or if no pin of this loop
+        is driven.
     condition : str
-        The comparison of lengths as a sentence.
+        The comparison of the lengths as a sentence.
+
+    References
+    ----------
+    C. R. Barker: A complete classification of planar four-bar linkages. Mechanism and Machine
+    Theory 20 (1985) 535-554
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> loop = lw.example("four-bar").check().classification.loop
+    >>> loop.barker, loop.margin, loop.turns_fully
+    ('GCRR', 20.0, True)
     """
 
     links: tuple[str, ...]
@@ -51,7 +64,7 @@ class LoopType:
 
     @property
     def text(self) -> str:
-        """``crank-rocker (GCRR): Grashof, s + l is 40 mm below p + q``."""
+        """``crank-rocker (GCRR): Grashof, s + l < p + q by 40 mm``."""
         code = f" ({self.barker})" if self.barker else ""
         return f"{self.name}{code}: {self.condition}"
 
@@ -70,16 +83,25 @@ class LoopType:
 
 @dataclass(frozen=True, kw_only=True)
 class AssurGroup:
-    """Links that are determined together once everything before them is known.
+    """A group of links that are determined together once all links before them are known.
 
     Parameters
     ----------
     links : tuple of str
-        Links that the input holds together are one: ``crank + coupler``.
+        The links of the group; links that the input holds together count as one:
+        ``crank + coupler``.
     name : str
-        ``dyad RRR``, ``triad RR-RR-RP``, ``tetrad``, ``group of 6 links``; or why it is none.
+        ``dyad RRR``, ``triad RR-RR-RP``, ``tetrad``, ``group of 6 links``; or why the links are not
+        an Assur group.
     class_number, order : int or None
-        Class and order after Artobolevskii; ``None`` if it is no Assur group.
+        Class and order after Artobolevskii; ``None`` if the links are not an Assur group.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> report = lw.example("four-bar").check()
+    >>> report.classification.groups[0].text
+    'dyad RRR, class II'
     """
 
     links: tuple[str, ...]
@@ -106,24 +128,32 @@ class AssurGroup:
 
 @dataclass(frozen=True, kw_only=True)
 class Classification:
-    """What a textbook calls a mechanism.
+    """The kinematic chain, the type and the Assur groups of a mechanism.
 
     Parameters
     ----------
     chain : str
         The kinematic chain: ``four-bar chain``, ``Watt chain``, …
     inversion : str or None
-        What the choice of ground makes of it: ``Stephenson III``, ``Scotch yoke``, …
+        The name of the inversion, which depends on the ground: ``Stephenson III``, ``Scotch yoke``,
+        …
     links : int
-        How many links the chain has.
+        The number of links of the chain.
     blocks : tuple of str
-        The slots whose pins are counted among the links, as blocks.
+        Slots whose pins count as links (blocks).
     loop : LoopType or None
-        The four-bar or slider-crank that the mechanism is, or that its driven link is in.
+        The type of the four-bar or slider-crank loop that contains the driven link.
     groups : tuple of AssurGroup
-        In the order in which they are determined.
+        In the order in which they are solved.
     class_number : int or None
-        The highest class of a group, 1 if there are none; ``None`` if it has no class.
+        The highest class of a group, 1 without groups; ``None`` if the mechanism has no class.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> found = lw.example("four-bar").check().classification
+    >>> found.chain, found.loop.name, found.class_number
+    ('four-bar chain', 'crank-rocker', 2)
     """
 
     chain: str
@@ -160,18 +190,28 @@ class Classification:
 
 @dataclass(frozen=True, kw_only=True)
 class Inversion:
-    """A mechanism's chain with one of its links as ground.
+    """An inversion of a kinematic chain: the chain with another link as ground.
 
     Parameters
     ----------
     ground : str
-        The link that would stand still.
+        The fixed link of this inversion.
     type : str
-        What that makes of the chain; empty if there is no name for it.
+        The type of the mechanism; "" if it has no name.
     like : str
-        The first link with which, as ground, the chain is the same but for its lengths.
+        The first link that, as ground, gives the same chain up to its lengths.
     problem : str
-        Why ``mechanism.inversion`` cannot make it; empty if it can.
+        Why ``mechanism.inversion`` cannot make it; "" if it can.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> for inversion in lw.example("four-bar").inversions():
+    ...     print(inversion.ground, "->", inversion.type.partition(":")[0])
+    ground -> crank-rocker (GCRR)
+    crank -> double-crank (GCCC)
+    coupler -> crank-rocker
+    rocker -> double-rocker
     """
 
     ground: str
@@ -182,4 +222,4 @@ class Inversion:
     @property
     def text(self) -> str:
         """``coupler: double-rocker (GRCR): …``."""
-        return f"{self.ground}: {self.type or self.problem or 'no name of its own'}"
+        return f"{self.ground}: {self.type or self.problem or 'unnamed'}"

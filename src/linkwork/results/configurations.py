@@ -1,4 +1,4 @@
-"""Every way a mechanism can be put together at one input, with what is known of completeness."""
+"""All assembly configurations at one input, and whether the list is complete."""
 
 from __future__ import annotations
 
@@ -9,37 +9,44 @@ from typing import Any
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
-from linkwork.foundation.showing import shower
+from linkwork.foundation.presenting import presenter
 from linkwork.results.position import Position
-from linkwork.results.summary import configurations_summary
+from linkwork.results.summary import Summary, driven_text
 
-__all__ = ["Configurations", "PathCount"]
+__all__ = ["Configurations", "PathCount", "configurations_summary", "solution_counts"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class PathCount:
-    """What became of the solution paths of one block, over all configurations before it.
+    """The counts of solutions of one block, summed over all configurations of the blocks before it.
 
     Parameters
     ----------
     unknowns : tuple of str
-        What the block determines.
+        The unknowns of the block.
     solved : int
-        For how many configurations of the blocks before it the block was solved.
+        The number of configurations of earlier blocks for which the block was solved.
     paths : int
-        Paths followed: finite + at_infinity + multiple + failed.
+        Solution paths: finite + at_infinity + multiple + failed.
     finite : int
-        Isolated solutions, complex ones included.
+        Isolated complex solutions.
     real : int
-        Those that are positions.
+        Real solutions; each is a configuration.
     at_infinity, multiple, failed : int
-        Paths that ran to infinity, ended where solutions coincide, or were lost.
+        Paths that ended at infinity, at a multiple solution, or were lost.
     expected : int
-        Solutions of random mechanisms of the same structure.
+        The number of solutions of a random mechanism with the same structure.
     bound : int
-        Solutions that can exist at most.
+        The largest possible number of solutions.
     theorem : str
-        What the bound follows from.
+        The theorem behind the bound.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> count = lw.example("four-bar").configurations(60).paths[0]
+    >>> count.finite, count.real, count.bound
+    (2, 2, 2)
     """
 
     unknowns: tuple[str, ...]
@@ -67,25 +74,37 @@ class PathCount:
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Configurations:
-    """All configurations of a mechanism at one input value.
+    """All assembly configurations of a mechanism at one input value.
 
-    Iterates over positions, each with its name in ``position.configuration``; by number (from 0)
-    or by name. Ordered by block in solving order; inside a block ``open`` before ``crossed``, else
-    by the block's unknowns in their order, angles from 0 to a full turn.
+    Iterates over positions, each with its name in ``position.configuration``; indexed by number
+    (from 0) or by name. The order is by block in solving order; within a block ``open`` before
+    ``crossed``, otherwise by the block's unknowns, angles from 0 to a full turn.
 
     Parameters
     ----------
+    mechanism : str
+        The name of the mechanism.
     positions : tuple of Position
+        The configurations.
     completeness : Completeness
-        How sure it is that none is missing.
+        Whether the list is complete.
     message : str
-        The same as a sentence, with what was special.
+        The same as a sentence, with remarks on this list.
     input, input_units : Mapping
         Input values and their units.
     paths : tuple of PathCount
-        For every block.
+        The counts of solutions of every block.
     seed : int
-        What all random numbers were drawn from.
+        The seed of all random numbers.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> found = lw.example("four-bar").configurations(60)
+    >>> found.names
+    ('open', 'crossed')
+    >>> round(found["crossed"]["rocker"], 3)
+    -111.77
     """
 
     mechanism: str
@@ -125,8 +144,7 @@ class Configurations:
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        shown: str = shower("Configurations.html")(self)
-        return shown
+        return presenter(Configurations._repr_html_)(self)
 
     def to_dict(self) -> dict[str, Any]:
         """The list as JSON-ready data."""
@@ -140,3 +158,23 @@ class Configurations:
             "paths": [{**asdict(count), "unknowns": list(count.unknowns)} for count in self.paths],
             "seed": self.seed,
         }
+
+
+def configurations_summary(found: Configurations) -> Summary:
+    """One row per configuration, then completeness and what became of the paths."""
+    at = driven_text(found.input, found.input_units)
+    head = f"Configurations of {found.mechanism}" + (f" at {at}" if at else "")
+    rows = []
+    for position in found:
+        values = ", ".join(f"{name} = {value:.8g}" for name, value in position.unknowns.items())
+        certified = "certified" if position.certificate.certified else "not certified"
+        rows.append((position.configuration, f"{values}  {certified}"))
+    rows.append(("completeness", found.message))
+    rows.append(("paths", "; ".join(map(solution_counts, found.paths))))
+    return Summary(head, tuple(rows))
+
+
+def solution_counts(count: PathCount) -> str:
+    """``6 complex solutions, 4 of them real``."""
+    finite = count.finite + count.multiple
+    return f"{finite} complex solution{'' if finite == 1 else 's'}, {count.real} of them real"

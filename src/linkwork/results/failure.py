@@ -1,4 +1,4 @@
-"""Why there is no position, or another one than was meant: numbers, and sentences from them."""
+"""Why a position does not exist or differs from the intended one, as numbers and sentences."""
 
 from __future__ import annotations
 
@@ -20,18 +20,26 @@ _NOTHING = 1e-12  # rounding, shown as 0
 
 @dataclass(frozen=True, kw_only=True)
 class Remedy:
-    """One length that alone would let the loops just close.
+    """One length whose change alone closes the loops.
 
     Parameters
     ----------
     length : str
-        Its name, as the user wrote it.
+        The name of the length in the file.
     now, needed : float
-        Its value and the one with which the loops just close [length].
+        Its value, and the value at which the loops just close [length].
     exact : bool
-        Whether this follows from a closed form and holds wherever the search begins (dyads).
-        Otherwise it is the value nearest to first order, corrected until the loops just close,
-        and checked by a position found a little further.
+        Whether ``needed`` follows from a closed form (dyads) and does not depend on the guess.
+        Otherwise it was found by linearisation, corrected until the loops just close, and checked
+        by a position a little further.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> short = {"O2 A": 40, "A B": 30, "O4 B": 20, "O2 O4": 100}
+    >>> remedies = lw.example("four-bar").changed(lengths=short).solve().failure.remedies
+    >>> [(remedy.length, round(remedy.change, 3)) for remedy in remedies]
+    [('A B', 18.366), ('O4 B', 18.366), ('O2 O4', -19.551)]
     """
 
     length: str
@@ -47,44 +55,58 @@ class Remedy:
 
 @dataclass(frozen=True, kw_only=True)
 class Failure:
-    """What was found out about a position that does not exist, or is not the one meant.
+    """Why a position does not exist, or differs from the intended one.
 
     Parameters
     ----------
     what : str
-        What happened, in a sentence.
+        What happened, as a sentence.
+    asked : Mapping[str, float]
+        The requested input values, in file units.
     loops : tuple of str
-        The loops that do not close or lock.
+        The loops that do not close or that lock.
     gap : float, optional
-        How much is missing at best near the guess [length]; the root of the sum of squares for
-        coupled loops.
+        The closure error that remains near the guess [length]; for coupled loops the root of the
+        sum of squares.
     remedies : tuple of Remedy
-        Smallest relative change first.
+        Lengths whose change alone closes the loops.
     nearest_input : Mapping[str, float]
-        The input values nearest to those asked that the mechanism's circuit reaches (the circuit
-        through the start, or, if there is none, the one found nearest to the guess); everyday
-        units, empty if none is known.
+        The reachable input values nearest to the requested ones, in file units, on the circuit
+        through the start, or, without a start, on the circuit found nearest to the guess; empty if
+        unknown.
     nearest_kind : str
-        What is there: ``dead point``, ``end of what was followed``; empty if the circuit reaches
-        the values asked.
+        What limits the circuit there: ``dead point``, ``end of what was followed``; "" if the
+        circuit reaches the requested values.
     nearest_proved : bool
         Whether the circuit was followed with proof.
     through : Mapping[str, float]
-        The dead point behind which the circuit reaches the values asked.
+        The dead point behind which the circuit reaches the requested values.
     unreachable : bool
         Whether no input value was found at which the mechanism can be assembled.
     trouble : NewtonTrouble, optional
-        Which of the four ways of missing a root it was.
-    meant : Mapping[str, float]
-        The root beside the guess, if Newton-Raphson missed it.
+        In which of four ways Newton-Raphson missed the root.
     configurations : tuple of Mapping[str, float]
-        The positions that exist at the values asked: unknowns by name.
+        The positions that exist at the requested values: unknowns by name.
     configuration_names : tuple of str
-        What they are called, where configurations can be listed.
+        Their names, where configurations can be listed.
     complete : bool, optional
-        Whether these are all; ``None`` if none were looked for.
+        Whether these are all configurations; ``None`` if they were not searched.
     complete_likely : bool
-        Whether that is so with probability one, not proved.
+        Whether that holds with probability one only.
+    meant : Mapping[str, float]
+        The root nearest to the guess, if Newton-Raphson missed it.
+    units : Units
+        Units of the numbers.
+    kinds : Mapping[str, Kind]
+        The kind (angle, length, number) of every name.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> short = {"O2 A": 40, "A B": 30, "O4 B": 20, "O2 O4": 100}
+    >>> failure = lw.example("four-bar").changed(lengths=short).solve().failure
+    >>> round(failure.gap, 3), failure.remedies[0].length
+    (18.366, 'A B')
     """
 
     what: str
@@ -116,14 +138,14 @@ class Failure:
         yield "why", self.what
         if self.meant:
             another = self.trouble is NewtonTrouble.ANOTHER_ROOT
-            which = "the root beside the guess is" if another else "a damped iteration does find"
-            yield "beside", f"{which} {self._values(self.meant, _MOST_VALUES)}"
+            which = "the root nearest to the guess is" if another else "a damped iteration finds"
+            yield "root", f"{which} {self._values(self.meant, _MOST_VALUES)}"
         if self.remedies:
             yield "remedy", self._remedy_text()
         if self.nearest_input:
             yield "nearest", self._nearest_text()
         elif self.unreachable:
-            yield "nearest", "no input value was found at which it could be assembled"
+            yield "nearest", "no input value was found at which the mechanism can be assembled"
         if self.complete is not None:
             yield "elsewhere", self._configurations_text()
 
@@ -138,15 +160,15 @@ class Failure:
             change = f"{abs(remedy.change):.6g} {way}"
             texts.append(f"{name} = {remedy.needed:.6g} {unit} ({change})")
         where = "" if all(remedy.exact for remedy in self.remedies) else " near the guess"
-        return f"it just closes{where} with {' or '.join(texts)}"
+        return f"the loops just close{where} with {' or '.join(texts)}"
 
     def _nearest_text(self) -> str:
         where = self._values(self.nearest_input)
         if self.through:
             passed = self._values(self.through)
-            return f"the same circuit does reach it, through the dead point at {passed}"
+            return f"the circuit reaches this input through the dead point at {passed}"
         if not self.nearest_kind:
-            return "the circuit nearest to the guess does reach it"
+            return "the circuit nearest to the guess reaches this input"
         return f"nearest reachable input: {where} ({self.nearest_kind})"
 
     def _configurations_text(self) -> str:
@@ -154,7 +176,7 @@ class Failure:
             if self.complete:
                 sure = " (with probability one)" if self.complete_likely else ""
                 return f"no configuration exists there{sure}"
-            return "no position was found there from other guesses either"
+            return "other guesses also lead to no position there"
         shown = [self._values(c, _MOST_VALUES) for c in self.configurations[:_MOST_CONFIGURATIONS]]
         names = self.configuration_names
         if names:

@@ -1,4 +1,4 @@
-"""Forces on points, to be shown."""
+"""Forces at points, for drawings."""
 
 from __future__ import annotations
 
@@ -13,16 +13,27 @@ __all__ = ["Force", "check_forces", "force_unit"]
 
 @dataclass(frozen=True, kw_only=True)
 class Force:
-    """A force on a point.
+    """A force at a point, for drawings and pages; it is given, not computed.
 
     Parameters
     ----------
     at : str
-        The point.
+        The name of the point.
     x, y : float
-        Its components, in ``unit``.
+        Components along the axes of the ground, in ``unit``.
     unit : str
-        For example ``N``; all forces of a picture have the same.
+        For example ``N``; all forces of a picture have the same unit.
+
+    Raises
+    ------
+    InputError
+        If a component is not finite.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Force(at="B", x=0, y=-981, unit="N")
+    Force(at='B', x=0, y=-981, unit='N')
     """
 
     at: str

@@ -1,4 +1,4 @@
-"""Instant centres: for two links, the point at which both have the same velocity; and centrodes.
+"""Instant centres, at which two links have the same velocity, and centrodes.
 
 A link's points move at ``v(z) = a + iωz``, so links 1 and 2 agree at
 ``z = i (a₁ - a₂) / (ω₁ - ω₂)``. Of three links, the three centres lie in one line: the theorem of
@@ -18,7 +18,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError
-from linkwork.mechanism.linkage import GROUND
+from linkwork.foundation.names import GROUND
 from linkwork.results.link_motion import LinkMotion, link_motion, link_motions
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
@@ -82,12 +82,12 @@ def instant_centres(position: Position) -> tuple[InstantCentre, ...]:
         raise InputError(f'"{position.mechanism}" has no position here: {position.message}')
     bodies = link_motions(position)
     if len(bodies) < 2:
-        raise InputError(f'"{position.mechanism}" has no links with points: nothing has a centre')
+        raise InputError(f'"{position.mechanism}" has no links with points, so no instant centres')
     lost = [b.link for b in bodies if not (np.isfinite(b.shift[0]) and np.isfinite(b.spin[0]))]
     if lost:
         raise InputError(
             f'"{position.mechanism}" has no instant centres here: '
-            f"the rates of {', '.join(lost)} by the input are not finite or not known"
+            f"the rates of {', '.join(lost)} with respect to the input are not finite or not known"
         )
     size = max((abs(complex(*place)) for place in position.points.values()), default=1.0)
     fastest = max(max(abs(b.shift[0]), abs(b.spin[0]) * size) for b in bodies)

@@ -22,7 +22,7 @@ class Iterate:
     k : int
         Number of the iterate; 0 is the guess.
     unknowns : Mapping[str, float]
-        The block's unknowns, everyday units.
+        The block's unknowns, in file units.
     residuals : tuple of float, shape (n,)
         F: the real parts of the loops, their imaginary parts, then the other equations, each in
         its own unit.

@@ -1,4 +1,4 @@
-"""Where a branch ends, and where a quantity is largest or smallest."""
+"""Limits of a branch, and extremes of a quantity."""
 
 from __future__ import annotations
 
@@ -15,9 +15,16 @@ __all__ = ["Limit", "LimitKind", "OutputLimit"]
 
 
 class LimitKind(Enum):
-    """What ends a branch."""
+    """The kind of a limit of a branch; the value is a sentence.
 
-    DEAD_POINT = "dead point: the input can move no further"
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.LimitKind.DEAD_POINT.word
+    'dead point'
+    """
+
+    DEAD_POINT = "dead point: the input cannot move further"
     CHANGE_POINT = "change point: another branch crosses here"
     UNKNOWN = "the branch could not be followed further"
 
@@ -29,30 +36,39 @@ class LimitKind(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Limit:
-    """Where a branch ends.
+    """A limit of a branch: a dead point, a change point, or an end of unknown kind.
 
     Parameters
     ----------
     kind : LimitKind
+        Dead point, change point or unknown.
     input : float
-        Of the leading input, everyday units.
+        Value of the leading input, in file units.
     bracket : (float, float)
-        The dead point lies in it if it is located. Otherwise the last value reached and the first
-        that failed.
+        Contains the dead point if it is located; otherwise the last value reached and the first
+        value that failed, in file units.
     located : bool
-        Whether the input is proved to turn back within the bracket, and the branch to lead there;
-        of a change point, whether it was found to rounding.
+        For a dead point, whether it is proved that the input reverses within the bracket and that
+        the branch leads there; for a change point, whether it was found to rounding.
     status : Status
-        What rows beyond it say.
+        The status of the rows beyond it.
     loops : tuple of str
         The loops that lock.
     in_line : tuple of str
         Links of those loops that are in line there.
     onward, other : Mapping[str, float]
-        At a change point, the derivatives by the input of the locked loops' unknowns on the
-        branch that was followed and on the one that crosses it.
+        At a change point, derivatives of the locked loops' unknowns with respect to the input, on
+        the branch that was followed and on the branch that crosses it.
     passed : str
-        How the motion went on at a change point: ``straight`` or ``turn``; "" if it stopped.
+        How the motion passed a change point: ``straight`` or ``turn``; "" if it stopped.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lengths = {"O2 A": 80, "A B": 120, "O4 B": 80, "O2 O4": 100}
+    >>> limit = lw.example("four-bar").changed(lengths=lengths).sweep().limits[0]
+    >>> limit.kind.word, round(limit.input, 6), limit.in_line
+    ('dead point', 22.331645, ('coupler', 'rocker'))
     """
 
     kind: LimitKind
@@ -96,25 +112,39 @@ class Limit:
         if self.in_line:
             text += f" ({' and '.join(self.in_line)} in line)"
         if self.passed:
-            text += "; went straight on" if self.passed == "straight" else "; turned off"
+            text += (
+                "; went straight on"
+                if self.passed == "straight"
+                else "; turned onto the other branch"
+            )
         return text
 
 
 @dataclass(frozen=True, kw_only=True)
 class OutputLimit:
-    """Where a quantity is largest or smallest on the way, dead points of the input among it.
+    """A maximum or minimum of a quantity along the motion.
 
     Parameters
     ----------
     name : str
+        The quantity.
     kind : str
         ``maximum`` or ``minimum``.
     input : float
-        Of the leading input, everyday units, with ``bracket`` around it.
+        Value of the leading input, in file units.
     value : float
-        Of the quantity, everyday units.
+        Value of the quantity, in file units.
+    bracket : (float, float)
+        Interval around ``input``, in file units.
     located : bool
-        Whether it was found to rounding.
+        Whether the extreme was found to rounding.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> low, high = lw.example("four-bar").sweep(limits_of="rocker").output_limits
+    >>> high.kind, round(high.input, 6), round(high.value, 6)
+    ('maximum', 231.317813, 128.682187)
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""How links move in the plane: where their frame is and at what rate, read off a result."""
+"""The motion of links in the plane: position and velocity of their frames."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.mechanism.linkage import GROUND
+from linkwork.foundation.names import GROUND
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
@@ -114,7 +114,7 @@ def _direction(
             with np.errstate(invalid="ignore"):  # rows that were not found are NaN, and stay so
                 return along / np.abs(along), (rates / along).imag
     raise InputError(
-        f'how the link "{link}" turns is not known: give it two points, or its angle a name'
+        f'the rotation of link "{link}" is not known: give it two points, or name its angle'
     )
 
 

@@ -17,8 +17,8 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
-from linkwork.foundation.names import spelled
-from linkwork.foundation.showing import shower
+from linkwork.foundation.names import find_spelling
+from linkwork.foundation.presenting import presenter
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
@@ -26,15 +26,32 @@ from linkwork.results.limit import Limit, LimitKind, OutputLimit
 from linkwork.results.quantities.definition import Vector
 from linkwork.results.quantities.registry import Asked, Group, Quantities
 from linkwork.results.quantity import Quantity, Rate, Units
-from linkwork.results.summary import motion_summary
-from linkwork.results.table import Table, table_of
+from linkwork.results.table import Table
 
 __all__ = ["Limit", "LimitKind", "Motion", "OutputLimit", "Series"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Series:
-    """One quantity over all rows: values in everyday units, derivatives in radians and lengths."""
+    """One quantity over the N rows of a motion.
+
+    Parameters
+    ----------
+    quantity : Quantity
+        Its name and kind.
+    value : array (N,)
+        Values in file units.
+    first, second : array (N,)
+        Derivatives with respect to the leading input; angles in radians.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> motion = lw.example("four-bar").sweep(start=0, stop=90, step=30)
+    >>> series = motion.unknowns["rocker"]
+    >>> series.quantity.name, series.first.round(3)
+    ('rocker', array([-0.667,  0.122,  0.457,  0.539]))
+    """
 
     quantity: Quantity
     value: Array
@@ -50,55 +67,76 @@ class Series:
 class Motion:
     """The positions of a mechanism over a table of N input values.
 
+    ``motion["rocker"]`` is the column of a quantity as an array, shape (N,); rows without a
+    position are kept and hold NaN.
+
     Parameters
     ----------
     quantities : Quantities
         Everything that can be asked for by name.
+    mechanism : str
+        The name of the mechanism.
+    units : Units
+        Units of angles and lengths.
+    skeleton : Skeleton
+        Links, joints and other parts, for drawings.
     inputs : Mapping[str, array (N,)]
-        Input values in everyday units.
+        Input values in file units.
     input_units : Mapping[str, str]
         Their units.
     derivative_unit : str
-        What derivatives are taken by: ``rad``, or the length unit; of the first moving input.
+        The unit of the leading input in derivatives: ``rad``, or the length unit.
     unknowns, links, sliders, outputs : Mapping[str, Series]
-        As in :class:`~linkwork.results.position.Position`.
+        Values and derivatives of the quantities, as in
+        :class:`~linkwork.results.position.Position`.
     points : Mapping[str, (Series, Series)]
         x and y of every point.
     riding : tuple of str
-        Links that turn with another one, on which they only slide; the rest are unknowns, inputs
-        or stand still.
+        Links that turn with another link, on which they only slide.
     status : tuple of Status
-        One per row; rows that failed hold NaN and are kept.
+        One status per row.
+    message : str
+        How many rows have no position, and every limit of the motion with the links in line there.
     residual, condition : array (N,)
-    iterations : array (N,), int
+        Largest closure error relative to the longest link; largest condition number of a block.
+    iterations : array (N,) of int
+        Newton-Raphson iterations.
     certification : tuple of Certification
         Whether each row is proved, or why not; ``certified`` has it as an array of bool.
-    redundant : Mapping[str, float]
-        How far each redundant link is from its length at most, of the longest link; not proved.
     radius, unique_within : array (N,)
-        Where proved: a true position lies within ``radius`` of the row and no other within
-        ``unique_within`` (largest norm; lengths relative to the longest link).
+        For proved rows: a true position lies within ``radius``, and no other within
+        ``unique_within`` (largest norm, angles [rad], lengths relative to the longest link).
     branch : tuple of str
-        On which branch of which circuit each row lies, "" if it was not found.
+        The branch of each row; "" if the row has no position.
     limit : tuple of str
-        ``dead point``, ``change point``, ``maximum of …`` for rows that lie at one, else "".
+        ``dead point``, ``change point``, ``maximum of …`` for rows at such a place, otherwise "".
     added : array (N,) of bool
-        Rows that the table did not ask for: limits, and with ``through`` those of further branches.
+        Rows in addition to the table: limits, and with ``through`` the rows of further branches.
     speed : float, optional
-        Rate of the first input [rad/s or length/s], if given.
+        Speed of the leading input [rad/s or length/s].
     limits : tuple of Limit
-        Where the branch ends before the table does; with ``through``, all dead points passed.
+        The limits of the branch within the table; with ``through`` all dead points passed.
     output_limits : tuple of OutputLimit
-        Extremes of the quantities that were asked for.
+        Extremes of the quantities in ``limits_of``.
     circuit : CircuitEnd, optional
-        With ``through``: how the circuit that was followed ends.
+        With ``through``: how the circuit ends.
+    redundant : Mapping[str, float]
+        The largest error of each redundant link's length, relative to the longest link; not proved.
     q : array (N, n)
         The unknowns with angles in radians.
     failure : Failure, optional
         Why no position was found at the guess.
-    message : str
-        How many rows were not found, and every limit of the motion once: where it lies, which links
-        are in line there. The values nearest to those rows are the limits'.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> motion = lw.example("four-bar").sweep(start=0, stop=90, step=30)
+    >>> motion["rocker"].round(3)
+    array([62.72 , 55.268, 64.943, 80.257])
+    >>> motion["rocker.velocity"].round(3)
+    array([-16.667,   3.043,  11.434,  13.475])
+    >>> bool(motion.certified.all())
+    True
     """
 
     mechanism: str
@@ -250,8 +288,14 @@ class Motion:
         return float(found.max()) if len(found) else float("nan")
 
     def table(self, *names: str) -> Table:
-        """Columns with units, all or those named; see :func:`linkwork.results.table.table_of`."""
-        return table_of(self, names)
+        """Columns with units; see :func:`linkwork.results.motion_table.table_of`.
+
+        Parameters
+        ----------
+        names : str
+            Quantities and rates; all columns if none is named.
+        """
+        return presenter(Motion.table)(self, *names)
 
     def to_pandas(self) -> Any:
         """A pandas DataFrame with the input as index."""
@@ -303,8 +347,16 @@ class Motion:
         UnknownNameError
             For a name that does not exist.
         """
-        options: dict[str, Any] = {"kind": kind, "against": against, "wrapped": wrapped}
-        return shower("Motion.plot")(self, *names, ax=ax, theme=theme, title=title, **options)
+        return presenter(Motion.plot)(
+            self,
+            *names,
+            kind=kind,
+            against=against,
+            wrapped=wrapped,
+            ax=ax,
+            theme=theme,
+            title=title,
+        )
 
     def animate(
         self,
@@ -334,7 +386,7 @@ class Motion:
         MissingPackageError
             Without what writes the format.
         """
-        shower("Motion.animate")(self, path, options=options, progress=progress)
+        presenter(Motion.animate)(self, path, options=options, progress=progress)
 
     def widget(self) -> Any:
         """The motion in a notebook, to play and to drag; needs the extra ``notebook``.
@@ -351,15 +403,14 @@ class Motion:
         MissingPackageError
             Without anywidget.
         """
-        return shower("Motion.widget")(self)
+        return presenter(Motion.widget)(self)
 
     def __repr__(self) -> str:
-        return str(motion_summary(self))
+        return presenter(Motion.__repr__)(self)
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        shown: str = shower("Motion.html")(self)
-        return shown
+        return presenter(Motion._repr_html_)(self)
 
     @property
     def counts(self) -> Counter[Status]:
@@ -372,7 +423,7 @@ class Motion:
         ``motion.trace("B.velocity")`` is its velocity likewise.
         """
         own, rate = Rate.split(point)
-        own = spelled(own, self.points)
+        own = find_spelling(own, self.points)
         if own not in self.points:
             raise UnknownNameError(
                 f'there is no point "{own}" {choices("points", self.points, own)}'

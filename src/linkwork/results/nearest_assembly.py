@@ -1,4 +1,4 @@
-"""How near a mechanism that cannot close comes to closing, and where its links do not meet."""
+"""The position nearest to closure, with the gap and the ends of links that do not meet."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class NearestAssembly:
     Parameters
     ----------
     input, unknowns : Mapping[str, float]
-        Everyday units.
+        File units.
     points : Mapping[str, (x, y)]
         Coordinates of every point, each reached from ground by one way around its loop.
     gaps : Mapping[str, (x, y)]

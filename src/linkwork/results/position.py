@@ -12,22 +12,41 @@ from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.frozen import FrozenDict, read_only
-from linkwork.foundation.showing import shower
+from linkwork.foundation.presenting import presenter
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
 from linkwork.results.quantities.definition import Vector
 from linkwork.results.quantities.registry import Group, Quantities
 from linkwork.results.quantity import Units
-from linkwork.results.summary import position_summary
+from linkwork.results.summary import Summary, driven_text
 
-__all__ = ["Certificate", "NewtonStep", "NewtonTrail", "Position"]
+__all__ = ["Certificate", "NewtonStep", "NewtonTrail", "Position", "position_summary"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Certificate:
-    """Whether a position is proven: a true position lies within ``radius``, no other within
-    ``unique_within`` (largest norm; lengths relative to the longest link).
+    """The proof of one position, or the reason why there is none.
+
+    Parameters
+    ----------
+    certification : Certification
+        Whether the position is proved, as a sentence.
+    radius : float, optional
+        A true position lies within this distance of the computed one: largest norm of the unknowns,
+        angles [rad], lengths relative to the longest link. ``None`` without a proof.
+    unique_within : float, optional
+        No other position lies within this distance, in the same norm; ``inf`` if there is no other
+        at all. ``None`` without a proof.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> certificate = lw.example("four-bar").solve(at=60).certificate
+    >>> certificate.certified
+    True
+    >>> certificate.radius < 1e-13 < certificate.unique_within
+    True
     """
 
     certification: Certification = Certification.NOT_ASKED
@@ -52,7 +71,7 @@ class NewtonStep:
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonTrail:
-    """The iterates of one block of equations, in everyday units.
+    """The iterates of one block of equations, in file units.
 
     ``residual`` in the steps is the 2-norm of the block's real equations in their own unit,
     ``step`` the largest weighted change of an unknown.
@@ -67,23 +86,29 @@ class NewtonTrail:
 class Position:
     """A position of a mechanism at one input value.
 
-    Values are in the mechanism's own units; derivatives count angles in radians
-    (``first["s16"]`` in mm/rad for an angle input).
+    Values are in file units; derivatives are per radian, with angles in radians (``first["s16"]``
+    in mm/rad for an input angle). ``position["rocker"]`` is a value by name.
 
     Parameters
     ----------
     quantities : Quantities
         Everything that can be asked for by name.
+    mechanism : str
+        The name of the mechanism.
+    units : Units
+        Units of angles and lengths.
+    skeleton : Skeleton
+        Links, joints and other parts, for drawings.
     status, message : Status, str
-        How the search ended, and the sentence for a person.
+        How the search ended, and the sentence with its details.
     input : Mapping[str, float]
         Input values.
     input_units : Mapping[str, str]
         Their units.
     derivative_unit : str
-        What derivatives are taken by: ``rad``, or the length unit; of the first moving input.
+        The unit of the leading input in derivatives: ``rad``, or the length unit.
     unknowns : Mapping[str, float]
-        The solved unknowns; angles unwrapped.
+        The solved unknowns; angles are unwrapped.
     links : Mapping[str, float]
         The angle of every link.
     sliders : Mapping[str, float]
@@ -91,29 +116,47 @@ class Position:
     points : Mapping[str, (x, y)]
         Coordinates of every point.
     outputs : Mapping[str, float]
-        The named formulas.
+        Values of the named formulas.
     value_units : Mapping[str, str]
-        Units of unknowns, links, sliders, outputs, coordinates by name.
+        Units of unknowns, links, sliders, outputs and coordinates by name.
     first, second : Mapping[str, float]
-        Derivatives by the input of unknowns, links, sliders, outputs, ``<point>.x``, ``<point>.y``.
+        Derivatives with respect to the input of unknowns, links, sliders, outputs and coordinates.
     velocity, acceleration : Mapping[str, float]
-        The same by time, if the input has a speed.
+        Derivatives with respect to time [per s, per s²], if the input has a speed.
     speed : float, optional
         Rate of the first input [rad/s or length/s], if given.
     residual : float
-        Largest closure error divided by the longest link.
+        Largest closure error relative to the longest link.
     iterations : int
-        Of Newton-Raphson: at the guess, and at every step along the branch from there.
+        Newton-Raphson iterations at the guess and at every step along the branch.
     condition : float
-        Largest condition number (largest norm, weighted) of a block's Jacobian.
+        Largest condition number of a block's Jacobian (largest norm, weighted).
+    certificate : Certificate
+        The proof of the position.
     redundant : Mapping[str, float]
-        How far each redundant link is from its length, of the longest link; not proved.
+        The error of each redundant link's length, relative to the longest link; not proved.
+    branch : str
+        The branch that contains the position, if it was asked for by name.
     configuration : str
-        What this way to put the mechanism together is called, if it comes from a list of them.
+        The name of the configuration, if the position comes from a list of configurations.
     q : array, shape (n,)
         The unknowns with angles in radians.
+    steps : tuple of NewtonTrail
+        The iterates of every block, with ``with_steps=True``.
     failure : Failure, optional
-        Why there is no position, or why it is another one than the one beside the guess.
+        Why there is no position, or why it is not the one nearest to the guess.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> position = lw.example("four-bar").solve(at=60)
+    >>> position.status.ok, position.certificate.certified
+    (True, True)
+    >>> x, y = position.points["B"]
+    >>> round(x, 3), round(y, 3)
+    (133.881, 72.471)
+    >>> round(position.first["rocker"], 4)
+    0.4573
     """
 
     mechanism: str
@@ -194,8 +237,7 @@ class Position:
 
     def _repr_html_(self) -> str:
         """A picture and a short table, for notebooks."""
-        shown: str = shower("Position.html")(self)
-        return shown
+        return presenter(Position._repr_html_)(self)
 
     def to_dict(self) -> dict[str, Any]:
         """The position as JSON-ready data: NaN becomes null, the status its member name."""
@@ -257,3 +299,21 @@ def _trail(trail: NewtonTrail) -> dict[str, Any]:
             for step in trail.steps
         ],
     }
+
+
+def position_summary(position: Position) -> Summary:
+    """Status, unknowns, evidence."""
+    at = driven_text(position.input, position.input_units)
+    head = f"Position of {position.mechanism}" + (f" at {at}" if at else "")
+    if not position.status.ok:
+        return Summary(head, ((position.status.name, position.message),))
+    values = {**position.unknowns, **position.outputs}
+    units = position.value_units
+    rows = [(n, f"{value:.10g} {units.get(n, '')}".rstrip()) for n, value in values.items()]
+    rows += [
+        ("residual", f"{position.residual:.1e} of the longest link"),
+        ("condition", f"{position.condition:.3g}"),
+        ("iterations", str(position.iterations)),
+        ("certified", "yes" if position.certificate.certified else "no"),
+    ]
+    return Summary(head, tuple(rows))

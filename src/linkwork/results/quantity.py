@@ -1,4 +1,4 @@
-"""Named quantities with units: how a column of numbers is called and measured."""
+"""Named quantities with their units."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class Units:
-    """The units of one mechanism: everyday values and rates."""
+    """The units of one mechanism: values in file units and rates."""
 
     angle: AngleUnit
     length: str
@@ -45,7 +45,7 @@ class Units:
         return f"1/{self.length}" if kind is Kind.PER_LENGTH else ""
 
     def scale(self, kind: Kind) -> float:
-        """Internal units (radians) per everyday unit."""
+        """Internal units (radians) per file unit."""
         return self.angle.radians if kind is Kind.ANGLE else 1.0
 
 
@@ -103,8 +103,8 @@ class Rate(Enum):
         if self.by_time and speed is None:
             by_input = Rate.FIRST if self.order == 1 else Rate.SECOND
             raise UnknownNameError(
-                f'there is no "{name}.{self.value}" without a speed of the input: give it one '
-                f'(speed in [input]), or ask for "{name}.{by_input.value}", which is by the input'
+                f'"{name}.{self.value}" needs the speed of the input: set speed in [input], or '
+                f'use "{name}.{by_input.value}", the derivative with respect to the input'
             )
 
     def of(self, first: Array, second: Array, speed: Array | float | None) -> Array:

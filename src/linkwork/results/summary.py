@@ -1,26 +1,15 @@
-"""Short summaries of results: aligned text fit to be pasted into a question, rows of a table."""
+"""Short summaries of results as aligned text and as rows of a table."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from linkwork.results.circuits import Circuits
-    from linkwork.results.configurations import Configurations
-    from linkwork.results.motion import Motion
-    from linkwork.results.position import Position
+from linkwork.results.motion import Motion
 
-__all__ = [
-    "Summary",
-    "circuits_summary",
-    "configurations_summary",
-    "motion_summary",
-    "position_summary",
-]
+__all__ = ["Summary", "driven_text", "motion_summary", "motion_text"]
 
 
 @dataclass(frozen=True)
@@ -35,55 +24,9 @@ class Summary:
         return "\n".join([self.head, *(f"  {name:<{width}}  {text}" for name, text in self.rows)])
 
 
-def _driven(inputs: Mapping[str, float], units: Mapping[str, str]) -> str:
+def driven_text(inputs: Mapping[str, float], units: Mapping[str, str]) -> str:
+    """Input values with their units: ``crank = 60 deg``."""
     return ", ".join(f"{name} = {value:.10g} {units[name]}" for name, value in inputs.items())
-
-
-def position_summary(position: Position) -> Summary:
-    """Status, unknowns, evidence."""
-    at = _driven(position.input, position.input_units)
-    head = f"Position of {position.mechanism}" + (f" at {at}" if at else "")
-    if not position.status.ok:
-        return Summary(head, ((position.status.name, position.message),))
-    values = {**position.unknowns, **position.outputs}
-    units = position.value_units
-    rows = [(n, f"{value:.10g} {units.get(n, '')}".rstrip()) for n, value in values.items()]
-    rows += [
-        ("residual", f"{position.residual:.1e} of the longest link"),
-        ("condition", f"{position.condition:.3g}"),
-        ("iterations", str(position.iterations)),
-        ("certified", "yes" if position.certificate.certified else "no"),
-    ]
-    return Summary(head, tuple(rows))
-
-
-def configurations_summary(found: Configurations) -> Summary:
-    """One row per configuration, then completeness and what became of the paths."""
-    at = _driven(found.input, found.input_units)
-    head = f"Configurations of {found.mechanism}" + (f" at {at}" if at else "")
-    rows = []
-    for position in found:
-        values = ", ".join(f"{name} = {value:.8g}" for name, value in position.unknowns.items())
-        certified = "certified" if position.certificate.certified else "not certified"
-        rows.append((position.configuration, f"{values}  {certified}"))
-    rows.append(("completeness", found.message))
-    paths = [
-        f"{count.real} real of {count.finite + count.multiple} solutions" for count in found.paths
-    ]
-    rows.append(("paths", "; ".join(paths)))
-    return Summary(head, tuple(rows))
-
-
-def circuits_summary(circuits: Circuits) -> Summary:
-    """One line per branch."""
-    unit = circuits.input_unit
-    head = f"{len(circuits)} circuit{'' if len(circuits) == 1 else 's'} of {circuits.mechanism}"
-    rows = []
-    for circuit in circuits:
-        for branch in circuit.branches:
-            low, high = branch.input_range
-            rows.append((branch.name, f"{circuits.input} {low:.10g} to {high:.10g} {unit}"))
-    return Summary(head, tuple(rows))
 
 
 def motion_summary(motion: Motion) -> Summary:
@@ -114,3 +57,8 @@ def motion_summary(motion: Motion) -> Summary:
             reached, unit = series.value[found], motion.units.of(series.quantity.kind)
             rows.append((own, f"{reached.min():.8g} … {reached.max():.8g} {unit}".rstrip()))
     return Summary(head, tuple(rows))
+
+
+def motion_text(motion: Motion) -> str:
+    """The summary as text; see :class:`linkwork.results.motion.Motion`."""
+    return str(motion_summary(motion))

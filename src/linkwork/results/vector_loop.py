@@ -1,4 +1,4 @@
-"""The loop equations of a position or a motion as vectors: what a vector diagram shows."""
+"""The loop equations of a position or a motion as vectors, for vector diagrams."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every table and key of a mechanism file, said once.
+"""All tables and keys of a mechanism file, defined in one place.
 
 The reader's checks (:mod:`~linkwork.textfile.structure`) and the published JSON Schema
 (:mod:`~linkwork.textfile.schema`) are both generated from :data:`FORMS`.
@@ -9,135 +9,25 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from linkwork.mechanism.motion_laws import LAWS
+from linkwork.foundation.file_keys import (
+    Constant,
+    Flag,
+    Formula,
+    Key,
+    ListOf,
+    Named,
+    Number,
+    Speed,
+    Table,
+    Tables,
+    Text,
+)
+from linkwork.mechanism.part.index import PARTS
 
-__all__ = [
-    "EQUATIONS", "FORMAT", "FORMS", "LINKAGE", "LOOPS",
-    "Constant", "Flag", "Form", "Formula", "Key", "Kind", "ListOf", "Named", "Number",
-    "PlainNumber", "Several", "Speed", "Table", "Tables", "Text", "Whole", "form_of",
-]  # fmt: skip
+__all__ = ["EQUATIONS", "FORMAT", "FORMS", "LINKAGE", "LOOPS", "Form", "form_of"]
 
 #: The version of the file format that this package reads and writes.
 FORMAT = 1
-
-
-@dataclass(frozen=True)
-class Constant:
-    """The one whole number allowed."""
-
-    number: int
-
-
-@dataclass(frozen=True)
-class Text:
-    """Text, or one of a few words; ``of`` is what it names: a point, link or slider."""
-
-    words: tuple[str, ...] = ()
-    of: str = ""
-
-
-@dataclass(frozen=True)
-class Number:
-    """A number, or a formula of the named dimensions."""
-
-
-@dataclass(frozen=True)
-class PlainNumber:
-    """A number; no formula."""
-
-
-@dataclass(frozen=True)
-class Whole:
-    """A whole number within bounds."""
-
-    least: int
-    most: int = 2**53
-
-
-@dataclass(frozen=True)
-class Formula:
-    """A formula in quotes; with ``equation`` it has an equals sign."""
-
-    equation: bool = False
-
-
-@dataclass(frozen=True)
-class Speed:
-    """A number, or text with a unit: ``"300 rpm"``."""
-
-
-@dataclass(frozen=True)
-class Flag:
-    """true or false."""
-
-
-@dataclass(frozen=True)
-class ListOf:
-    """A list; ``noun`` is what one entry is called in messages."""
-
-    of: Kind
-    noun: str
-    least: int = 0
-    most: int | None = None
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table whose keys are known."""
-
-    keys: tuple[Key, ...]
-
-
-@dataclass(frozen=True)
-class Tables:
-    """A list of tables, ``[[slots]]``; with ``single`` one plain ``[input]`` will do."""
-
-    keys: tuple[Key, ...]
-    single: bool = False
-
-
-@dataclass(frozen=True)
-class Named:
-    """A table whose keys the author chooses; each key has ``words`` words."""
-
-    of: Kind
-    words: int = 1
-
-
-@dataclass(frozen=True)
-class Several:
-    """One number, a list of numbers, or a table; ``wanted`` says so in a message."""
-
-    many: ListOf
-    table: Table
-    wanted: str
-
-
-Kind = (
-    Constant
-    | Text
-    | Number
-    | PlainNumber
-    | Whole
-    | Formula
-    | Speed
-    | Flag
-    | ListOf
-    | Table
-    | Tables
-    | Named
-    | Several
-)
-
-
-@dataclass(frozen=True)
-class Key:
-    """One key: its name, what may stand there, and one line for people."""
-
-    name: str
-    kind: Kind
-    doc: str
-    required: bool = False
 
 
 @dataclass(frozen=True)
@@ -155,9 +45,7 @@ class Form:
         return self.title.replace("-", "_").replace(" ", "_")
 
 
-_POINT, _LINK, _SLIDING = Text(of="point"), Text(of="link"), Text(of="slider")
 _NAME_LIST = ListOf(Text(), "name")
-_POINT_PAIR = ListOf(Text(), "point", 2, 2)
 
 _HEAD = (
     Key(
@@ -166,11 +54,11 @@ _HEAD = (
         "The version of this file format; write format = 1",
         required=True,
     ),
-    Key("name", Text(), "What the mechanism is called"),
+    Key("name", Text(), "Name of the mechanism"),
     Key("length", Text(), "Unit of every length in this file; nothing is converted"),
     Key("angle", Text(("deg", "rad")), "Unit of every angle in this file"),
     Key("source", Text(), "Where the mechanism comes from: book, page, drawing"),
-    Key("family", Text(), 'The kind of mechanism it is listed with: "straight line", "engine"'),
+    Key("family", Text(), 'The family in lists of mechanisms: "straight line", "engine"'),
     Key(
         "configuration",
         Text(),
@@ -189,24 +77,32 @@ _OUTPUTS = Key(
 _TRACE = Key(
     "trace",
     Table((Key("points", _NAME_LIST, "Points whose path is drawn", required=True),)),
-    "What leaves a trace in pictures",
+    "Traces in pictures",
 )
 _GUESS = Key(
     "guess",
     Named(Number()),
-    "Estimates of all unknowns and the input value they belong to",
+    "Estimates of all unknowns at one input value",
     required=True,
 )
 _RANGE = (
     Key("from", Number(), "First input value"),
     Key("to", Number(), "Last input value"),
-    Key("step", Number(), "Step between input values; its sign leads from the first to the last"),
-    Key("speed", Speed(), 'Speed of the input, "300 rpm"; a bare number is the unit per second'),
+    Key(
+        "step",
+        Number(),
+        "Step between input values; its sign points from the first value to the last",
+    ),
+    Key(
+        "speed",
+        Speed(),
+        'Speed of the input, "300 rpm"; a plain number is in file units per second',
+    ),
 )
 _DRIVES = (
     Key("link", Text(), "The link whose angle is driven"),
-    Key("relative_to", Text(), "The link against which the angle is measured; ground if left out"),
-    Key("joint", Text(), "The pin whose two links are driven against each other"),
+    Key("relative_to", Text(), "The link relative to which the angle is measured; default ground"),
+    Key("joint", Text(), "The pin whose relative angle is driven"),
     Key("slider", Text(), "The slider or slot whose displacement is driven"),
     Key("cylinder", Text(), "The cylinder whose length is driven"),
     *_RANGE,
@@ -215,112 +111,9 @@ _VARIABLE = (
     Key("variable", Text(), "The name in the equations that is driven", required=True),
     *_RANGE,
 )
-_SLOT = (
-    Key("name", Text(), "Name of the displacement, zero at the first point of the line", True),
-    Key("point", _POINT, "The pin: a point of another link", required=True),
-    Key("on", _LINK, "The link with the slot", required=True),
-    Key("line", _POINT_PAIR, "Two points of that link; positive from first to second", True),
-)
-_SLIDER = (
-    Key("name", Text(), "Name of the displacement, zero at the first point of the line", True),
-    Key("link", _LINK, "The link that slides without turning", required=True),
-    Key(
-        "points",
-        ListOf(Text(), "point", 1, 2),
-        "Two points of the sliding link on the line, or one point and angle",
-        required=True,
-    ),
-    Key("on", _LINK, "The link along which it slides", required=True),
-    Key("line", _POINT_PAIR, "Two points of that link; positive from first to second", True),
-    Key("offset", Number(), "Distance of the points from the line, positive to its left"),
-    Key("angle", Number(), "With one point: the angle from the line to the sliding link"),
-)
-_CYLINDER = (
-    Key("name", Text(), "Name of the variable length", required=True),
-    Key("between", _POINT_PAIR, "The two points it connects", required=True),
-)
-
-_SPRING = (
-    Key("name", Text(), "Name of the spring", required=True),
-    Key("between", _POINT_PAIR, "The two points it connects", required=True),
-)
-
-_NUMBER_PAIR = ListOf(Number(), "number", 2, 2)
-_COORDINATES = ListOf(ListOf(Number(), "coordinate", 2, 2), "point", 3)
-_WELD = (
-    Key("links", ListOf(Text(), "link", 2, 2), "Two links that share a point", required=True),
-    Key("angle", Number(), "From the first link's direction to the second's"),
-)
-_WHEELS = (
-    Key("wheels", ListOf(Text(), "link", 2, 2), "The two links that turn", required=True),
-    Key("centers", ListOf(Text(), "point", 2, 2), "The points at which they turn", required=True),
-    Key("arm", _LINK, "The link that carries both centres; ground if left out"),
-    Key("radii", _NUMBER_PAIR, "Pitch radii"),
-    Key("teeth", _NUMBER_PAIR, "Numbers of teeth, instead of radii"),
-    Key("phase", Number(), "Angle of the second wheel where the first one's is zero"),
-)
-_GEAR = (
-    Key("name", Text(), "Name of the gear pair", required=True),
-    *_WHEELS,
-    Key("internal", Flag(), "The larger wheel is a ring around the smaller one"),
-)
-_BELT = (
-    Key("name", Text(), "Name of the belt or chain", required=True),
-    *_WHEELS,
-    Key("crossed", Flag(), "The belt crosses itself: the wheels turn against each other"),
-)
-_RACK = (
-    Key("name", Text(), "Name of the rack and pinion", required=True),
-    Key("pinion", _LINK, "The link that turns", required=True),
-    Key("center", _POINT, "The point at which it turns", required=True),
-    Key("slider", _SLIDING, "The slider of the rack", required=True),
-    Key("radius", Number(), "Pitch radius of the pinion", required=True),
-)
-_ROLLING = (
-    Key(
-        "name", Text(), "Way of the point of contact along the line, or angle of the centres", True
-    ),
-    Key("wheel", _LINK, "The link that rolls", required=True),
-    Key("center", _POINT, "Its centre", required=True),
-    Key("radius", Number(), "Its radius", required=True),
-    Key("on", _LINK, "The link on which it rolls; ground if left out"),
-    Key("line", _POINT_PAIR, "Two points of that link: it rolls along this line"),
-    Key("circle", _POINT, "Or the centre of the circle on which it rolls"),
-    Key("circle_radius", Number(), "The radius of that circle"),
-    Key("inside", Flag(), "One of wheel and circle runs inside the other"),
-)
-_SEGMENT = (
-    Key("law", Text(LAWS), "How the follower moves", required=True),
-    Key("over", Number(), "The angle by which the cam turns meanwhile", required=True),
-    Key("lift", Number(), "How far the follower moves; away from the centre is positive"),
-)
-_CAM = (
-    Key("name", Text(), "Name of the cam", required=True),
-    Key("cam", _LINK, "The link that turns", required=True),
-    Key("center", _POINT, "The point about which it turns", required=True),
-    Key("slider", _SLIDING, "The slider that it moves"),
-    Key("link", _LINK, "Or the link that it swings"),
-    Key("pivot", _POINT, "With link: the point about which that swings"),
-    Key("point", _POINT, "With link: its edge, its roller's centre or the end of its face"),
-    Key("contact", Text(("knife", "roller", "flat")), "Kind of the follower; knife if left out"),
-    Key("radius", Number(), "Radius of the roller"),
-    Key("base", Number(), "Radius of the base circle, with segments"),
-    Key("start", Number(), "Angle of the cam at which the segments begin; 0 if left out"),
-    Key("segments", Tables(_SEGMENT), "What the follower does in one turn of the cam"),
-    Key("profile", _COORDINATES, "Or the outline, in the cam's frame about its centre"),
-)
-_CURVE = (
-    Key("name", Text(), "Name of the place on the curve", required=True),
-    Key("point", _POINT, "The point that runs along it, of another link", required=True),
-    Key("on", _LINK, "The link that carries the curve", required=True),
-    Key("origin", _POINT, "The point of that link about which coordinates are given", True),
-    Key("through", _COORDINATES, "Points of the curve in that link's own frame", required=True),
-    Key("closed", Flag(), "Whether the curve leads back to its first point"),
-)
-
 LINKAGE = Form(
     "points-and-links",
-    "A mechanism by its points and the links that carry them",
+    "A mechanism given by points and links",
     "",
     (
         *_HEAD,
@@ -329,13 +122,13 @@ LINKAGE = Form(
         Key(
             "points",
             Named(ListOf(Number(), "coordinate", 2, 2)),
-            "One assembled position: A = [35, 20]; exact for ground, elsewhere a sketch will do",
+            "One assembled position: A = [35, 20]; exact for ground, elsewhere a sketch is enough",
             required=True,
         ),
         Key(
             "links",
             Named(ListOf(Text(), "point", 1)),
-            'The points each link carries: crank = ["O2", "A"]; "ground" stands still',
+            'The points each link carries: crank = ["O2", "A"]; "ground" is fixed',
             required=True,
         ),
         Key("lengths", Named(Number(), 2), 'Exact distances in one link: "O2 A" = 40'),
@@ -344,25 +137,15 @@ LINKAGE = Form(
             Named(Number(), 3),
             'Exact angles in one link: "B A P" = 30, at A from AB to AP, counter-clockwise',
         ),
-        Key("slots", Tables(_SLOT), "Pin in slot: a point runs along a line of another link"),
-        Key("sliders", Tables(_SLIDER), "A link slides along a line of another without turning"),
-        Key("cylinders", Tables(_CYLINDER), "A link of variable length between two points"),
-        Key("welds", Tables(_WELD), "Two links that share a point and turn together"),
-        Key("gears", Tables(_GEAR), "Two wheels in mesh, external or internal, on a common arm"),
-        Key("belts", Tables(_BELT), "A belt or chain around two wheels, open or crossed"),
-        Key("racks", Tables(_RACK), "A rack that slides and the pinion that drives it"),
-        Key("rolling", Tables(_ROLLING), "A wheel that rolls without slipping"),
-        Key("cams", Tables(_CAM), "A cam and its follower"),
-        Key("curves", Tables(_CURVE), "A point runs along a curve of another link"),
-        Key("springs", Tables(_SPRING), "A spring between two points: drawn, and no constraint"),
-        Key("input", Tables(_DRIVES, single=True), "What is driven, and over which values"),
+        *(Key(name, Tables(kind.keys), kind.doc) for name, kind in PARTS.items()),
+        Key("input", Tables(_DRIVES, single=True), "The driven quantity and its range"),
         _TRACE,
         _OUTPUTS,
     ),
 )
 LOOPS = Form(
     "loops",
-    "A mechanism by its vector loop-closure equations",
+    "A mechanism given by vector loop-closure equations",
     "loops",
     (
         *_HEAD,
@@ -377,18 +160,18 @@ LOOPS = Form(
         Key(
             "input",
             Tables(_VARIABLE, single=True),
-            'What is driven: variable = "theta2"',
+            'The driven variable: variable = "theta2"',
             required=True,
         ),
         Key(
             "points",
             Named(Formula()),
-            'Points as formulas, A = "a2*e^(i*theta2)"; they make it drawable',
+            'Points as formulas, A = "a2*e^(i*theta2)", for drawings',
         ),
         Key(
             "links",
             Named(ListOf(Text(), "point", 1)),
-            'Points drawn as one link: crank = ["A0", "A"]; "ground" stands still',
+            'Points drawn as one link: crank = ["A0", "A"]; "ground" is fixed',
         ),
         _TRACE,
         _OUTPUTS,
@@ -408,7 +191,7 @@ EQUATIONS = Form(
             required=True,
         ),
         _GUESS,
-        Key("input", Tables(_VARIABLE, single=True), 'What is driven: variable = "x"'),
+        Key("input", Tables(_VARIABLE, single=True), 'The driven variable: variable = "x"'),
         _OUTPUTS,
     ),
 )

@@ -12,17 +12,44 @@ _FOLDER = Path(__file__).parents[1] / "library"
 
 
 def examples() -> tuple[str, ...]:
-    """The names of the mechanisms that come with Linkwork."""
+    """The names of all mechanisms of the library, in alphabetical order.
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> "rapier-drive" in lw.examples()
+    True
+    """
     return tuple(path.stem for path in sorted(_FOLDER.glob("*.toml")))
 
 
 def example_text(name: str) -> str:
-    """The file of a library mechanism.
+    """The text of a mechanism file of the library.
+
+    Parameters
+    ----------
+    name : str
+        One of :func:`examples`.
+
+    Returns
+    -------
+    str
+        TOML, as ``linkwork examples NAME`` prints it.
 
     Raises
     ------
     UnknownNameError
-        With the names that exist.
+        If the library has no such mechanism.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> print(lw.example_text("four-bar").splitlines()[1])
+    name   = "Four-bar linkage, open"
     """
     known = examples()
     if name not in known:

@@ -1,4 +1,4 @@
-"""Where every key of a TOML text stands: from key path to line number."""
+"""The line number of every key of a TOML text."""
 
 from __future__ import annotations
 

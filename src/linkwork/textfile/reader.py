@@ -1,17 +1,17 @@
-"""Reading mechanism files: TOML in, a description out, or every problem with its line."""
+"""Read mechanism files: a description, or every problem with its line."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from linkwork.foundation.errors import MechanismError, MechanismFileError, Problem
-from linkwork.mechanism.contacts import Belt, Cam, Curve, Gear, Rack, Rolling, Segment, Weld
+from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.parts import Cylinder, Input, Slider, Slot, Spring
+from linkwork.mechanism.part.index import PARTS
 from linkwork.textfile.keys import EQUATIONS, FORMAT, LOOPS, Form, form_of
 from linkwork.textfile.lines import Lines
 from linkwork.textfile.structure import Structure
@@ -139,31 +139,12 @@ def _description(content: dict[str, Any], form: Form) -> Linkage | Loops | Plain
     if form is EQUATIONS:
         return PlainEquations(**fields, equations=content["equations"], guess=content["guess"])
     fields |= {key: content.get(key, {}) for key in ("points", "links", "lengths", "angles")}
-    for kind, part in _PARTS.items():
-        fields[kind] = tuple(part(**table) for table in content.get(kind, ()))
+    for name, kind in PARTS.items():
+        fields[name] = tuple(map(kind.of_table, content.get(name, ())))
     return Linkage(
         **fields,
         sketch=content.get("sketch", False),
     )
-
-
-def _cam(*, segments: tuple[dict[str, Any], ...] = (), **fields: Any) -> Cam:
-    return Cam(**fields, segments=tuple(Segment(**table) for table in segments))
-
-
-_PARTS: dict[str, Callable[..., Any]] = {
-    "slots": Slot,
-    "sliders": Slider,
-    "cylinders": Cylinder,
-    "welds": Weld,
-    "gears": Gear,
-    "belts": Belt,
-    "racks": Rack,
-    "rolling": Rolling,
-    "cams": _cam,
-    "curves": Curve,
-    "springs": Spring,
-}
 
 
 def _input(table: dict[str, Any]) -> Input:

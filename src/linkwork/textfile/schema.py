@@ -1,4 +1,4 @@
-"""The JSON Schema of mechanism files, for editors that complete and check while one types."""
+"""The JSON Schema of mechanism files, with which editors complete and check."""
 
 from __future__ import annotations
 
@@ -6,11 +6,9 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from linkwork.textfile.keys import (
-    FORMS,
+from linkwork.foundation.file_keys import (
     Constant,
     Flag,
-    Form,
     Formula,
     Key,
     Kind,
@@ -25,6 +23,7 @@ from linkwork.textfile.keys import (
     Text,
     Whole,
 )
+from linkwork.textfile.keys import FORMS, Form
 
 __all__ = ["json_schema", "schema_of", "schema_text"]
 
@@ -54,7 +53,7 @@ def json_schema() -> dict[str, Any]:
     return {
         "$schema": _DRAFT,
         "title": "Linkwork mechanism file",
-        "description": "A planar mechanism: by points and links, by loop equations, or by "
+        "description": "A planar mechanism given by points and links, by loop equations, or by "
         "plain equations",
         "oneOf": [{"$ref": f"#/$defs/{name}"} for name in definitions],
         "$defs": {**definitions, **_SHARED},

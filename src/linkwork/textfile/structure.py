@@ -1,4 +1,4 @@
-"""Whether TOML data has the tables, keys and types of :mod:`~linkwork.textfile.keys`."""
+"""Check that TOML data has the tables, keys and types of :mod:`~linkwork.textfile.keys`."""
 
 from __future__ import annotations
 
@@ -8,12 +8,9 @@ from difflib import get_close_matches
 from typing import Any
 
 from linkwork.foundation.errors import Problem, choices
-from linkwork.foundation.names import canonical
-from linkwork.textfile.keys import (
-    FORMS,
+from linkwork.foundation.file_keys import (
     Constant,
     Flag,
-    Form,
     Formula,
     Key,
     Kind,
@@ -28,6 +25,8 @@ from linkwork.textfile.keys import (
     Text,
     Whole,
 )
+from linkwork.foundation.names import canonical
+from linkwork.textfile.keys import FORMS, Form
 from linkwork.textfile.lines import Path
 
 __all__ = ["Structure"]
@@ -75,7 +74,7 @@ class Structure:
         free = [key for key in known if key not in present]
         if others and not path:
             titles = " and ".join(f"{form.title} files" for form in others)
-            message = f"belongs to {titles}, this is a {self.form.title} file{_why(self.form)}"
+            message = f"belongs to {titles}, but this is a {self.form.title} file{_why(self.form)}"
         elif others:
             titles = " and ".join(f"{form.title} files" for form in others)
             message = f"belongs to {titles} {choices(f'keys of {table} here', known, name)}"
@@ -103,7 +102,9 @@ class Structure:
             case PlainNumber():
                 self._check_number(entry, "a number", path, text=False)
             case Whole(least, most) if type(entry) is not int or not least <= entry <= most:
-                self._wrong(path, f"must be a whole number from {least} on, got {_shown(entry)}")
+                self._wrong(
+                    path, f"must be a whole number of at least {least}, got {_shown(entry)}"
+                )
             case Speed():
                 self._check_number(entry, 'a number or text such as "300 rpm"', path)
             case Text(words) if words and entry not in words:

@@ -1,4 +1,4 @@
-"""Changing a mechanism file's text in place: comments, order and spelling stay as they are."""
+"""Edit the text of a mechanism file in place, with its comments, order and spelling."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class TextEdits:
             assert nearest is not None
             holder = nearest[0][nearest[1]]
         if not path or not isinstance(path[-1], str):
-            raise InputError(f"{key_text(path)} is not in the file: nothing can be put there")
+            raise InputError(f"{key_text(path)} is not in the file: no value can be written there")
         holder.add(path[-1], entry)
 
     def append(self, table: str, fields: Mapping[str, Any]) -> None:
@@ -104,7 +104,7 @@ class TextEdits:
                     new.trivia.indent = "\n"
                 rows.append(new)
                 return
-            raise InputError(f"[{table}] is written as one table: make it [[{table}]] to add more")
+            raise InputError(f"[{table}] is a single table: write it as [[{table}]] to add more")
         rows = tomlkit.aot()
         rows.append(new)
         _end_with_blank_line(self._document)
@@ -145,7 +145,7 @@ class TextEdits:
         import tomlkit
 
         if holder is not self._document or not isinstance(name, str):
-            raise InputError(f"{key_text(path)} is not in the file: nothing can be put there")
+            raise InputError(f"{key_text(path)} is not in the file: no value can be written there")
         _end_with_blank_line(self._document)
         self._document.append(name, tomlkit.table())
 

@@ -1,4 +1,4 @@
-"""From the bytes of a file to TOML data: hostile or broken ones are refused with a reason."""
+"""Parse the bytes of a TOML file; reject broken or hostile files with a reason."""
 
 from __future__ import annotations
 
@@ -125,7 +125,9 @@ def _check_limits(tokens: Tokens, name: str) -> None:
         elif token.kind in ("word", "string"):
             parts = parts + 1 if dotted else 1
             if token.kind == "word" and len(token.text) > _LONGEST_WORD:
-                what = f"a word of {len(token.text)} characters: at most {_LONGEST_WORD} are read"
+                what = (
+                    f"a word of {len(token.text)} characters: at most {_LONGEST_WORD} are allowed"
+                )
                 _refuse(name, what, tokens.line(token.at))
         if depth > _DEEPEST:
             _refuse(name, f"brackets nested deeper than {_DEEPEST} levels", tokens.line(token.at))
@@ -142,7 +144,7 @@ def _explained(message: str, text: str) -> tuple[str, int]:
     what = _PLACE.sub("", message)
     what = what[:1].lower() + what[1:]
     if twice := _TWICE.fullmatch(what):
-        what = f"the table [{twice[1].replace(_SEPARATOR, '.')}] begins twice"
+        what = f"the table [{twice[1].replace(_SEPARATOR, '.')}] occurs twice"
     if place is None or place[1] is None:
         line = max((k for k, row in enumerate(rows, 1) if row.strip()), default=1)
         return f"is not TOML: {what} (at the end){_hint(what, rows[line - 1], None)}", line
@@ -162,16 +164,16 @@ def _hint(what: str, row: str, column: int | None) -> str:
     if column is None or column > len(row):
         return ""
     if what == "invalid value":
-        return ": text, names and formulas stand in quotes"
+        return ": write text, names and formulas in quotes"
     if row[column - 1] == "," and re.search(r"=\s*[-+]?\d+,\d+\s*(#.*)?$", row):
-        return ": decimals have a point"
+        return ": write decimals with a point"
     if row[column - 1] == "°":
-        return ': numbers stand without unit; angle = "deg" says what they mean'
+        return ': write numbers without a unit; angle = "deg" sets the unit'
     word = next((w.group() for w in _NOT_QUOTED.finditer(row) if w.end() >= column), "")
     if "=" in row[: column - 1] and "{" not in row:
-        return ": text, names and formulas stand in quotes"
+        return ": write text, names and formulas in quotes"
     if row[column - 1].isascii() or not word:
         return ""
     spelled = canonical(word)
     other = f", or write {spelled}" if spelled.isascii() and spelled.isidentifier() else ""
-    return f': TOML wants quotes around names that are not ASCII: "{word}"{other}'
+    return f': TOML needs quotes around names that are not ASCII: "{word}"{other}'

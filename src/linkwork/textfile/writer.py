@@ -1,19 +1,20 @@
-"""Writing mechanism files: what is written reads back as the same description."""
+"""Write mechanism files that read back as the same description."""
 
 from __future__ import annotations
 
 import os
 import secrets
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import PART_KINDS, Linkage
+from linkwork.mechanism.driven_input import Input
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.parts import Input
+from linkwork.mechanism.part.index import PARTS
 from linkwork.textfile.keys import FORMAT
 
 if TYPE_CHECKING:
@@ -100,7 +101,7 @@ def _tables(description: Description) -> _Tables:
         case Linkage():
             for name in ("points", "links", "lengths", "angles"):
                 found[name] = dict(getattr(description, name))
-            for name in PART_KINDS:
+            for name in PARTS:
                 found[name] = [_given(part) for part in getattr(description, name)]
             found |= _inputs(description)
         case Loops():
@@ -135,10 +136,15 @@ def _given(part: Any) -> dict[str, Any]:
     """What a part says, without fields that are left open or as they are anyway."""
     usual = {field.name: field.default for field in fields(part)}
     return {
-        key: [_given(each) for each in entry] if key == "segments" else entry
+        key: _rows(entry) if isinstance(entry, tuple) else entry
         for key, entry in vars(part).items()
         if entry is not None and entry != usual[key]
     }
+
+
+def _rows(entry: tuple[Any, ...]) -> tuple[Any, ...]:
+    """A list with its tables as the part has them."""
+    return tuple(_given(each) if is_dataclass(each) else each for each in entry)
 
 
 def _add(document: TOMLDocument, name: str, table: dict[str, Any] | list[dict[str, Any]]) -> None:

@@ -1,4 +1,4 @@
-"""Mechanisms in a browser: offline pages and films, the data of the front end, the live page."""
+"""Mechanisms in a browser: offline pages, films, widgets and the live page."""
 
 from __future__ import annotations
 
@@ -8,43 +8,28 @@ from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
     from linkwork.viewer.animation import (
-        ANIMATION_FORMATS,
-        FilmOptions,
-        animation,
-        check_animation,
+        ANIMATION_FORMATS as ANIMATION_FORMATS,
+        FilmOptions as FilmOptions,
+        animate_motion as animate_motion,
+        animation as animation,
+        check_animation as check_animation,
     )
-    from linkwork.viewer.notebook_html import mechanism_html
-    from linkwork.viewer.offline_page import offline_page
-    from linkwork.viewer.page_building import drawn_page, motion_page
-    from linkwork.viewer.page_data import PageData
-    from linkwork.viewer.widget import motions_widget
+    from linkwork.viewer.notebook_html import (
+        circuits_html as circuits_html,
+        configurations_html as configurations_html,
+        mechanism_html as mechanism_html,
+        motion_html as motion_html,
+        position_html as position_html,
+    )
+    from linkwork.viewer.offline_page import offline_page as offline_page
+    from linkwork.viewer.page_building import (
+        drawn_page as drawn_page,
+        motion_page as motion_page,
+    )
+    from linkwork.viewer.page_data import PageData as PageData
+    from linkwork.viewer.widget import (
+        motion_widget as motion_widget,
+        motions_widget as motions_widget,
+    )
 else:
-    __getattr__ = loader(
-        __name__,
-        {
-            "animation": (
-                "ANIMATION_FORMATS",
-                "FilmOptions",
-                "animation",
-                "check_animation",
-            ),
-            "notebook_html": ("mechanism_html",),
-            "offline_page": ("offline_page",),
-            "page_building": ("drawn_page", "motion_page"),
-            "page_data": ("PageData",),
-            "widget": ("motions_widget",),
-        },
-    )
-
-__all__ = [
-    "ANIMATION_FORMATS",
-    "FilmOptions",
-    "PageData",
-    "animation",
-    "check_animation",
-    "drawn_page",
-    "mechanism_html",
-    "motion_page",
-    "motions_widget",
-    "offline_page",
-]
+    __getattr__ = loader(__name__)

@@ -1,4 +1,4 @@
-"""A motion as a file that moves: a page, or a film."""
+"""Animations: a motion as an HTML page or as a film."""
 
 from __future__ import annotations
 
@@ -32,20 +32,19 @@ __all__ = [
 #: Formats by suffix.
 ANIMATION_FORMATS = ("html", *FILM_FORMATS)
 
-_LASTING = 4.8  # seconds that a film takes unless its rows are given
+_LASTING = 4.8  # seconds of a film whose rows are not given
 
 
 @dataclass(frozen=True, kw_only=True)
 class FilmOptions:
-    """How a film is made.
+    """Options of a film.
 
     Parameters
     ----------
     fps : float
-        Pictures a second.
+        Frames per second.
     rows : int, optional
-        How many positions of the cycle are shown; as many as make a film of about five seconds
-        unless given.
+        Number of positions in the film; by default enough for about five seconds.
     dpi : float
         Pixels per inch; the longer side of the drawing is six inches.
     theme : Theme
@@ -58,14 +57,14 @@ class FilmOptions:
 
 
 def check_animation(path: str | Path, options: FilmOptions | None = None) -> str:
-    """The format of a file by its name, if it can be written here.
+    """The format of a file by its suffix, if this installation can write it.
 
     Raises
     ------
     InputError
-        If the suffix names no known format, or a number makes no sense.
+        If the suffix is not of a known format, or an option is out of range.
     MissingPackageError
-        If what writes it is missing.
+        If the package that writes the format is not installed.
     """
     chosen = options or FilmOptions()
     kind = Path(path).suffix.lower().removeprefix(".")
@@ -74,7 +73,7 @@ def check_animation(path: str | Path, options: FilmOptions | None = None) -> str
         raise InputError(f'cannot animate "{path}": its suffix must be one of {known}')
     if not 0 < chosen.fps <= 240:
         raise InputError(
-            f"a film has more than 0 and at most 240 pictures a second: {chosen.fps:g}"
+            f"a film needs more than 0 and at most 240 frames per second, got {chosen.fps:g}"
         )
     if chosen.rows is not None and chosen.rows < 2:
         raise InputError(f"a film needs at least 2 rows, not {chosen.rows}")
@@ -98,7 +97,7 @@ def animation(
     Parameters
     ----------
     motions : Mapping[str, Motion]
-        By the name of the circuit; a film shows the first of which a position was found.
+        By the name of the circuit; a film shows the first motion with a position.
     kind : str
         One of :data:`ANIMATION_FORMATS`.
     options : FilmOptions, optional
@@ -108,14 +107,14 @@ def animation(
     loops : callable, optional
         See :func:`~linkwork.viewer.page_building.motion_page`.
     forces : sequence of Force
-        Shown as arrows, for a page.
+        Drawn as arrows, for a page.
     progress : callable, optional
-        Told the share of a film that is done, 0 to 1.
+        Called with the finished fraction of a film, 0 to 1.
 
     Raises
     ------
     InputError, MissingPackageError
-        If there is nothing to draw, or the format cannot be written here.
+        If there is nothing to draw, or this installation cannot write the format.
     """
     if kind == "html":
         page = motion_page(motions, equations=equations, loops=loops, forces=forces)
@@ -166,7 +165,7 @@ def _film(
 
 
 def _film_rows(motion: Motion, options: FilmOptions) -> list[int]:
-    """The rows in the order in which they are shown: around, or to and fro."""
+    """The rows in playing order: around a closed circuit, or back and forth."""
     order, closed = play_order(motion)
     wanted = options.rows or max(2, round(_LASTING * options.fps))
     if closed:

@@ -1,4 +1,4 @@
-"""Pictures in a row as one file: GIF, animated PNG and WebP by Pillow, MP4 by ffmpeg."""
+"""Film files: GIF, animated PNG and WebP written by Pillow, MP4 by ffmpeg."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ _FASTEST_GIF = 50  # pictures a second: GIF counts hundredths, and viewers slow 
 
 
 def check_film(kind: str, fps: float) -> None:
-    """Refuse a format that cannot be written here, before anything is drawn.
+    """Reject a format that this installation cannot write, before any drawing.
 
     Raises
     ------
     InputError
-        If there is no such format, or pictures follow each other too fast for it.
+        If the format is unknown, or too slow for this number of frames per second.
     MissingPackageError
         If Pillow, or for MP4 ffmpeg, is missing.
     """
@@ -43,12 +43,12 @@ def check_film(kind: str, fps: float) -> None:
         _ffmpeg()
         return
     if kind == "gif" and fps > _FASTEST_GIF:
-        raise InputError(f"a GIF shows at most {_FASTEST_GIF} pictures a second, not {fps:g}")
+        raise InputError(f"a GIF plays at most {_FASTEST_GIF} frames per second, not {fps:g}")
     _pillow()
 
 
 def film_bytes(pictures: Iterable[AnyArray], kind: str, fps: float) -> bytes:
-    """The content of a film file that repeats for ever (an MP4 plays once).
+    """The content of a film file; it repeats endlessly, except that an MP4 plays once.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def film_bytes(pictures: Iterable[AnyArray], kind: str, fps: float) -> bytes:
     kind : str
         One of :data:`FILM_FORMATS`.
     fps : float
-        Pictures a second.
+        Frames per second.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def film_bytes(pictures: Iterable[AnyArray], kind: str, fps: float) -> bytes:
         return _film_of_ffmpeg(pictures, fps)
     first, *others = _images(pictures, kind)
     buffer = io.BytesIO()
-    # Milliseconds of every picture, rounded so that the whole takes as long as asked.
+    # Milliseconds of every frame, rounded so that the total duration is exact.
     own = {
         "gif": {"format": "GIF", "optimize": False, "disposal": 1},
         "apng": {"format": "PNG"},
@@ -91,7 +91,7 @@ def _images(pictures: Iterable[AnyArray], kind: str) -> Iterator[Image]:
     for pixels in pictures:
         one = image.fromarray(pixels)
         if kind == "gif":
-            # One palette for all: colours must not flicker.
+            # One palette for all frames, otherwise colours flicker.
             if palette is None:
                 palette = one.quantize(colors=_COLOURS, method=image.Quantize.MEDIANCUT)
             one = one.quantize(palette=palette, dither=image.Dither.NONE)
@@ -120,7 +120,7 @@ def _film_of_ffmpeg(pictures: Iterable[AnyArray], fps: float) -> bytes:
                     program.stdin.write(frame.tobytes())
                 program.stdin.close()
             except BrokenPipeError:
-                pass  # ffmpeg ended before its time: it says why
+                pass  # ffmpeg ended early: its error output has the reason
             code = program.wait()
             said.seek(0)
             story = said.read().decode(errors="replace").strip()

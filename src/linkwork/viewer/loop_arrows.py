@@ -1,4 +1,4 @@
-"""The vectors of the loop equations over a motion, as the front end draws them."""
+"""The vectors of the loop equations over a motion, in the form that the front end draws."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from linkwork.viewer.page_data import PackedColumn, VectorData
 
 __all__ = ["loop_arrows"]
 
-_SAME = 1e-6  # of the longest vector: places as near as this are one
+_SAME = 1e-6  # relative to the longest vector: points closer than this coincide
 
 
 def loop_arrows(loops: Sequence[MovingLoop], motion: Motion, pack: Pack) -> Iterator[VectorData]:

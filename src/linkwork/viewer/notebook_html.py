@@ -1,7 +1,7 @@
 """Results as HTML for notebooks: a picture and a short table, no script, light and dark.
 
-Nothing is solved here. What cannot be drawn (a mechanism without points, a position that was not
-found) has its table only.
+This module solves nothing. A result that cannot be drawn (a mechanism without points, a position
+that was not found) is shown as a table only.
 """
 
 from __future__ import annotations
@@ -24,17 +24,11 @@ from linkwork.drawing.scene import Scene
 from linkwork.drawing.scene_options import SceneOptions
 from linkwork.drawing.sheet import configuration_sheet
 from linkwork.drawing.theme import DARK, LIGHT
-from linkwork.results.circuits import Circuits
-from linkwork.results.configurations import Configurations
+from linkwork.results.circuits import Circuits, circuits_summary
+from linkwork.results.configurations import Configurations, configurations_summary
 from linkwork.results.motion import Motion
-from linkwork.results.position import Position
-from linkwork.results.summary import (
-    Summary,
-    circuits_summary,
-    configurations_summary,
-    motion_summary,
-    position_summary,
-)
+from linkwork.results.position import Position, position_summary
+from linkwork.results.summary import Summary, motion_summary
 
 __all__ = [
     "circuits_html",
@@ -72,7 +66,7 @@ text-align:left!important;vertical-align:top;max-width:44em;white-space:pre-wrap
 
 
 def position_html(position: Position) -> str:
-    """A position: where everything is, the unknowns, the proof."""
+    """A position: picture, unknowns, certificate."""
     return _position(position_summary(position), position)
 
 
@@ -82,9 +76,9 @@ def mechanism_html(what: str, start: Position, equations: Sequence[tuple[str, st
     Parameters
     ----------
     what : str
-        Its name, and what is said about it.
+        Its name and a short description.
     start : Position
-        If it was not found, the table tells why.
+        If it was not found, the table gives the reason.
     equations : sequence of (str, str)
         Labels and MathML of the loop equations.
     """
@@ -95,7 +89,7 @@ def mechanism_html(what: str, start: Position, equations: Sequence[tuple[str, st
 
 
 def motion_html(motion: Motion) -> str:
-    """A motion: its first position and others faintly, ranges, limits, the proof."""
+    """A motion: its first position, faint further positions, ranges, limits, certificates."""
     inks, pictures = Inks(), []
     if motion.points and motion.found.any():
         scene, view = _motion_picture(motion, reach_of(motion))
@@ -165,7 +159,7 @@ def _element(
     inks: Inks,
     equations: Sequence[tuple[str, str]] = (),
 ) -> str:
-    """The whole: what it is, pictures, table. It is XML too, so that it can stand anywhere."""
+    """The complete block: heading, pictures, table; valid XML, so that any page can contain it."""
     layout = _LAYOUT
     for word, light, dark in (
         ("COLOUR-FAINT", LIGHT.faint, DARK.faint),

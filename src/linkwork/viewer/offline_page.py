@@ -1,4 +1,4 @@
-"""One HTML file that shows a motion without a network, without Linkwork, and without a server."""
+"""An HTML file that shows a motion without a network, a server or Linkwork."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ _POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inl
 def offline_page(page: PageData) -> str:
     """The HTML file.
 
-    Its data stand in it as JSON, deflated where that is shorter; scripts and styles are those of
-    ``static/``, which ``scripts/frontend build`` writes. It loads nothing from anywhere.
+    It contains its data as JSON, deflated if that is shorter, and the scripts and styles of
+    ``static/``, which ``scripts/frontend build`` writes. It loads no other file.
     """
     static = resources.files("linkwork.viewer") / "static"
     script = (static / "offline.js").read_text(encoding="utf-8")

@@ -16,7 +16,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray, CountArray
 from linkwork.viewer.page_data import PackedColumn
 
-__all__ = ["Pack", "packed", "shortened", "unpacked", "unpressed"]
+__all__ = ["Pack", "packed", "shortened", "unpressed"]
 
 #: The ``order`` of a column that holds plain floats, of eight bytes or of four.
 PLAIN, SHORT = -1, -2
@@ -84,19 +84,6 @@ def shortened(
     return _plain(values, found, SHORT)
 
 
-def unpacked(column: PackedColumn, found: BoolArray) -> Array:
-    """The column (N,), NaN where there is no position."""
-    content = base64.b64decode(column.content)
-    kind = _FLOATS.get(column.order)
-    whole = _whole(content) if kind is None else np.frombuffer(content, dtype=kind)
-    for _ in range(column.order):
-        whole = np.cumsum(whole)
-    values, numbers = np.full(len(found), np.nan), whole * column.step
-    numbers[list(column.gaps)] = np.nan
-    values[found] = numbers
-    return values
-
-
 def _clipped(kept: Array) -> tuple[Array, float]:
     """Derivatives without the excess beside dead points, and what they are rounded to."""
     size = np.abs(kept)
@@ -147,14 +134,3 @@ def _bytes(whole: CountArray) -> bytes:
     table[place < last[:, None]] |= 0x80
     content: bytes = table[place <= last[:, None]].tobytes()
     return content
-
-
-def _whole(content: bytes) -> CountArray:
-    numbers, number, shift = [], 0, 0
-    for byte in content:
-        number |= (byte & 0x7F) << shift
-        shift += 7
-        if byte < 0x80:
-            numbers.append((number >> 1) ^ -(number & 1))
-            number, shift = 0, 0
-    return np.array(numbers, dtype=np.int64)

@@ -1,4 +1,4 @@
-"""From motions to the data of a page. Nothing is solved here."""
+"""Build the data of a page from motions; this module solves nothing."""
 
 from __future__ import annotations
 
@@ -64,8 +64,8 @@ def motion_page(
     Parameters
     ----------
     motions : Mapping[str, Motion]
-        By the name of the circuit or configuration; the first is shown first. Those of which no
-        position was found are left out.
+        By the name of the circuit or configuration, in the order of the page. Motions without any
+        position are left out.
     equations : sequence of (str, str)
         Labels and MathML of the loop equations.
     loops : callable, optional
@@ -82,7 +82,7 @@ def motion_page(
     InputError
         If there is nothing to draw, or forces have different units.
     UnknownNameError
-        If there is no point that a force is at.
+        If a force is at a point that does not exist.
     """
     shown = {name: motion for name, motion in motions.items() if motion.found.any()}
     if not shown:
@@ -121,7 +121,6 @@ def drawn_page(
         title=first.mechanism,
         length_unit=first.units.length,
         derivative_unit=first.derivative_unit,
-        input_name=printed_name(lead),
         input_unit=first.input_units[lead],
         view=(view.left, view.bottom, view.right, view.top),
         stroke=measures.stroke,
@@ -171,7 +170,7 @@ def _motion(
 
 
 def _summary(motion: Motion) -> str:
-    """How much of it was found and proved, in a line."""
+    """``361 positions found, each proved``."""
     found, proved = int(motion.found.sum()), int(motion.certified.sum())
     text = f"{found} of {len(motion)} positions found"
     if proved == found:

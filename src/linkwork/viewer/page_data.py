@@ -1,4 +1,4 @@
-"""What the front end is given: plain data, from which its TypeScript types are generated.
+"""The data for the front end: plain dataclasses from which its TypeScript types are generated.
 
 Every class here becomes an interface of ``frontend/src/page_data.ts`` (``scripts/frontend types``).
 Angles of frames are radians; every other number is in the unit that its column names.
@@ -228,7 +228,6 @@ class PageData:
     title: str
     length_unit: str
     derivative_unit: str
-    input_name: str
     input_unit: str
     view: tuple[float, ...]
     stroke: float

@@ -1,6 +1,6 @@
-"""A motion as a widget of Jupyter and its kin: the front end of pages, in step with Python.
+"""A motion as a notebook widget: the front end of pages, synchronised with Python.
 
-anywidget is needed only here, and only when a widget is made.
+Only this module needs anywidget, and only when it makes a widget.
 """
 
 from __future__ import annotations
@@ -34,25 +34,25 @@ def motions_widget(
     loops: Loops | None = None,
     forces: Sequence[Force] = (),
 ) -> Any:
-    """Motions of one mechanism, to choose from, to play and to drag.
+    """A widget that plays motions of one mechanism; its user selects, plays and drags them.
 
     Parameters
     ----------
     motions : Mapping[str, Motion]
-        By the name of the circuit or configuration; the first is shown first. Those of which no
-        position was found are left out.
+        By the name of the circuit or configuration, in the order of the widget. Motions without
+        any position are left out.
     equations : sequence of (str, str)
         Labels and MathML of the loop equations.
     loops : callable, optional
         See :func:`~linkwork.viewer.page_building.motion_page`.
     forces : sequence of Force
-        Shown as arrows.
+        Drawn as arrows.
 
     Returns
     -------
     anywidget.AnyWidget
-        ``configuration`` (a name) and ``row`` (a number of a row of that motion, from 0) are what
-        is shown: both follow what the person does, and can be set.
+        Its traits ``configuration`` (a name) and ``row`` (the number of a row of that motion, from
+        0) follow the actions of the user and can be set.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def motions_widget(
 
 @lru_cache
 def _widget_class() -> Any:
-    """The class of the widget; made once, when anywidget is first needed."""
+    """The class of the widget, created at its first use, when anywidget is imported."""
     try:
         import anywidget
         import traitlets
@@ -80,9 +80,9 @@ def _widget_class() -> Any:
         ) from None
     script = resources.files("linkwork.viewer") / "static" / "widget.js"
 
-    # Types end here: anywidget and traitlets are not there wherever this is checked.
+    # No types from here on: the type checker may run without anywidget and traitlets.
     class MotionWidget(anywidget.AnyWidget):  # type: ignore[misc]
-        """What is shown of which motions; refuses what they do not have."""
+        """The displayed row and motion; rejects rows and names that do not exist."""
 
         _esm = script.read_text(encoding="utf-8")
         page = traitlets.Dict().tag(sync=True)
@@ -117,7 +117,7 @@ def _widget_class() -> Any:
 
         @traitlets.observe("configuration")  # type: ignore[untyped-decorator]
         def _moved(self, change: Any) -> None:
-            """The same row if it was found there too, else the nearest that was."""
+            """The same row if it has a position there too, else the nearest row with a position."""
             there = self._rows[change["new"]]
             if self.row not in there:
                 self.row = min(there, key=lambda row: (abs(row - self.row), row))

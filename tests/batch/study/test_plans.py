@@ -49,7 +49,7 @@ x = 40
         """\
 8 problems in plan.toml
   line 3   sampling              must be "grid" or "random" or "latin-hypercube" or "table", got "latin"
-  line 4   count                 must be a whole number from 1 on, got 0
+  line 4   count                 must be a whole number of at least 1, got 0
   line 5   keeep                 is not a key of the file (keys: keep, format, name, mechanism, sampling, count, seed, table, … 8 more)
   line 7   dimensions."O2 A"     must be a number, a list of numbers, or a table such as { from = 36, to = 44 }, got "three"
   line 8   dimensions."A B".too  is not a key of [dimensions.A B] (keys: to, from, levels, likeliest, mean, deviation)
@@ -82,7 +82,7 @@ z = "certified"
   line 1   count              is missing: sampling = "latin-hypercube" needs it
   line 1   seed               is missing: sampling = "latin-hypercube" needs it
   line 4   table              has no effect: random designs are drawn; leave it out
-  line 7   dimensions."O2 A"  sampling = "latin-hypercube" wants a range: { from = 36, to = 44 }; got mean, deviation
+  line 7   dimensions."O2 A"  sampling = "latin-hypercube" needs a range: { from = 36, to = 44 }; got mean, deviation
   line 8   dimensions."A B"   from = 5 must not be larger than to = 2
   line 10  input.step         a step of -3 does not lead from 0 to 360
   line 12  reductions.a       there is no number "range" of a motion (nearest: mean, path_length, stroke; all: linkwork quantities FILE)
@@ -143,7 +143,7 @@ x = "mew <= 40"
         edited(('"O2 A"', '"O2 X"')),
         """\
 1 problem in plan.toml
-  line 10  dimensions."O2 X"  "O2 X" is no number of Four-bar linkage, open that can vary (numbers: O2 A, O2 O4, A B, O4 B, O2.x, O2.y, A.x, A.y, … 4 more)""",
+  line 10  dimensions."O2 X"  "O2 X" is not a number of Four-bar linkage, open that can vary (numbers: O2 A, O2 O4, A B, O4 B, O2.x, O2.y, A.x, A.y, … 4 more)""",
     ),
     "one number given twice": (
         edited(('"A B"', '"A O2"')),
@@ -155,14 +155,14 @@ x = "mew <= 40"
         HEAD + 'sampling = "grid"\n[dimensions]\n"O2 A" = 40\n',
         """\
 1 problem in plan.toml
-  line 4  dimensions  needs something that varies: values: [40, 50, 60] or { from = 40, to = 60, levels = 3 }""",
+  line 4  dimensions  varies nothing: values: [40, 50, 60] or { from = 40, to = 60, levels = 3 }""",
     ),
     "a grid with a count": (
         HEAD + 'sampling = "grid"\ncount = 3\n[dimensions]\n"O2 A" = { from = 1, to = 2 }\n',
         """\
 2 problems in plan.toml
   line 4  count              has no effect: a grid is every combination of its values; leave it out
-  line 6  dimensions."O2 A"  sampling = "grid" wants values: [40, 50, 60] or { from = 40, to = 60, levels = 3 }; got from, to""",
+  line 6  dimensions."O2 A"  sampling = "grid" needs values: [40, 50, 60] or { from = 40, to = 60, levels = 3 }; got from, to""",
     ),
     "a table that is not there": (
         HEAD + 'sampling = "table"\ntable = "none.csv"\n',

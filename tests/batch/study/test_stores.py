@@ -21,7 +21,7 @@ import linkwork as lw
 from linkwork.batch import Family
 from linkwork.batch.family_motion import FamilyMotion
 from linkwork.batch.study import run_study, summary_of, workers
-from linkwork.batch.study.job import Job, computed
+from linkwork.batch.study.job import Job, compute_part
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.status import Status
 from tests.batch.study.plans import PLAN, contents, edited, study
@@ -115,7 +115,7 @@ def test_chunks_may_come_in_any_order(
 ) -> None:
     def backwards(job: Job, tasks: Iterator[workers.Task]) -> Iterator[object]:
         for k, values in reversed(list(tasks)):
-            yield k, computed(job, values)
+            yield k, compute_part(job, values)
 
     monkeypatch.setattr("linkwork.batch.study.running.one_after_the_other", backwards)
     run_study(study(), tmp_path / "out.zarr", workers=1)
@@ -303,7 +303,7 @@ def test_workers_that_die_again_and_again_end_the_run(
         run_study(study(*FEW), tmp_path / "out.zarr", workers=2)
     assert str(caught.value) == (
         "worker processes ended 3 times over the same designs, perhaps for want of memory: "
-        "make chunk smaller, or ask for fewer --workers"
+        "reduce chunk or --workers"
     )
 
 
@@ -361,7 +361,7 @@ def test_another_study_is_refused_with_what_differs(whole: Path, tmp_path: Path)
         "  input.rows: 12 there, 23 here\n"
         "  reductions.swing: stroke(rocker) there, nothing here\n"
         "  filters.transmission: min(mu) >= 25 there, min(mu) >= 26 here\n"
-        "Give another name to store this one, or begin again with --fresh, which takes the old "
+        "Choose another store, or start over with --fresh, which takes the old "
         "one away."
     )
     assert contents(whole) == before
@@ -384,7 +384,7 @@ def test_fresh_begins_again_and_takes_nothing_else_away(whole: Path, tmp_path: P
         with pytest.raises(InputError) as caught:
             run_study(study(), tmp_path / "notes", fresh=fresh)
         assert str(caught.value) == (
-            f'"{tmp_path / "notes"}" is there and is no store of a study: give another name'
+            f'"{tmp_path / "notes"}" exists and is not the store of a study: choose another name'
         )
     assert (tmp_path / "notes" / "zarr.json").exists()
 

@@ -260,7 +260,7 @@ def test_a_point_is_added_from_the_palette_and_removed_again(
 def test_a_belt_is_added_and_removed_with_its_wheel(open_live: Open, served: Served) -> None:
     page = open_live()
     page.get_by_role("tab", name="Build").click()
-    page.get_by_label("Collect changes, then make them as one").check()
+    page.get_by_label("Queue changes and apply them together").check()
     link = page.locator(".lw-piece", has=page.get_by_text("Link", exact=True))
     link.locator("summary").first.click()
 
@@ -275,17 +275,17 @@ def test_a_belt_is_added_and_removed_with_its_wheel(open_live: Open, served: Ser
     joint = page.locator(".lw-piece", has=page.get_by_text("Joint", exact=True))
     joint.locator("summary").first.click()
     joint.get_by_label("link").select_option("wheel")  # it can be named already
-    page.get_by_role("button", name="Forget them").click()
-    page.get_by_label("Collect changes, then make them as one").uncheck()
+    page.get_by_role("button", name="Discard").click()
+    page.get_by_label("Queue changes and apply them together").uncheck()
     add()
     page.locator(".lw-message li").wait_for()  # a wheel that nothing turns is no mechanism
     served.path.write_text(FOUR_BAR.replace("rocker = [", 'wheel = ["O4"]\nrocker = [') + BELT)
     page.get_by_text("has been read again").wait_for()
     page.locator(".lw-group summary", has_text="Remove").click()
-    page.get_by_label("Collect changes, then make them as one").check()
+    page.get_by_label("Queue changes and apply them together").check()
     page.get_by_role("button", name="Remove belt", exact=True).click()
     page.get_by_role("button", name="Remove link wheel").click()
-    page.get_by_role("button", name="Make 2 as one").click()
+    page.get_by_role("button", name="Apply 2 changes").click()
     page.locator("[data-of=wheel]").first.wait_for(state="detached")
     assert lw.loads(served.workbench.text).description == lw.loads(FOUR_BAR).description
 
@@ -296,7 +296,7 @@ def test_a_part_is_added_from_the_palette(open_live: Open, served: Served) -> No
     page.get_by_text("has been read again").wait_for()
     page.get_by_role("tab", name="Build").click()
     page.locator(".lw-group summary", has_text="Remove").click()
-    page.get_by_label("Collect changes, then make them as one").check()
+    page.get_by_label("Queue changes and apply them together").check()
     page.get_by_role("button", name="Remove belt", exact=True).click()
     piece = page.locator(".lw-piece", has=page.get_by_text("Gear pair", exact=True))
     piece.locator("summary").first.click()
@@ -306,7 +306,7 @@ def test_a_part_is_added_from_the_palette(open_live: Open, served: Served) -> No
     piece.locator("summary", has_text="More").click()
     piece.get_by_label("radii").fill("70, 30")
     piece.get_by_role("button", name="Add gear pair").click()
-    page.get_by_role("button", name="Make 2 as one").click()
+    page.get_by_role("button", name="Apply 2 changes").click()
     page.get_by_role("button", name="Remove mesh").wait_for()
     (gear,) = described_as(Linkage, lw.loads(served.workbench.text)).gears
     assert (gear.name, gear.wheels, gear.radii) == ("mesh", ("crank", "wheel"), (70, 30))

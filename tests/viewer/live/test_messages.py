@@ -8,8 +8,7 @@ from dataclasses import fields
 from typing import Any, get_args
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.events import EVENTS, Refused
@@ -86,7 +85,7 @@ def test_changes_together_are_messages_inside_a_message() -> None:
         ),
         (
             '{"kind": "set_number", "name": "a", "value": NaN}',
-            "NaN is no number of JSON: send a finite number or null",
+            "NaN is not a number in JSON: send a finite number or null",
         ),
         (
             '{"kind": "undo", "kind": "redo"}',

@@ -10,15 +10,16 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.mechanism.linkage import PART_KINDS
-from linkwork.viewer.live.palette import PALETTE, PaletteField, Typed, part_of
+from linkwork.mechanism.part.index import PARTS
+from linkwork.viewer.live.events import PaletteField
+from linkwork.viewer.live.palette import PALETTE, Typed, part_of
 
 FIELDS = {part.table: {field.name: field for field in part.fields} for part in PALETTE}
 FILES = [file for file in (files("linkwork") / "library").iterdir() if file.name.endswith(".toml")]
-PARTS = [
+ROWS = [
     pytest.param(table, row, id=f"{file.name} {table} {k}")
     for file in sorted(FILES, key=lambda file: file.name)
-    for table in PART_KINDS
+    for table in PARTS
     for k, row in enumerate(tomllib.loads(file.read_text("utf-8")).get(table, ()))
 ]
 
@@ -44,8 +45,8 @@ def _words(field: PaletteField, row: Any) -> list[Any]:
 
 
 def test_every_kind_of_part_has_its_fields() -> None:
-    assert [part.table for part in PALETTE] == list(PART_KINDS)
-    assert {row.values[0] for row in PARTS} == set(PART_KINDS)
+    assert [part.table for part in PALETTE] == list(PARTS)
+    assert {row.values[0] for row in ROWS} == set(PARTS)
     cam = FIELDS["cams"]
     assert cam["slider"].entry == "slider"
     assert cam["contact"].words == ("knife", "roller", "flat")
@@ -54,7 +55,7 @@ def test_every_kind_of_part_has_its_fields() -> None:
     assert not cam["base"].required
 
 
-@pytest.mark.parametrize(("table", "row"), PARTS)
+@pytest.mark.parametrize(("table", "row"), ROWS)
 def test_a_part_of_the_library_is_typed_as_its_file_has_it(table: str, row: Any) -> None:
     entered = {name: typed(FIELDS[table][name], entry) for name, entry in row.items()}
     assert part_of(table, entered) == row

@@ -8,12 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 
 import linkwork as lw
-from linkwork.viewer.live import events as tell
-from linkwork.viewer.live import requests as ask
+from linkwork.viewer.live import events as tell, requests as ask
 from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.messages import encoded
 from linkwork.viewer.live.workbench import Workbench

@@ -32,7 +32,6 @@ def test_an_event_has_all_its_fields() -> None:
     assert "  answers: number | null;" in interface("Refused")
     cycle = interface("MotionFound")
     assert "  limits: readonly (LimitFound)[];" in cycle
-    assert "  worst_residual: number | null;" in cycle
     assert "?" not in cycle
     assert "  page: PageData | null;" in cycle
     assert "  points: Record<string, readonly [" in interface("PositionFound")

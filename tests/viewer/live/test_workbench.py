@@ -12,14 +12,18 @@ import pytest
 
 import linkwork as lw
 from linkwork.mechanism.linkage import Linkage
-from linkwork.viewer.live import events as tell
-from linkwork.viewer.live import requests as ask
+from linkwork.viewer.live import events as tell, requests as ask
 from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.workbench import Workbench
-from linkwork.viewer.packing import unpacked
 from tests.described import described_as
 from tests.thinned import thinned
 from tests.viewer.live.conftest import FOUR_BAR
+from tests.viewer.unpacking import unpacked
+
+TITLES = [
+    "Pin in slot", "Slider", "Cylinder", "Weld", "Gear pair", "Non-circular gears", "Belt or chain",
+    "Rack and pinion", "Rolling wheel", "Cam", "Curve", "Spring",
+]  # fmt: skip
 
 
 def only(events: list[tell.Event], kind: type) -> Any:
@@ -54,7 +58,9 @@ def told(motion: tell.MotionFound, name: str) -> np.ndarray:
 
 
 def test_a_page_begins_with_the_file_and_its_cycle(bench: Workbench) -> None:
-    state, motion = bench.opened()
+    palette, state, motion = bench.opened()
+    assert isinstance(palette, tell.PaletteShown)
+    assert [part.title for part in palette.parts] == TITLES
     assert isinstance(state, tell.FileState)
     assert isinstance(motion, tell.MotionFound)
     assert (state.title, state.form, state.unsaved) == ("Four-bar", "points-and-links", False)
@@ -263,7 +269,7 @@ def test_given_lengths_follow_a_point_on_request_but_for_formulas(bench: Workben
     assert "A B" in moved.followed
     # measured to where the neighbour really is, not to where it was sketched
     wanted = math.dist((30, 30), start.points["B"])
-    state = only([bench.opened()[0]], tell.FileState)
+    state = only(bench.opened(), tell.FileState)
     assert number(state, "A B").value == pytest.approx(wanted, rel=1e-9)
     assert wanted != pytest.approx(120, rel=1e-3)
 
@@ -498,7 +504,7 @@ def test_newton_says_which_trouble_it_met(tmp_path: Path) -> None:
 
 def test_wrong_names_and_numbers_are_refused_with_what_exists(bench: Workbench) -> None:
     requests: list[tuple[ask.Request, str]] = [
-        (ask.SetNumber(name="zz", value=1), '"zz" is no number of Four-bar that can vary'),
+        (ask.SetNumber(name="zz", value=1), '"zz" is not a number of Four-bar that can vary'),
         (ask.MovePoint(point="Z", x=0, y=0), 'there is no point "Z" (points: O2, A, B, O4, P)'),
         (ask.AddPoint(name="A", x=0, y=0), '"A" is already in [points]: choose another name'),
         (ask.AddLink(name="crank", points=("A",)), '"crank" is already in [links]'),
@@ -510,8 +516,8 @@ def test_wrong_names_and_numbers_are_refused_with_what_exists(bench: Workbench) 
         (ask.SolveAt(at={"zz": 1}), '"zz" is not an input of Four-bar (inputs: crank)'),
         (ask.NewtonSteps(guess={"x": 1}, at={}), '"x" is not an unknown of Four-bar'),
         (ask.NewtonSteps(guess={}, at={}, max_steps=0), "max_steps must be from 1 to 200"),
-        (ask.Undo(), "there is nothing to take back"),
-        (ask.Redo(), "there is nothing to do again"),
+        (ask.Undo(), "there is nothing to undo"),
+        (ask.Redo(), "there is nothing to redo"),
     ]
     for request, message in requests:
         assert only(bench.handle(request), tell.Refused).message.startswith(message)
@@ -533,7 +539,7 @@ def test_every_mechanism_of_the_library_opens_and_is_edited(name: str, tmp_path:
     file = tmp_path / f"{name}.toml"
     file.write_text(lw.example_text(name), encoding="utf-8")
     bench = Workbench(MechanismFile(file), lw.loads)
-    state = bench.opened()[0]
+    state = bench.opened()[1]
     assert isinstance(state, tell.FileState)
     assert state.equations
     plain = [n for n in state.numbers if not n.formula and n.table not in ("points", "guess")]

@@ -1,4 +1,4 @@
-"""Studies: very many designs of one mechanism by a plan, into a store that can be gone on with."""
+"""Studies: very many designs of one mechanism from a plan, in a store that can be resumed."""
 
 from __future__ import annotations
 
@@ -7,28 +7,19 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
-    from linkwork.batch.study.plan_file import read_plan, read_plan_text
-    from linkwork.batch.study.running import Progress, run_study
-    from linkwork.batch.study.study import Study
-    from linkwork.batch.study.summary import OutputSummary, Summary, summary_of
-else:
-    __getattr__ = loader(
-        __name__,
-        {
-            "plan_file": ("read_plan", "read_plan_text"),
-            "running": ("Progress", "run_study"),
-            "study": ("Study",),
-            "summary": ("OutputSummary", "Summary", "summary_of"),
-        },
+    from linkwork.batch.study.plan_file import (
+        read_plan as read_plan,
+        read_plan_text as read_plan_text,
     )
-
-__all__ = [
-    "OutputSummary",
-    "Progress",
-    "Study",
-    "Summary",
-    "read_plan",
-    "read_plan_text",
-    "run_study",
-    "summary_of",
-]
+    from linkwork.batch.study.running import (
+        Progress as Progress,
+        run_study as run_study,
+    )
+    from linkwork.batch.study.study import Study as Study
+    from linkwork.batch.study.summary import (
+        OutputSummary as OutputSummary,
+        Summary as Summary,
+        summary_of as summary_of,
+    )
+else:
+    __getattr__ = loader(__name__)

@@ -1,4 +1,4 @@
-"""From the ``[dimensions]`` of a plan to the designs of a study."""
+"""The designs of a study from the ``[dimensions]`` of its plan."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.description import Problems
 
-__all__ = ["Choice", "Triangular", "chosen", "values_between"]
+__all__ = ["Choice", "Triangular", "choose_values", "values_between"]
 
 _RANGE = frozenset({"from", "to"})
 _LEVELS = _RANGE | {"levels"}
@@ -84,7 +84,7 @@ class Triangular:
         return generator.triangular(self.low, self.likeliest, self.high, count)
 
 
-def chosen(
+def choose_values(
     content: Mapping[str, Any], folder: Path, problems: Problems
 ) -> tuple[Plan, Mapping[str, float]] | None:
     """What varies and what is the same for all designs; ``None`` with problems noted.
@@ -116,7 +116,7 @@ def chosen(
     }[sampling]
     found = {name: _read(name, entry, sampling, read, problems) for name, entry in varied.items()}
     if not varied and sampling != "table":
-        problems.add(("dimensions",), f"needs something that varies: {_WANTED[sampling]}")
+        problems.add(("dimensions",), f"varies nothing: {_WANTED[sampling]}")
     if len(problems) > before:
         return None
     try:
@@ -177,7 +177,7 @@ def _read(
         return None
     if found is None:
         got = "a list" if isinstance(entry, list) else ", ".join(entry) or "an empty table"
-        problems.add(key, f'sampling = "{sampling}" wants {_WANTED[sampling]}; got {got}')
+        problems.add(key, f'sampling = "{sampling}" needs {_WANTED[sampling]}; got {got}')
     return found
 
 
@@ -198,7 +198,7 @@ def _levels(entry: Any) -> Array | None:
     if set(entry) != _LEVELS:
         return None
     if entry["levels"] == 1 and entry["from"] != entry["to"]:
-        raise InputError("levels = 1 leaves no room for both ends: ask for two levels or more")
+        raise InputError("levels = 1 cannot include both ends of the range: use two or more levels")
     low, high = _ends(entry)
     return np.linspace(low, high, entry["levels"])
 

@@ -1,4 +1,4 @@
-"""The ledger of a store: which chunks are finished, with the checksum of every file of theirs.
+"""The manifest of a store: finished chunks, with the checksums of their files.
 
 A chunk is finished when its entry is there, and the entry is written after its files. So a run
 that is killed leaves chunks that are finished, and others that are computed again.

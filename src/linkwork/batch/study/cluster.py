@@ -1,4 +1,4 @@
-"""Parts of a study computed by a Dask cluster: the owner of dask.distributed.
+"""Compute the parts of a study on a Dask cluster; the only module that uses dask.distributed.
 
 Workers need Linkwork and nothing else: what they compute travels with the task, what they have
 computed comes back, and only the process that was started writes to the store.
@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 from uuid import uuid4
 
-from linkwork.batch.study.job import Job, Part, computed
-from linkwork.batch.study.workers import Task, Values, pumped
+from linkwork.batch.study.job import Job, Part, compute_part
+from linkwork.batch.study.workers import Task, Values, pump_parts
 from linkwork.foundation.errors import InputError, MissingPackageError
 
 __all__ = ["cluster_crew"]
@@ -49,10 +49,10 @@ def cluster_crew(job: Job, tasks: Iterable[Task], scheduler: str) -> Iterator[tu
         run = uuid4().hex
 
         def submit(values: Values) -> Any:
-            return client.submit(computed, job, values, key=f"linkwork-{run}-{uuid4().hex}")
+            return client.submit(compute_part, job, values, key=f"linkwork-{run}-{uuid4().hex}")
 
         try:
-            yield from pumped(tasks, submit, _AHEAD * threads)
+            yield from pump_parts(tasks, submit, _AHEAD * threads)
         except ModuleNotFoundError as error:
             raise InputError(
                 f"the workers of {scheduler} lack {error.name}: install Linkwork {job.version} "
@@ -60,8 +60,8 @@ def cluster_crew(job: Job, tasks: Iterable[Task], scheduler: str) -> Iterator[tu
             ) from None
         except distributed.KilledWorker as error:
             raise InputError(
-                "workers ended again and again over the same designs, perhaps for want of "
-                f"memory: make chunk smaller ({error})"
+                "workers ended repeatedly on the same designs, perhaps for lack of "
+                f"memory: reduce chunk ({error})"
             ) from None
 
 

@@ -1,4 +1,4 @@
-"""What one worker does: the motions of some designs, and what is kept of them."""
+"""The task of one worker: the motions of some designs, and the values to keep."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwork.mechanism.description import Description
 from linkwork.motion import Model, as_described
 from linkwork.results.quantities.registry import Call
 
-__all__ = ["Job", "Part", "computed", "linkwork_version", "passes_name"]
+__all__ = ["Job", "Part", "compute_part", "linkwork_version", "passes_name"]
 
 _MOST_PROBLEMS = 20  # distinct reasons that are kept of one part
 _FURTHER = "further reasons"
@@ -87,13 +87,13 @@ class Part:
     problems: Mapping[str, int]
 
 
-def computed(job: Job, values: Mapping[str, Array | float]) -> Part:
+def compute_part(job: Job, values: Mapping[str, Array | float]) -> Part:
     """The part of some designs.
 
     Parameters
     ----------
     values : Mapping[str, (D,) or number]
-        What varies, everyday units.
+        What varies, in file units.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Conditions that a plan sets for the motion of a design, as text.
+"""Conditions that a plan sets for the motion of a design, parsed from text.
 
 ``mu >= 40`` and ``stroke(rocker) <= 60`` are true or false of it, as are the words of
 :data:`WORDS`. They are read by patterns and never evaluated as code.
@@ -44,7 +44,7 @@ class Measured:
         self._values: dict[str, Array] = {}
 
     def __getitem__(self, name: str) -> Array:
-        """A quantity, (D, R), everyday units."""
+        """A quantity, (D, R), in file units."""
         if name not in self._values:
             self._values[name] = self.motion[name]
         return self._values[name]
@@ -59,7 +59,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Comparison:
-    """A number of a motion against a bound, file units; false where no row is found."""
+    """A number of a motion against a bound, in file units; false where no row is found."""
 
     reduced: Call
     sign: str

@@ -1,4 +1,4 @@
-"""Reading study plans: TOML in, a study out, or every problem with its line."""
+"""Read study plans: a study, or every problem with its line."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from linkwork.batch.family import family_of
 from linkwork.batch.family_motion import FamilyMotion
 from linkwork.batch.sampling import Plan
-from linkwork.batch.study.choosing import chosen, values_between
+from linkwork.batch.study.choosing import choose_values, values_between
 from linkwork.batch.study.job import Job, linkwork_version, passes_name
 from linkwork.batch.study.measures import Comparison, Condition, Word, read_condition
 from linkwork.batch.study.plan_keys import PLAN
@@ -26,7 +26,7 @@ from linkwork.foundation.errors import (
     key_text,
 )
 from linkwork.foundation.frozen import FrozenDict
-from linkwork.foundation.names import spelled
+from linkwork.foundation.names import find_spelling
 from linkwork.mechanism.description import Description, Problems
 from linkwork.mechanism.quantities import quantity_named
 from linkwork.motion import Model, as_described
@@ -116,7 +116,7 @@ class _Reader:
         if self.problems:
             return None
         description = self._with_range(described)
-        found = chosen(self.content, self.folder, self.problems)
+        found = choose_values(self.content, self.folder, self.problems)
         conditions = self._filters()
         reductions = self._texts("reductions", Call.read)
         if description is None or found is None:
@@ -140,7 +140,7 @@ class _Reader:
         )
         columns = len(model.equations.unknowns) + 4 + len(job.keep)
         size = self.content.get("chunk") or usual_chunk(
-            plan.count, len(model.everyday_rows), columns
+            plan.count, len(model.rows_in_file_units), columns
         )
         return Study(
             name=self.content.get("name", stem),
@@ -280,7 +280,7 @@ class _Reader:
         self, key: Key, name: str, inputs: list[str], ask: Callable[[], object]
     ) -> bool:
         """Whether there is such a quantity, and designs can differ in it."""
-        if spelled(name, inputs) in inputs:
+        if find_spelling(name, inputs) in inputs:
             self.problems.add(key, f'"{name}" is an input, the same for every design: leave it out')
             return False
         try:
@@ -306,7 +306,7 @@ class _Reader:
     ) -> dict[str, Any]:
         """Everything on which results depend, as JSON would hold it."""
         content = self.content
-        first, last = model.everyday_rows[[0, -1]].tolist()
+        first, last = model.rows_in_file_units[[0, -1]].tolist()
         return {
             "linkwork": job.version,
             "mechanism": mechanism.replace("\r\n", "\n"),
@@ -315,7 +315,7 @@ class _Reader:
             "seed": content.get("seed"),
             "dimensions": [[name, entry] for name, entry in content.get("dimensions", {}).items()],
             "table": _digest(plan) if content["sampling"] == "table" else None,
-            "input": {"first": first, "last": last, "rows": len(model.everyday_rows)},
+            "input": {"first": first, "last": last, "rows": len(model.rows_in_file_units)},
             "keep": list(job.keep),
             "reductions": {name: str(reduced) for name, reduced in job.reductions.items()},
             "filters": {name: str(condition) for name, condition in job.filters.items()},

@@ -1,12 +1,10 @@
-"""Every table and key of a study plan, said once: for the reader and for the JSON Schema."""
+"""All tables and keys of a study plan, for the reader and for the JSON Schema."""
 
 from __future__ import annotations
 
-from linkwork.textfile.keys import (
-    FORMAT,
+from linkwork.foundation.file_keys import (
     Constant,
     Flag,
-    Form,
     Key,
     ListOf,
     Named,
@@ -17,6 +15,7 @@ from linkwork.textfile.keys import (
     Text,
     Whole,
 )
+from linkwork.textfile.keys import FORMAT, Form
 
 __all__ = ["PLAN", "SAMPLINGS"]
 

@@ -1,4 +1,4 @@
-"""Running a study: chunk by chunk into its store, by as many workers as there are."""
+"""Run a study chunk by chunk into its store, with any number of workers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from time import monotonic
 from linkwork.batch.study.cluster import cluster_crew
 from linkwork.batch.study.job import Part
 from linkwork.batch.study.plan_file import read_plan
-from linkwork.batch.study.store import opened
+from linkwork.batch.study.store import open_store
 from linkwork.batch.study.study import Study
 from linkwork.batch.study.summary import Summary, summary_of
 from linkwork.batch.study.workers import Task, local_crew, one_after_the_other
@@ -102,7 +102,7 @@ def run_study(
     study = plan if isinstance(plan, Study) else read_plan(plan)
     if study.job.device == "gpu" and scheduler is None:
         graphics_card()  # or the reason why there is none, before a store is begun
-    with opened(study, Path(store), fresh=fresh) as target:
+    with open_store(study, Path(store), fresh=fresh) as target:
         tell = _teller(study, target.done, progress)
         tell()
         left = [k for k in range(study.chunks) if k not in target.done]

@@ -1,4 +1,4 @@
-"""A study's store on disk: made, gone on with, refused if it is another study's."""
+"""The store of a study on disk: create, resume, or reject the store of another study."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if sys.platform == "win32":
 else:
     import fcntl
 
-__all__ = ["Store", "attributes_of", "opened"]
+__all__ = ["Store", "attributes_of", "open_store"]
 
 _IDENTITY = "linkwork_identity"
 _LOCK = "lock"
@@ -37,7 +37,7 @@ _LONGEST_SHOWN = 60  # characters of a value that differs
 
 
 class Store:
-    """The store of one study, open for writing; see :func:`opened`.
+    """The store of one study, open for writing; see :func:`open_store`.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class Store:
 
 
 @contextmanager
-def opened(study: Study, path: Path, *, fresh: bool = False) -> Iterator[Store]:
+def open_store(study: Study, path: Path, *, fresh: bool = False) -> Iterator[Store]:
     """The store of a study: made, or gone on with if it holds chunks of the same study.
 
     Parameters
@@ -88,7 +88,7 @@ def opened(study: Study, path: Path, *, fresh: bool = False) -> Iterator[Store]:
     if not path.exists():
         _make(path, files.first)
     attributes_of(path)  # what is no store has no lock either
-    with _locked(path):
+    with _lock_store(path):
         _check_same(study, path)
         yield Store(path, study, files)
 
@@ -108,7 +108,7 @@ def attributes_of(path: Path) -> Mapping[str, Any]:
         found[_IDENTITY] = json.loads(found[_IDENTITY])
     except (OSError, ValueError, KeyError, TypeError):
         raise InputError(
-            f'"{path}" is there and is no store of a study: give another name'
+            f'"{path}" exists and is not the store of a study: choose another name'
         ) from None
     attributes: Mapping[str, Any] = found
     return attributes
@@ -127,7 +127,7 @@ def _files_of(study: Study) -> ZarrFiles:
         _IDENTITY: json.dumps(study.identity, ensure_ascii=False),
         **({"coordinates": " ".join(others)} if others else {}),
     }
-    sizes = {DESIGN: study.plan.count, lead: len(study.model.everyday_rows)}
+    sizes = {DESIGN: study.plan.count, lead: len(study.model.rows_in_file_units)}
     return ZarrFiles(study.variables, sizes, study.chunk_size, attributes)
 
 
@@ -147,7 +147,7 @@ def _make(path: Path, files: Mapping[str, bytes]) -> None:
 def _take_away(path: Path) -> None:
     """The store is there or not: a part of it that is left would be gone on with."""
     aside = path.with_name(f".{path.name}.{os.getpid()}.old{PARTIAL}")
-    with _locked(path):
+    with _lock_store(path):
         os.rename(path, aside)
     shutil.rmtree(aside)
 
@@ -159,8 +159,8 @@ def _check_same(study: Study, path: Path) -> None:
     if told := "\n".join(_differences(there, here)):
         raise InputError(
             f'"{path}" holds another study:\n{told}\n'
-            "Give another name to store this one, or begin again with --fresh, "
-            "which takes the old one away."
+            "Choose another store, or start over with --fresh, "
+            "which deletes the old study."
         )
 
 
@@ -205,7 +205,7 @@ def _shown(value: Any) -> str:
 
 
 @contextmanager
-def _locked(path: Path) -> Iterator[None]:
+def _lock_store(path: Path) -> Iterator[None]:
     """Nobody else writes meanwhile; the lock of a process that was killed is gone with it."""
     lock = path / LEDGER / _LOCK
     with lock.open("ab") as file:

@@ -1,4 +1,4 @@
-"""A study: which designs of which mechanism, what is kept of them, and how they are stored."""
+"""A study: mechanism, designs, kept quantities and storage."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class Study:
     def __repr__(self) -> str:
         return (
             f'<Study "{self.name}" of "{self.job.description.name}": {self.plan.count} designs × '
-            f"{len(self.model.everyday_rows)} inputs in {self.chunks} chunks>"
+            f"{len(self.model.rows_in_file_units)} inputs in {self.chunks} chunks>"
         )
 
     @property
@@ -98,7 +98,7 @@ class Study:
         return range(start, min(start + self.chunk_size, self.plan.count))
 
     def varied(self, k: int) -> dict[str, Array]:
-        """What varies in a chunk, everyday units, (designs,) each."""
+        """What varies in a chunk, in file units, (designs,) each."""
         designs = self.designs_of(k)
         return values_between(self.plan, designs.start, designs.stop)
 
@@ -118,7 +118,7 @@ class Study:
             self._variable(
                 name, (self.inputs[0],), "float64", np.nan, self.model.input_units[name], values
             )
-            for name, values in zip(self.inputs, self.model.everyday_rows.T, strict=True)
+            for name, values in zip(self.inputs, self.model.rows_in_file_units.T, strict=True)
         ]
         varied = [
             self._variable(name, (DESIGN,), "float64", np.nan, self._unit_of_number(name))

@@ -1,4 +1,4 @@
-"""What a store holds: counts, ranges and histograms, of a study that may not be finished yet."""
+"""The summary of a store: counts, ranges and histograms, also of an unfinished study."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwork.foundation.arrays import AnyArray, Array
 __all__ = ["OutputSummary", "Summary", "summary_of"]
 
 _BINS = 12
-_SAME = 1e-12  # of their size: values that differ by less are one and the same
+_SAME_VALUE = 1e-12  # of their size: values that differ by less are one and the same
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -156,7 +156,7 @@ def _output(name: str, arrays: Any, entries: list[Entry]) -> OutputSummary:
         least = min(least, float(values.min(initial=np.inf)))
         most = max(most, float(values.max(initial=-np.inf)))
     bins = np.zeros(_BINS, dtype=int)
-    spread = count > 0 and most - least > _SAME * max(abs(least), abs(most))
+    spread = count > 0 and most - least > _SAME_VALUE * max(abs(least), abs(most))
     if spread:
         for values in _values(name, arrays, entries):
             bins += np.histogram(values, _BINS, (least, most))[0]

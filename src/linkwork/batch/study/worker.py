@@ -1,4 +1,4 @@
-"""A worker process: parts of a study asked for on its input, given on its output.
+"""A worker process: reads parts of a study from its input, writes results to its output.
 
 It ends when whoever started it is gone, so that a run that was killed leaves no process behind.
 """
@@ -9,7 +9,7 @@ import os
 import pickle
 import sys
 
-from linkwork.batch.study.job import Job, Part, computed
+from linkwork.batch.study.job import Job, Part, compute_part
 from linkwork.foundation.errors import LinkworkError
 
 __all__ = ["Answer", "serve"]
@@ -33,7 +33,7 @@ def serve() -> None:
 
 def _answer(job: Job, values: dict[str, object]) -> Answer:
     try:
-        return computed(job, values)  # type: ignore[arg-type]  # as they were sent
+        return compute_part(job, values)  # type: ignore[arg-type]  # as they were sent
     except LinkworkError as error:
         return str(error)
 

@@ -1,4 +1,16 @@
-"""Who computes the parts of a study on this machine: this process, or some of its own."""
+"""Processes of this machine compute the parts of a study.
+
+``concurrent.futures.ProcessPoolExecutor`` cannot serve here, nor can what is built on
+multiprocessing, such as Dask's ``LocalCluster``:
+
+* Its processes run the caller's main module once more, so a study in a script without
+  ``if __name__ == "__main__"`` ends in an error.
+* The death of one process breaks the pool and fails all parts under way; which part a process died
+  over is not known, so designs that always kill their worker would be computed for ever.
+* Its processes hold both ends of their pipes, so they outlive a run that was killed.
+
+A process with a pipe of its own, asked by one thread, has none of this.
+"""
 
 from __future__ import annotations
 
@@ -13,11 +25,11 @@ from queue import Empty, SimpleQueue
 from threading import Lock
 from typing import Any, Protocol
 
-from linkwork.batch.study.job import Job, Part, computed
+from linkwork.batch.study.job import Job, Part, compute_part
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 
-__all__ = ["Task", "Values", "local_crew", "one_after_the_other", "pumped"]
+__all__ = ["Task", "Values", "local_crew", "one_after_the_other", "pump_parts"]
 
 Values = Mapping[str, "Array | float"]
 #: The number of a chunk, and what varies in it.
@@ -36,7 +48,7 @@ class _Future(Protocol):
 def one_after_the_other(job: Job, tasks: Iterable[Task]) -> Iterator[tuple[int, Part]]:
     """Parts computed by this process."""
     for k, values in tasks:
-        yield k, computed(job, values)
+        yield k, compute_part(job, values)
 
 
 def local_crew(job: Job, tasks: Iterable[Task], workers: int) -> Iterator[tuple[int, Part]]:
@@ -45,14 +57,14 @@ def local_crew(job: Job, tasks: Iterable[Task], workers: int) -> Iterator[tuple[
     pool = ThreadPoolExecutor(workers)
 
     try:
-        yield from pumped(tasks, lambda values: pool.submit(crew.part, values), workers + 1)
+        yield from pump_parts(tasks, lambda values: pool.submit(crew.part, values), workers + 1)
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
         crew.end()
         pool.shutdown()
 
 
-def pumped(
+def pump_parts(
     tasks: Iterable[Task], submit: Callable[[Values], _Future], most: int
 ) -> Iterator[tuple[int, Part]]:
     """Parts in the order in which they are ready; no more than ``most`` are under way."""
@@ -112,8 +124,8 @@ class _Processes:
                 raise InputError(answer)
             return answer
         raise InputError(
-            f"worker processes ended {_MOST_DEATHS} times over the same designs, perhaps for want "
-            "of memory: make chunk smaller, or ask for fewer --workers"
+            f"worker processes ended {_MOST_DEATHS} times on the same designs, perhaps for lack "
+            "of memory: reduce chunk or --workers"
         )
 
     def end(self) -> None:

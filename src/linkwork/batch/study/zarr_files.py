@@ -1,4 +1,4 @@
-"""Arrays as the files of a Zarr store: the owner of zarr.
+"""Arrays as files of a Zarr store; the only module that uses zarr.
 
 Files are made in memory and written by :mod:`~linkwork.batch.study.store`, so that each appears
 whole or not at all.

@@ -39,8 +39,8 @@ def branch_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
     count = len(branches)
     if len(shown) > 1 and count > _MOST_COLUMNS:
         raise InputError(
-            f'"{circuits.mechanism}" has {count} branches, which stand side by side for one '
-            f"quantity only: name one of {', '.join(names)}"
+            f'"{circuits.mechanism}" has {count} branches, too many for several '
+            f"quantities: name one of {', '.join(names)}"
         )
     columns = count if len(shown) > 1 else _columns(count)
     panels = [

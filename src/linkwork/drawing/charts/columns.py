@@ -12,7 +12,7 @@ from linkwork.drawing.charts.chart import Pen, Scale
 from linkwork.drawing.charts.labels import rate_label, size_label
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.names import spelled
+from linkwork.foundation.names import find_spelling
 from linkwork.results.motion import Motion
 from linkwork.results.quantities.registry import Asked, Group
 from linkwork.results.quantity import Kind, Rate
@@ -49,7 +49,7 @@ class Column:
         What it measures, in a word: ``angle``, ``length``, ``velocity``; columns of one measure
         and unit share a panel. "" for numbers that share it with nothing.
     values : array (N,)
-        Everyday units, NaN where there is no position.
+        File units, NaN where there is no position.
     turn : float
         A full turn in that unit, 0 if it is no angle.
     slope : array (N,), optional
@@ -97,9 +97,10 @@ def column_of(motion: Motion, name: str) -> Column:
         If the column is text, or a point has to be followed by one of its coordinates.
     """
     if name in _TEXTS:
-        raise InputError(f'"{name}" is text: there is nothing to plot but numbers')
-    point = spelled(name, motion.points)
-    if point in motion.points and spelled(name, motion.quantities.own) not in motion.quantities.own:
+        raise InputError(f'"{name}" is text and cannot be plotted')
+    point = find_spelling(name, motion.points)
+    own = motion.quantities.own
+    if point in motion.points and find_spelling(name, own) not in own:
         raise InputError(
             f'"{point}" is a point: plot a coordinate, "{point}.x" or "{point}.y", or its '
             'path, kind="path" (--kind path)'
@@ -181,13 +182,13 @@ def _time(motion: Motion) -> Column:
     lead = lead_of(motion)
     if motion.speed is None:
         raise InputError(
-            f"there is no time without a speed of the input: give {lead} one in [input], as in "
+            f"a plot over time needs the speed of {lead}: set it in [input], as in "
             f'speed = "{_speed_of(motion)}", or plot against {lead}'
         )
     if len(set(motion.branch) - {""}) > 1:
         raise InputError(
-            f"there is no time along several branches: {lead} turns back between them, so it has "
-            f"no steady speed; plot against {lead}, or sweep one branch"
+            f"several branches have no common time: {lead} reverses between them, so its speed "
+            f"is not constant; plot against {lead}, or sweep one branch"
         )
     values = motion.inputs[lead]
     angle = motion.input_units[lead] == motion.units.angle.value

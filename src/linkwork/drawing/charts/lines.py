@@ -29,7 +29,7 @@ def breaks(motion: Motion, lead: Array, *columns: Column) -> BoolArray:
     Parameters
     ----------
     lead : array (N,)
-        The leading input, everyday units.
+        The leading input, in file units.
     """
     branch = np.array(motion.branch)
     dead = np.array(motion.limit) == _DEAD

@@ -14,9 +14,10 @@ from linkwork.drawing.charts.chart import Chart, Shape
 from linkwork.drawing.charts.matplotlib_page import draw_page, legend_entries
 from linkwork.drawing.charts.matplotlib_panel import draw_panel
 from linkwork.drawing.charts.page import KEY, SMALL, TITLE
-from linkwork.drawing.charts.plotting import circuits_plot, motion_plot
-from linkwork.drawing.charts.theme import ChartTheme, chart_theme
-from linkwork.drawing.matplotlib_writer import house_settings
+from linkwork.drawing.charts.plotting import PlotKind, circuits_plot, motion_plot
+from linkwork.drawing.charts.theme import THEMES, ChartTheme
+from linkwork.drawing.matplotlib_settings import house_settings
+from linkwork.drawing.theme import theme_named
 from linkwork.foundation.errors import InputError
 from linkwork.results.circuits import Circuits
 from linkwork.results.motion import Motion
@@ -35,25 +36,29 @@ _ROW = 1.7  # height of a row of the legend, in sizes of its letters
 def plot_motion(
     motion: Motion,
     *names: str,
+    kind: str = PlotKind.CURVES.value,
+    against: str = "",
+    wrapped: bool = False,
     ax: Any = None,
     theme: str = "light",
     title: str | None = None,
-    **options: Any,
 ) -> PlotAxes:
     """Plot a motion; see :meth:`linkwork.results.motion.Motion.plot`."""
-    return plot_chart(motion_plot(motion, names, **options), ax=ax, theme=theme, title=title)
+    chart = motion_plot(motion, names, kind=kind, against=against, wrapped=wrapped)
+    return plot_chart(chart, ax=ax, theme=theme, title=title)
 
 
 def plot_circuits(
     circuits: Circuits,
     *names: str,
+    kind: str = PlotKind.CIRCUITS.value,
     ax: Any = None,
     theme: str = "light",
     title: str | None = None,
-    **options: Any,
 ) -> PlotAxes:
     """Plot circuits; see :meth:`linkwork.results.circuits.Circuits.plot`."""
-    return plot_chart(circuits_plot(circuits, names, **options), ax=ax, theme=theme, title=title)
+    chart = circuits_plot(circuits, names, kind=kind)
+    return plot_chart(chart, ax=ax, theme=theme, title=title)
 
 
 def plot_chart(
@@ -73,7 +78,7 @@ def plot_chart(
     MissingPackageError
         If Matplotlib is not installed.
     """
-    colours = chart_theme(theme)
+    colours = theme_named(theme, THEMES)
     if title is not None:
         chart = replace(chart, title=title, caption=chart.caption if title else "")
     if ax is None:

@@ -16,7 +16,7 @@ from linkwork.drawing.charts.motion_chart import check_found
 from linkwork.drawing.charts.scales import across_step, round_step
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import spelled
+from linkwork.foundation.names import find_spelling
 from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind, Rate
 
@@ -91,7 +91,7 @@ def _points(motion: Motion, asked: Sequence[str]) -> list[str]:
     if not motion.points:
         raise InputError(f'"{motion.mechanism}" has no points to plot: add [points]')
     usual = motion.skeleton.traced or _moving(motion)
-    names = [spelled(name, motion.points) for name in asked or usual]
+    names = [find_spelling(name, motion.points) for name in asked or usual]
     for name in names:
         if name not in motion.points:
             known = choices("points", motion.points, name)

@@ -67,7 +67,7 @@ def motion_plot(
     if wrapped and which is not PlotKind.CURVES:
         raise InputError(f'angles of kind="{kind}" are not wrapped: leave out wrapped')
     if against and which in (PlotKind.PATH, PlotKind.HODOGRAPH):
-        raise InputError(f'a {kind} is drawn in the plane, over nothing: leave out "{against}"')
+        raise InputError(f'a {kind} is drawn in the plane: leave out against="{against}"')
     match which:
         case PlotKind.POLAR:
             return polar_chart(motion, names, against=against)

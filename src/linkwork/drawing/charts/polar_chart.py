@@ -46,7 +46,7 @@ def polar_chart(motion: Motion, names: Sequence[str] = (), *, against: str = "")
     across = abscissa_of(motion, against)
     if not across.turn:
         raise InputError(
-            f'a polar plot is over an angle, and "{across.name}" is none: name an angle with '
+            f'a polar plot needs an angle, and "{across.name}" is not one: name an angle with '
             f"against= (--against){_an_angle(motion)}"
         )
     columns = columns_of(motion, names or _usual(motion))

@@ -10,9 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from linkwork.drawing.theme import LIGHT, Theme
-from linkwork.foundation.errors import UnknownNameError, choices
 
-__all__ = ["DARK_CHART", "LIGHT_CHART", "THEMES", "ChartTheme", "chart_theme"]
+__all__ = ["DARK_CHART", "LIGHT_CHART", "THEMES", "ChartTheme"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,16 +75,3 @@ DARK_CHART = ChartTheme(
 
 #: Themes by the name that people choose them by.
 THEMES = {"light": LIGHT_CHART, "dark": DARK_CHART}
-
-
-def chart_theme(name: str) -> ChartTheme:
-    """A theme by its name.
-
-    Raises
-    ------
-    UnknownNameError
-        With the names that exist.
-    """
-    if name not in THEMES:
-        raise UnknownNameError(f'there is no theme "{name}" {choices("themes", THEMES, name)}')
-    return THEMES[name]

@@ -15,7 +15,7 @@ from linkwork.drawing.charts.labels import with_unit
 from linkwork.drawing.charts.motion_chart import across_axis, check_found, shared_panels
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import spelled
+from linkwork.foundation.names import find_spelling
 from linkwork.mechanism.dyad import Dyad, dyads_of
 from linkwork.results.motion import Motion
 
@@ -46,7 +46,7 @@ def transmission_chart(motion: Motion, names: Sequence[str] = (), *, against: st
     pins = {dyad.pin: dyad for dyad in dyads_of(motion.skeleton)}
     if not names and not pins:
         raise InputError(
-            f'"{motion.mechanism}" has no two links of which the transmission angle is known: '
+            f'"{motion.mechanism}" has no pair of links with a known transmission angle: '
             'add it to [outputs], as in mu = "rocker - coupler", and name it'
         )
     columns = [_column(motion, pins, name) for name in names or pins]
@@ -88,14 +88,14 @@ def _band(motion: Motion) -> Band:
 
 def _column(motion: Motion, pins: Mapping[str, Dyad], name: str) -> Column:
     """The angle at the pin of a dyad, or another angle folded to half a turn."""
-    pin = spelled(name, pins)
+    pin = find_spelling(name, pins)
     if pin not in pins and name in motion.points:
-        known = choices("pins between two links that are known to be held", pins, name)
+        known = choices("pins with a known transmission angle", pins, name)
         raise UnknownNameError(f'the transmission angle at "{name}" is not known {known}')
     column = column_of(motion, f"{pin}.transmission" if pin in pins else name)
     if not column.turn:
         raise UnknownNameError(
-            f'"{name}" is no angle {choices("pins", pins, name)}; name a pin between two '
+            f'"{name}" is not an angle {choices("pins", pins, name)}; name a pin between two '
             "links, or an angle"
         )
     label, values = column.label, column.values

@@ -391,7 +391,7 @@ class _Joining:
                 raise NotRead(f'"{slide.variable}" slides in a loop of sliding joints')
         groups = {held.root(link) for link in links}
         if len(groups) > len({self.phase[link] for link in groups}):
-            raise NotRead("two links would keep parallel though no sliding joint holds them so")
+            raise NotRead("two links would stay parallel though no sliding joint holds them so")
 
     def _ground(self) -> tuple[int, complex]:
         """The link at which the equations begin, among those that do not turn."""
@@ -399,7 +399,7 @@ class _Joining:
             self.link.root(k) for k, phase in enumerate(self.phase) if phase == FRAME
         )
         if not still:
-            raise NotRead("no vector keeps its direction, so that no link stands still")
+            raise NotRead("no vector keeps its direction, so that no link is fixed")
         begun = {
             self.link.root(piece): place + self.shift[piece] for piece, place in self.origins[::-1]
         }

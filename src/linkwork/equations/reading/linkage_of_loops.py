@@ -17,10 +17,12 @@ from linkwork.equations.reading.poses import Poses
 from linkwork.equations.reading.walk import phase_of, walks
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import MechanismError
-from linkwork.mechanism.directed import free_name
+from linkwork.foundation.names import free_name
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
-from linkwork.mechanism.parts import Input, Number, Slider
+from linkwork.mechanism.part.slider import Slider
 
 __all__ = ["ReadLinkage", "read_linkage"]
 
@@ -98,7 +100,7 @@ def _best(equations: LoopEquations, poses: Poses) -> Joints:
         try:
             joints = joints_of(ways, equations.length_scale)
             if joints.mobility != freedom:
-                raise NotRead("the equations do not tell which pins of its loops are the same")
+                raise NotRead("the equations do not determine which pins of its loops are the same")
             driven = inputs_at_joints(equations, joints)
         except NotRead as error:
             why.append(error)
@@ -133,7 +135,7 @@ class _Drawing:
         self.places = {link: dict(self._pins_of(link)) for link in self.names.links}
         rails = [self._rail(*slide) for slide in self._outwards()]
         if not self.places[self.joints.ground]:  # nothing but a line of a slide stands still
-            raise NotRead("no vector begins at a link that stands still")
+            raise NotRead("no vector begins at a fixed link")
         self._move_ground()
         names, shapes = self.names.links, self.places
         return Linkage(
@@ -226,7 +228,7 @@ class _Drawing:
         if len(own) < 2:
             return rail
         start, end = (guide[name] for name in rail.line)
-        return replace(rail, angle=self._everyday(_direction(own) - cmath.phase(end - start)))
+        return replace(rail, angle=self._in_file_units(_direction(own) - cmath.phase(end - start)))
 
     def _sketch(self) -> dict[str, tuple[Number, Number]]:
         found: dict[str, tuple[Number, Number]] = {}
@@ -250,7 +252,7 @@ class _Drawing:
             for name, vector in others.items():
                 if name != second:
                     angle = cmath.phase(vector / others[second])
-                    yield f"{second} {first} {name}", self._everyday(angle)
+                    yield f"{second} {first} {name}", self._in_file_units(angle)
 
     def _moving(self) -> Iterator[tuple[str, str, dict[str, complex]]]:
         """Second and first point of moving links, and the vectors from it to the others."""
@@ -269,7 +271,7 @@ class _Drawing:
             if other != self.joints.ground:
                 begin -= _direction(self.places[other])
                 part["relative_to"] = self.names.links[other]
-            begin = self._everyday(begin)
+            begin = self._in_file_units(begin)
         else:
             slide = next(s for s in self.joints.slides if s.variable == variable.symbol)
             scale, begin, part = abs(slide.along), 0.0, {"slider": self._shown(slide.variable)}
@@ -281,7 +283,7 @@ class _Drawing:
     def _shown(self, symbol: str) -> str:
         return next(v.name for v in self.equations.variables if v.symbol == symbol)
 
-    def _everyday(self, angle: float) -> float:
+    def _in_file_units(self, angle: float) -> float:
         return self.loops.angle.from_radians(angle)
 
 

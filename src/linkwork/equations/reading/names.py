@@ -9,9 +9,7 @@ from linkwork.equations.model import LoopEquations
 from linkwork.equations.reading.joints import Joints
 from linkwork.equations.reading.poses import Poses
 from linkwork.equations.reading.walk import Phase, phase_of
-from linkwork.foundation.names import canonical
-from linkwork.mechanism.directed import free_name
-from linkwork.mechanism.linkage import GROUND
+from linkwork.foundation.names import GROUND, canonical, free_name
 from linkwork.mechanism.loops import Loops
 
 __all__ = ["PartNames"]

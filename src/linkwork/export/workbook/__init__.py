@@ -1,1 +1,1 @@
-"""A motion as an Excel workbook whose cells solve it again."""
+"""A motion as an Excel workbook whose formulas solve the cycle."""

@@ -1,4 +1,4 @@
-"""The first sheet: what the workbook is, what it can follow, and what Linkwork says."""
+"""The first sheet of a workbook: instructions, units, evidence, equations."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def write_about(book: Book, sheet: Any, columns: CycleColumns, version: str) -> 
         row += 1
     row = _checks(book, sheet, columns, row + 1)
     told = list(notices(book))
-    row = _listed(book, sheet, row + 1, "Values only", told, "warning")
+    row = _listed(book, sheet, row + 1, "Does not recalculate", told, "warning")
     limits = [book.motion.message] if book.motion.limits or not book.motion.found.all() else []
     row = _listed(book, sheet, row, "Limits of the motion", limits, "wrapped")
     row += 1
@@ -48,20 +48,20 @@ def _facts(book: Book, version: str) -> Iterator[tuple[str, str]]:
     yield (
         "How to use it",
         (
-            "Change a yellow cell of the sheet Dimensions: all rows of Cycle are solved again by "
-            "the formulas of Newton. Drawing shows the row whose number stands there."
+            "Edit a yellow cell of the sheet Dimensions: the formulas of the sheet Newton solve "
+            "all rows of Cycle again. Drawing shows the row whose number you enter there."
         ),
     )
     if description.source:
         yield "Source", description.source
-    yield "Written by", f"Linkwork {version}; the sheet Linkwork holds its own values"
+    yield "Written by", f"Linkwork {version}; the sheet Linkwork contains its results"
     unit = book.unit("angle")
     yield "Units", f"lengths in {description.length}, angles in {unit}, counter-clockwise"
     yield (
         "Names",
         (
-            "A name that spreadsheets read as a cell has an underscore behind it: a2 is called "
-            "a2_. Names of unknowns and points mean the row in which a formula stands."
+            "A name that looks like a cell gets an underscore: a2 becomes a2_. Names of unknowns "
+            "and points refer to the row of the formula."
         ),
     )
     yield "Rows", f"{count} values of the input, {int(book.iterations.found.sum())} with a position"
@@ -119,32 +119,32 @@ def notices(book: Book) -> Iterator[str]:
     for block in book.closure.blocks:
         if block.reason:
             own = ", ".join(book.shown(unknowns[k]) for k in block.unknowns)
-            yield f"{own}: {block.reason}; the column holds Linkwork's values"
+            yield f"{own}: {block.reason}; the column contains Linkwork's values"
     fixed = [d.name for d in book.dimensions if not d.live]
     if fixed:
         yield (
-            f"{', '.join(fixed)}: the equations follow from these by more than a formula; they "
-            "keep the values of the file"
+            f"{', '.join(fixed)}: no formula connects these with the equations; they keep the "
+            "values of the file"
         )
     names = {d.key: d.name for d in book.dimensions}
     settled = [names.get(key, key) for key in book.traced.settled]
     if settled:
-        yield f"{', '.join(settled)}: ratios of wheels keep the values of the file"
+        yield f"{', '.join(settled)}: gear ratios keep the values of the file"
     outputs = [name for name in book.motion.outputs if name not in book.closure.outputs]
     if outputs:
         yield f"{', '.join(outputs)}: values on the sheet Linkwork only"
     held = int((book.iterations.found & ~book.iterations.live).sum())
     if held:
         yield (
-            f"{held} rows: Newton-Raphson has no answer there, as at a change point; they hold "
-            "Linkwork's values"
+            f"{held} rows: Newton-Raphson does not converge there, as at a change point; they "
+            "contain Linkwork's values"
         )
     lost = book.count - int(book.iterations.found.sum())
     if lost:
-        yield f"{lost} rows: there is no position; what Linkwork says stands in the last column"
+        yield f"{lost} rows: there is no position; the last column has Linkwork's reason"
     added = int(np.count_nonzero(book.motion.added))
     if added:
         yield (
-            f"{added} rows that the table did not ask for, at limits and on further branches, "
-            "stand on the sheet Linkwork only"
+            f"{added} rows in addition to the table, at limits and on further branches, are on "
+            "the sheet Linkwork only"
         )

@@ -1,4 +1,4 @@
-"""What all sheets of a workbook share: names, numbers, and where the rows are."""
+"""The workbook that its sheets share: names of cells, numbers, first and last rows."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from linkwork.export.workbook.style import Style
 from linkwork.export.workbook.traced_equations import Dimension, TracedEquations
 from linkwork.expression.tree import names_in
 from linkwork.foundation.names import canonical, pretty
+from linkwork.mechanism.figures import Disc
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind
@@ -119,7 +120,7 @@ class Book:
     @cached_property
     def model_circles(self) -> list[tuple[str, str, float]]:
         """Wheels to draw: name, centre, radius."""
-        discs = self.model.skeleton.contacts.discs
+        discs = self.model.skeleton.of(Disc)
         return [(d.name, d.center, d.radius) for d in discs if d.center in self.closure.points]
 
     def solved(self, unknown: int) -> bool:
@@ -141,7 +142,7 @@ class Book:
         return self.model.units.of(Kind(kind))
 
     def scale(self, variable: Variable) -> float:
-        """Internal units per everyday unit."""
+        """Internal units per file unit."""
         return self.model.units.scale(Kind(variable.kind))
 
     def text(self, formula: CellFormula, **instead: str) -> str:

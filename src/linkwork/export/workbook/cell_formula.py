@@ -1,4 +1,4 @@
-"""Formulas as spreadsheets write them, and what they are worth."""
+"""Formulas in spreadsheet notation, and their values."""
 
 from __future__ import annotations
 

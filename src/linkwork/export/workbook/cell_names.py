@@ -1,4 +1,4 @@
-"""Names of cells: ``a2`` is a cell of every sheet, so the dimension a2 is called ``a2_``."""
+"""Names of cells: ``a2`` is the address of a cell, so the dimension a2 is called ``a2_``."""
 
 from __future__ import annotations
 

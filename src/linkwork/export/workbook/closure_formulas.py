@@ -1,6 +1,6 @@
 """The rows of Newton-Raphson as formulas: equations, Jacobian, points, outputs.
 
-Formulas call an unknown or input by its symbol, in everyday units, and a dimension by its key.
+Formulas call an unknown or input by its symbol, in file units, and a dimension by its key.
 Coefficients that are long to write get a cell of their own.
 """
 

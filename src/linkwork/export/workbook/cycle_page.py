@@ -66,7 +66,7 @@ def planned_cycle(book: Book) -> CycleColumns:
     )
     group("Equations, 0 where they close", [f"row {name}" for name in rows])
     squares, place = place, place + (1 if rows else 0)
-    group("Links that ride along", [canonical(link) for link in book.closure.links])
+    group("Links that turn with another link", [canonical(link) for link in book.closure.links])
     group("Outputs", [f"output {name}" for name in book.closure.outputs])
     points = book.closure.points
     group("Points", [coordinate_name(point, axis) for point in points for axis in "xy"])
@@ -212,7 +212,7 @@ class _Page:
         book, columns = self.book, self.columns
         book.head(self.sheet, columns.largest, "difference", "from Linkwork")
         book.head(self.sheet, columns.closes, "closes", "")
-        self.sheet.write(FIRST - 2, columns.status, "Linkwork says", book.style["head_left"])
+        self.sheet.write(FIRST - 2, columns.status, "Linkwork's status", book.style["head_left"])
         self.sheet.write(FIRST - 1, columns.status, "", book.style["unit"])
         if columns.equations:
             square = column_name(columns.squares)
@@ -255,7 +255,7 @@ class _Page:
             return f"{status.name}: {status.value}"
         said = motion.certification[row].name.lower().replace("_", " ")
         if not done.live[k]:
-            return f"found, {said}; values only: Newton-Raphson has no answer here"
+            return f"found, {said}; does not recalculate: Newton-Raphson does not converge here"
         if done.above[k] < 0 and k > 0:
-            return f"found, {said}; starts from an estimate of its own"
+            return f"found, {said}; starts from a separate estimate"
         return f"found, {said}"

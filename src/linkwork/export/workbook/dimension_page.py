@@ -1,4 +1,4 @@
-"""The sheet with what can be changed: dimensions, the input's table, the first estimates."""
+"""The sheet of the editable cells: dimensions, the input's table, the first estimates."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def write_dimensions(book: Book) -> None:
     sheet.set_column(3, 3, 22)
     sheet.set_column(4, 4, 78)
     sheet.write(0, 0, f"{book.model.description.name}: dimensions", book.style["title"])
-    sheet.write(1, 0, "Change a yellow cell: every sheet is solved again.", book.style["note"])
+    sheet.write(1, 0, "Edit a yellow cell: all sheets recalculate.", book.style["note"])
     _Page(book, sheet).write()
     sheet.freeze_panes(2, 0)
 
@@ -110,12 +110,12 @@ class _Page:
 
     def _note(self, dimension: Dimension) -> str:
         if not dimension.live:
-            return "a value only: the equations do not follow this cell"
+            return "does not recalculate: the equations do not use this cell"
         parts = []
         if dimension.formula is not None:
             parts.append(f"= {text(dimension.formula)}")
         if dimension.key in self.book.traced.settled:
-            parts.append("where it sets a ratio of wheels the equations keep the value above")
+            parts.append("gear ratios in the equations keep the value above")
         if dimension.kind == "points" and self._sketched(dimension):
             parts.append("of the sketch: a dimension is measured from it")
         return "; ".join(parts)
@@ -140,7 +140,7 @@ class _Page:
                 )
                 self.sheet.write_number(row, 1, table[part], book.style["input"])
             if table is None:
-                note = f"{book.shown(variable)}: its values stand in the rows themselves"
+                note = f"{book.shown(variable)}: its values are in the rows"
                 self.sheet.write(self.row, 0, note, book.style["note"])
                 self.row += 1
 
@@ -165,7 +165,7 @@ class _Page:
         parts = book.closure.coefficients.values()
         if not parts:
             return
-        self._section("Coefficients that follow from them")
+        self._section("Coefficients computed from them")
         for part in parts:
             row = self._line(part.wanted, "", part.key, "")
             value = cached(book.values[part.key])
@@ -175,7 +175,7 @@ class _Page:
         book = self.book
         self._section("When a row counts as closed")
         book.names.claim("tolerance", "tolerance")
-        note = "largest sum of squares of a row's equations; else it does not close"
+        note = "largest sum of squares of the equations of a closed row"
         row = self._line("tolerance", "", "tolerance", note)
         size = (_CLOSED * book.model.equations.length_scale) ** 2
         self.sheet.write_number(row, 1, size, book.style["input"])

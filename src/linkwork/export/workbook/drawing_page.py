@@ -1,4 +1,4 @@
-"""The sheet that draws the mechanism in the row whose number stands in a cell."""
+"""The sheet that draws the mechanism in a selected row."""
 
 from __future__ import annotations
 

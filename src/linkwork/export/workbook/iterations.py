@@ -1,4 +1,4 @@
-"""What the cells of a workbook come to: each row's Newton-Raphson from the row above."""
+"""The values of the Newton cells: every row is iterated from the row above."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Iterations:
     rows : (R,)
         Numbers of the rows among those of the motion.
     values : (K + 1, R, N)
-        Unknowns at every iterate, inputs behind them, everyday units; NaN without a position.
+        Unknowns at every iterate, inputs behind them, in file units; NaN without a position.
     above : (R,)
         The row from which each row starts, -1 where it starts from an estimate of its own.
     found, live : (R,) bool
@@ -55,7 +55,7 @@ def iterated(model: Model, motion: Motion, closure: ClosureFormulas) -> Iteratio
     it; where that fails as well, as at a change point, its cells hold the values only.
     """
     rows = np.flatnonzero(motion.asked)
-    scale = _everyday(model)
+    scale = _file_units(model)
     inputs = np.stack([motion.inputs[v.name] for v in model.equations.inputs], axis=1)[rows]
     right = np.concatenate([motion.q[rows] / scale[: motion.q.shape[1]], inputs], axis=1)
     found = motion.found[rows] & np.isfinite(right).all(axis=1)
@@ -93,8 +93,8 @@ def iterated(model: Model, motion: Motion, closure: ClosureFormulas) -> Iteratio
     )
 
 
-def _everyday(model: Model) -> Array:
-    """Internal units per everyday unit of all variables, (N,)."""
+def _file_units(model: Model) -> Array:
+    """Internal units per file unit of all variables, (N,)."""
     turns = np.array([v.kind == "angle" for v in model.equations.variables])
     return np.where(turns, model.equations.angle.radians, 1.0)
 
@@ -107,7 +107,7 @@ def _rounded(model: Model, right: Array) -> Array:
     """Estimates as a person would write them: three digits of a variable's size."""
     digits = [
         int(2 - np.floor(np.log10(size / unit)))
-        for size, unit in zip(_sizes(model), _everyday(model), strict=True)
+        for size, unit in zip(_sizes(model), _file_units(model), strict=True)
     ]
     columns = [np.round(column, d) for column, d in zip(right.T, digits, strict=True)]
     return np.stack(columns, axis=1) if columns else right
@@ -115,7 +115,7 @@ def _rounded(model: Model, right: Array) -> Array:
 
 def _newton(model: Model, closure: ClosureFormulas, guess: Array, right: Array) -> Array:
     """Iterates of the cells, (K + 1, B, N): block by block, each with the values before it."""
-    scale = _everyday(model)
+    scale = _file_units(model)
     known = right.copy()
     values = np.repeat(right[None], _MOST + 1, axis=0)
     for block, formulas in zip(model.compiled.solver.blocks, closure.blocks, strict=True):
@@ -136,7 +136,7 @@ def _newton(model: Model, closure: ClosureFormulas, guess: Array, right: Array) 
 
 def _needed(model: Model, values: Array) -> int:
     """After how many iterations nothing changes any more."""
-    scale = _everyday(model) / _sizes(model)
+    scale = _file_units(model) / _sizes(model)
     changes: AnyArray = np.abs(np.diff(values, axis=0) * scale).max(axis=(1, 2), initial=0.0)
     large = np.flatnonzero(changes > _DONE)
     return int(large[-1]) + 1 if len(large) else 1

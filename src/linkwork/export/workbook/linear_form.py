@@ -1,7 +1,7 @@
-"""Real numbers that are known as formulas: sums of weighted terms, simplified as they are made.
+"""Real numbers with formulas: sums of weighted terms, simplified as they are built.
 
 A term is a formula without a numerical factor. Functions take and give radians here;
-``radians`` and ``degrees`` are functions among them, because cells hold everyday angles.
+``radians`` and ``degrees`` are functions among them, because cells hold angles in the file's unit.
 """
 
 from __future__ import annotations
@@ -106,15 +106,15 @@ class LinearForm:
             return self.node
         rest = tuple((n, w) for n, w in self.terms if _short(w / _DEGREE) is None)
         constant = _short(self.constant / _DEGREE)
-        everyday = LinearForm(constant or 0.0, tuple(in_degrees))
-        own = LinearForm.of(Call("radians", (everyday.node,)))
+        in_file_unit = LinearForm(constant or 0.0, tuple(in_degrees))
+        own = LinearForm.of(Call("radians", (in_file_unit.node,)))
         return (own + LinearForm(self.constant if constant is None else 0.0, rest)).node
 
     @property
     def in_degrees(self) -> Node:
         """The formula of an angle in radians, in degrees."""
-        everyday = self.per(_DEGREE)
-        return Call("degrees", (self.angle,)) if everyday is None else everyday.node
+        in_file_unit = self.per(_DEGREE)
+        return Call("degrees", (self.angle,)) if in_file_unit is None else in_file_unit.node
 
 
 def _weighted(node: Node, weight: float) -> Node:

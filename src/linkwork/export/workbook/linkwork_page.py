@@ -1,4 +1,4 @@
-"""The sheet with Linkwork's own table: values to compare with."""
+"""The sheet of Linkwork's own results, for comparison."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def write_linkwork(book: Book, sheet: Any) -> None:
     columns = {**table.columns, **further.columns}
     units = {**table.units, **further.units}
     sheet.write(0, 0, f"{book.model.description.name}: values by Linkwork", style["title"])
-    sheet.write(1, 0, "Plain numbers; nothing here follows the other sheets.", style["note"])
+    sheet.write(1, 0, "Numbers only; this sheet does not recalculate.", style["note"])
     for column, (name, values) in enumerate(columns.items()):
         numeric = values.dtype.kind in "fiu"
         sheet.set_column(column, column, min(max(12, len(name) + 2), _WIDEST))

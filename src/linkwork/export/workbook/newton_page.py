@@ -1,4 +1,4 @@
-"""The sheet on which Newton-Raphson runs: from left to right, iteration after iteration."""
+"""The sheet of the Newton-Raphson iterations, from left to right."""
 
 from __future__ import annotations
 

@@ -7,17 +7,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.batch.building import written_equations
+from linkwork.batch.building import write_equations
 from linkwork.equations.model import LoopEquations
 from linkwork.export.workbook.linear_form import LinearForm
 from linkwork.export.workbook.traced_number import Trace, TracedNumber
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, Node, names_in
 from linkwork.foundation.lanes import NotElementwise
-from linkwork.foundation.names import canonical
+from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import GROUND, Linkage
-from linkwork.mechanism.parts import Number
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.quantities import Quantity, quantities, with_numbers
 
 __all__ = ["Dimension", "TracedEquations", "forms_of", "traced"]
@@ -150,6 +150,6 @@ def _built(
     }
     try:
         with np.errstate(all="ignore"):
-            return written_equations(with_numbers(description, numbers)), trace
+            return write_equations(with_numbers(description, numbers)), trace
     except NotElementwise:
         return None

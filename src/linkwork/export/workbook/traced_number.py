@@ -1,4 +1,4 @@
-"""A number that remembers its formula while the equations are built with it.
+"""A number that records its formula while the equations are built from it.
 
 The builder of a mechanism's equations computes with floats and complex numbers. A traced number
 passes through it as :class:`~linkwork.foundation.lanes.Lanes` of one design do, and knows
@@ -118,7 +118,7 @@ class TracedNumber(Lanes):
         """The plain number, noted as such."""
         if not self.re.fixed:
             self.consensus.settled.add(self.re.node)
-        return super().settled()
+        return super().uniform_value()
 
     # Arithmetic
 

@@ -112,7 +112,7 @@ def _check(model: Model, motion: Motion) -> None:
     names = [v.name for v in model.equations.inputs]
     if motion.mechanism != model.description.name or list(motion.inputs) != names:
         raise InputError(
-            f'the motion is of "{motion.mechanism}", not of "{model.description.name}": '
+            f'the motion belongs to "{motion.mechanism}", not of "{model.description.name}": '
             "give the mechanism's own sweep"
         )
     rows = int(motion.asked.sum())

@@ -38,9 +38,9 @@ def graphics_card() -> Any:
     cuda = numba_cuda()
     if not cuda.is_available():
         raise InputError(
-            "no graphics card can be used here: it takes one by NVIDIA, its driver, and CUDA's "
-            'compiler (pip install "numba-cuda[cu12]" or "[cu13]"); without device="gpu" the '
-            "processor serves"
+            "no usable graphics card was found: an NVIDIA card needs its driver and CUDA's "
+            'compiler (pip install "numba-cuda[cu12]" or "[cu13]"); leave out device="gpu" to '
+            "use the processor"
         )
     return cuda
 

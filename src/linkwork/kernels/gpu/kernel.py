@@ -12,9 +12,9 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.kernels.gpu.compiling import graphics_card
 from linkwork.kernels.gpu.printing import ThreadState, device_source
-from linkwork.kernels.march.sweep_kernel import LaneKernel, LaneRows, Steps
-from linkwork.kernels.program.code_cache import written
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.march.sweep_kernel import LaneRows, Steps, SweepKernel
+from linkwork.kernels.program.code_cache import load_compiled
+from linkwork.kernels.program.execution import Execution
 
 __all__ = ["Chunk", "DeviceKernel"]
 
@@ -25,15 +25,15 @@ _STAGED = 256 << 20  # bytes of results that one chunk brings back
 _Kernels = tuple[Any, Any]  # to be indexed with a grid, and called then
 
 
-class DeviceKernel(LaneKernel):
+class DeviceKernel(SweepKernel):
     """Programs and registers for one loop table, run on a graphics card; see
-    :class:`linkwork.kernels.march.sweep_kernel.LaneKernel` for its parameters.
+    :class:`linkwork.kernels.march.sweep_kernel.SweepKernel` for its parameters.
     """
 
     _kernels: _Kernels | None = None
     _chunks: tuple[Chunk, ...] = ()  # of the latest run: page-locked memory is slow to get
 
-    def shift(self, gear: Gear) -> None:
+    def shift(self, execution: Execution) -> None:
         """Write the kernels out; a graphics card compiles each of them at its first launch.
 
         Raises
@@ -48,7 +48,7 @@ class DeviceKernel(LaneKernel):
         self._card = graphics_card()
         self._state = ThreadState.of(self._sections, _OPTIONS)
         source = device_source(self._sections, self._state, self.certified)
-        self._kernels = written(source, "begin"), written(source, "march")
+        self._kernels = load_compiled(source, "begin"), load_compiled(source, "march")
 
     def run(
         self,
@@ -60,12 +60,12 @@ class DeviceKernel(LaneKernel):
         found: LaneRows,
         threads: int = 1,
     ) -> None:
-        """March D designs through R rows, as a :class:`LaneKernel` does.
+        """March D designs through R rows, as a :class:`SweepKernel` does.
 
         The march of one chunk runs while results of the one before are brought back. What is not
         reached is left in ``found`` as it comes.
         """
-        count, given = len(start), self.given(guess, start)
+        count, given = len(start), self.guess_nodes(guess, start)
         if not count:
             return
         chunks = self._room(len(rows), count)
@@ -94,12 +94,12 @@ class DeviceKernel(LaneKernel):
         """Fill a chunk with the first designs; see :meth:`run`."""
         part = slice(0, chunk.designs)
         own = {name: coefficients[name][part] for name in chunk.coefficients}
-        given = self.given(guess[:, part], start[part])
+        given = self.guess_nodes(guess[:, part], start[part])
         chunk.load(rows, self._options(steps), own, given)
 
     def chunk(self, rows: int, designs: int) -> Chunk:
         """Room on the device for some designs over some rows."""
-        self.shift(Gear())
+        self.shift(Execution())
         assert self._kernels is not None
         shape = _Shape(
             unknowns=self.table.unknowns,
@@ -116,7 +116,7 @@ class DeviceKernel(LaneKernel):
 
     def _room(self, rows: int, count: int) -> tuple[Chunk, ...]:
         """One chunk for all designs, or two equal ones that are used in turn."""
-        self.shift(Gear())
+        self.shift(Execution())
         each = 8 * (rows * (self.table.unknowns + 2) + len(self._state.coefficients))
         each += 8 * (6 * self.nodes.shape[1] + 4)
         free = self._card.current_context().get_memory_info().free

@@ -23,19 +23,19 @@ from typing import NamedTuple
 
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.kernels.gpu.compiling import kernel, numba_cuda, on_device
-from linkwork.kernels.march import step_control
 from linkwork.kernels.march.march_programs import NODES
-from linkwork.kernels.march.step_control import GROWTH, SAME
-from linkwork.kernels.march.work_arrays import Found, Table
+from linkwork.kernels.march.work_arrays import InputTable, MarchResult
 from linkwork.kernels.program import sine
 from linkwork.kernels.program.program import ROLES
+from linkwork.marching import prediction, step_size
+from linkwork.marching.step_size import HALF
 
 __all__ = [
-    "Found",
+    "InputTable",
+    "MarchResult",
     "Sections",
     "Shape",
     "Start",
-    "Table",
     "begin",
     "cuda",
     "follow",
@@ -46,8 +46,14 @@ __all__ = [
 
 cuda = numba_cuda()
 sin_cos = on_device(sine.sin_cos.py_func)
-_trusted = on_device(step_control.trusted.py_func)
-_hermite = on_device(step_control.hermite.py_func)
+_aim = on_device(step_size.aim)
+_stride = on_device(step_size.stride)
+_is_lost = on_device(step_size.is_lost)
+_grow = on_device(step_size.grow)
+_trusted_nodes = on_device(prediction.trusted_nodes)
+_hermite_weights = on_device(prediction.hermite_weights)
+_is_same_spacing = on_device(prediction.is_same_spacing)
+_keep_spacing = on_device(prediction.keep_spacing)
 
 
 class Sections(NamedTuple):
@@ -125,11 +131,11 @@ def _load(shape: Shape, w: Array, start: Start) -> None:
 @on_device
 def _weigh(shape: Shape, w: Array, t: float, times: Array, known: int) -> None:
     """The weights of the prediction at t from the ``known`` last nodes."""
-    used = _trusted(t, times, known)
+    used = _trusted_nodes(t, times, known)
     for i in range(NODES):
         value, slope = 0.0, 0.0
         if i < used:
-            value, slope = _hermite(t, times, i, used)
+            value, slope = _hermite_weights(t, times, i, used)
         w[_weights(shape) + 2 * i] = value
         w[_weights(shape) + 2 * i + 1] = slope
 
@@ -140,13 +146,8 @@ def _choose(shape: Shape, w: Array, times: Array, step: float, known: int, spaci
 
     ``times``: of the last nodes.
     """
-    same = abs(step - spacing[0]) <= SAME * abs(step)
-    for k in range(1, NODES):
-        same = same and abs(times[k - 1] - times[k] - spacing[k]) <= SAME * abs(step)
-    if not same:
-        spacing[0] = step
-        for k in range(1, NODES):
-            spacing[k] = times[k - 1] - times[k]
+    if not _is_same_spacing(step, times, spacing):
+        _keep_spacing(step, times, spacing)
         _weigh(shape, w, times[0] + step, times, known)
 
 
@@ -155,7 +156,7 @@ def begin(
     sections: Sections, shape: Shape, w: Array, start: Start, node: Array, begun: BoolArray
 ) -> None:
     """From a guess to a position, with small steps and its own proof; see
-    :func:`linkwork.kernels.march.step_trial.solved_slowly`.
+    :func:`linkwork.kernels.march.step_trial.correct_slowly`.
 
     ``node`` (S, M), ``begun`` (M,) bool: what is found, and whether it is a position.
     """
@@ -194,7 +195,7 @@ def _first_row(rows: Array, t: float, way: int) -> int:
 
 
 @on_device
-def _note(shape: Shape, w: Array, row: int, found: Found) -> None:
+def _note(shape: Shape, w: Array, row: int, found: MarchResult) -> None:
     """A row is reached."""
     found.reached[row, found.first] = True
     for j in range(shape.unknowns):
@@ -204,7 +205,7 @@ def _note(shape: Shape, w: Array, row: int, found: Found) -> None:
 
 
 @on_device
-def _stop(shape: Shape, w: Array, way: int, found: Found) -> None:
+def _stop(shape: Shape, w: Array, way: int, found: MarchResult) -> None:
     """A mechanism goes no further: its last node and the one before."""
     size = shape.size
     found.end[way, found.first] = w[2 * size - 1]
@@ -214,7 +215,13 @@ def _stop(shape: Shape, w: Array, way: int, found: Found) -> None:
 
 @on_device
 def follow(
-    sections: Sections, shape: Shape, w: Array, start: Start, way: int, table: Table, found: Found
+    sections: Sections,
+    shape: Shape,
+    w: Array,
+    start: Start,
+    way: int,
+    table: InputTable,
+    found: MarchResult,
 ) -> None:
     """Follow a mechanism from row to row, upwards (way 1) or downwards (0).
 
@@ -225,8 +232,8 @@ def follow(
     w : thread's state
     start : Start
     way : int
-    table : Table
-    found : Found
+    table : InputTable
+    found : MarchResult
         ``first``: the mechanism.
     """
     size, rows, steps = shape.size, table.rows, table.steps
@@ -238,10 +245,7 @@ def follow(
     row, known, h = _first_row(rows, w[size - 1], way), 1, steps[0]
     while 0 <= row < rows.shape[0]:
         goal, before = rows[row], w[2 * size - 1]
-        away = goal - before
-        arrives = abs(away) <= h
-        step = away if arrives else math.copysign(h, away)
-        t = goal if arrives else before + step
+        step, t = _stride(goal, before, h), _aim(goal, before, h)
         for k in range(NODES):
             times[k] = w[(k + 2) * size - 1]
         _choose(shape, w, times, step, known, spacing)
@@ -250,13 +254,11 @@ def follow(
         sections.correct(w)
         sections.judge(w)
         moved = abs(t - before)
-        lost = moved == 0.0 and t != goal  # a step lost in rounding
-        if w[_good(shape)] > 0.5 and not lost:
+        if w[_good(shape)] > 0.5 and not _is_lost(t, before, goal):
             if t == goal:
                 _note(shape, w, row, found)
                 row += 2 * way - 1
-            if moved >= 0.5 * h:
-                h = min(GROWTH * h, steps[1])
+            h = _grow(h, moved, steps[1])
             known = min(known + 1, NODES)
             if moved == 0.0:  # the trial is no new node
                 known = 1
@@ -264,7 +266,7 @@ def follow(
                 for j in range(NODES * size - 1, -1, -1):
                     w[size + j] = w[j]
         else:
-            h = 0.5 * moved
+            h = HALF * moved
             if h < steps[2]:
                 _stop(shape, w, way, found)
                 return

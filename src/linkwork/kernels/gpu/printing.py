@@ -43,8 +43,8 @@ def march(design, options, node, begun, rows, steps, v, radius, reached, end, la
     if way < 2 and begun[member]:
         w = cuda.local.array({length}, "float64")
         start = device_march.Start(member, design, options, node)
-        table = device_march.Table(rows, steps, SHAPE.unknowns)
-        found = device_march.Found(member, v, radius, reached, end, last)
+        table = device_march.InputTable(rows, steps, SHAPE.unknowns)
+        found = device_march.MarchResult(member, v, radius, reached, end, last)
         device_march.follow(SECTIONS, SHAPE, w, start, way, table, found)
 """
 

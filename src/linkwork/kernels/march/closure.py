@@ -16,7 +16,15 @@ from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.program.recorder import Recorder, Value
 
-__all__ = ["BlockPart", "Closure", "Linear", "Phase", "phasor_name", "solved", "turned"]
+__all__ = [
+    "BlockPart",
+    "Closure",
+    "Linear",
+    "Phase",
+    "cosine_and_sine",
+    "phasor_name",
+    "solve_linear",
+]
 
 Pair = tuple[Value | float, Value | float]
 Moves = Mapping[int, Value | float]
@@ -86,7 +94,7 @@ class Closure:
             names = (phasor_name(part, phase) for part in ("cos", "sin"))
             cosine, sine = (self.rec.input(name) for name in names)
             return cosine, sine
-        return turned(self.rec, self.v, phase)
+        return cosine_and_sine(self.rec, self.v, phase)
 
     def given(self, phase: Phase) -> bool:
         """Whether only inputs turn a phase: its phasor is the same in all blocks."""
@@ -212,10 +220,10 @@ def _phases(terms: IndexArray, variables: IndexArray, weights: Array) -> dict[in
     found: dict[int, list[tuple[int, float]]] = {}
     for t, k, w in zip(terms.tolist(), variables.tolist(), weights.tolist(), strict=True):
         found.setdefault(t, []).append((k, w))
-    return {t: _merged(phase) for t, phase in found.items()}
+    return {t: _merge_phases(phase) for t, phase in found.items()}
 
 
-def _merged(phase: Sequence[tuple[int, float]]) -> Phase:
+def _merge_phases(phase: Sequence[tuple[int, float]]) -> Phase:
     merged: list[tuple[int, float]] = []
     for variable in sorted({k for k, _ in phase}):
         mine = [w for k, w in phase if k == variable]
@@ -230,7 +238,7 @@ def phasor_name(part: str, phase: Phase) -> str:
     return part + "".join(f" {weight:g}*{k}" for k, weight in phase) + ".0"
 
 
-def turned(rec: Recorder, variables: Sequence[Value], phase: Phase) -> tuple[Value, Value]:
+def cosine_and_sine(rec: Recorder, variables: Sequence[Value], phase: Phase) -> tuple[Value, Value]:
     """Cosine and sine of a phase."""
     if len(phase) == 1 and phase[0][1] in (1.0, -1.0):
         ((variable, weight),) = phase
@@ -252,7 +260,7 @@ class Linear:
 Row = Sequence[Value | float]
 
 
-def solved(rec: Recorder, matrix: Sequence[Row], sides: Sequence[Row]) -> Linear:
+def solve_linear(rec: Recorder, matrix: Sequence[Row], sides: Sequence[Row]) -> Linear:
     """Solve small linear systems lane by lane.
 
     One and two unknowns in closed form. Of more, those with the fewest entries are eliminated first
@@ -300,7 +308,7 @@ def _by_elimination(rec: Recorder, matrix: Sequence[Row], sides: Sequence[Row]) 
             determinant = -determinant
         left.remove(column)
         order.append(column)
-        if _pivoted(rec, rows, k, column):
+        if _pivot(rec, rows, k, column):
             determinant = -determinant
         for i in range(k + 1, n):
             determinant = _larger_first(rec, rows, k, i, column, determinant)
@@ -329,7 +337,7 @@ def _by_elimination(rec: Recorder, matrix: Sequence[Row], sides: Sequence[Row]) 
     return Linear(columns, rec.multiply(determinant, last.determinant))
 
 
-def _pivoted(rec: Recorder, rows: list[list[Value | float]], k: int, column: int) -> bool:
+def _pivot(rec: Recorder, rows: list[list[Value | float]], k: int, column: int) -> bool:
     """Bring the first row with an entry to place k; whether it stood elsewhere."""
     first = next((i for i in range(k, len(rows)) if not rec.is_zero(rows[i][column])), k)
     rows[k], rows[first] = rows[first], rows[k]

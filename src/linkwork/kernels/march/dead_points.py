@@ -252,14 +252,19 @@ class _Runner:
 
 
 @compiled
+def _is_zero(w: Array, row: int) -> bool:
+    total = 0.0
+    for i in range(LANES):
+        total += w[row, i]
+    return total == 0.0
+
+
+@compiled
 def _solve(iterate: Code, w: Array, live: int) -> None:
     w[live, :] = 1.0
     for _ in range(_STEPS):
         run(iterate, w)
-        open_ = 0.0
-        for i in range(LANES):
-            open_ += w[live, i]
-        if open_ == 0.0:
+        if _is_zero(w, live):
             break
 
 
@@ -270,6 +275,14 @@ def _load(w: Array, places: IndexArray, given: Array, base: int) -> None:
         member = min(base + lane, given.shape[1] - 1)
         for j in range(len(places)):
             w[places[j], lane] = given[j, member]
+
+
+@compiled
+def _store(w: Array, wanted: IndexArray, base: int, out: Array) -> None:
+    """Columns of ``out`` from ``base`` on, as many as it has."""
+    for lane in range(min(LANES, out.shape[1] - base)):
+        for j in range(len(wanted)):
+            out[j, base + lane] = w[wanted[j], lane]
 
 
 @compiled
@@ -293,15 +306,10 @@ def _search(
         for _ in range(_PLACES):
             run(move, w)
             _solve(iterate, w, live)
-            open_ = 0.0
-            for i in range(LANES):
-                open_ += w[seeking, i]
-            if open_ == 0.0:
+            if _is_zero(w, seeking):
                 break
         run(prove, w)
-        for lane in range(min(LANES, count - base)):
-            for j in range(len(wanted)):
-                out[j, base + lane] = w[wanted[j], lane]
+        _store(w, wanted, base, out)
 
 
 @compiled
@@ -323,9 +331,7 @@ def _beside(
         run(aside, w)
         _solve(iterate, w, live)
         run(prove, w)
-        for lane in range(min(LANES, count - base)):
-            for j in range(len(wanted)):
-                out[j, base + lane] = w[wanted[j], lane]
+        _store(w, wanted, base, out)
 
 
 @compiled

@@ -21,18 +21,16 @@ from __future__ import annotations
 from collections.abc import Set
 from dataclasses import dataclass
 
-import numpy as np
-
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.kernels.march.closure import BlockPart, Closure, solved
+from linkwork.kernels.march.closure import BlockPart, Closure, solve_linear
 from linkwork.kernels.march.proof_program import BlockProof
-from linkwork.kernels.program.lowering import lowered, reserve
+from linkwork.kernels.program.lowering import lower_program, reserve
 from linkwork.kernels.program.program import Program, Registers
 from linkwork.kernels.program.recorder import Recorder, Value
 
 __all__ = ["FoldPrograms", "fold_programs"]
 
-_UNIT = float(np.finfo(float).eps) / 2.0
 _CLEARLY = 32.0  # half of it: how many errors of t the two places beside a dead point are off
 _LEAST = 1e-9  # weighted: the nearest of them
 _FARTHEST = 0.3  # weighted: how far λ may go in one step
@@ -58,7 +56,7 @@ class FoldPrograms:
     aside: Program
 
 
-class _Writer:
+class _FoldWriter:
     def __init__(self, table: LoopTable, lead: int, zeros: Set[str]) -> None:
         self.table, self.lead, self.zeros = table, lead, zeros
         self.n = table.unknowns
@@ -71,7 +69,7 @@ class _Writer:
         return Closure(self.table, self.part, rec, variables, self.zeros)
 
     def _scale(self, rec: Recorder, k: int) -> Value:
-        return rec.constant(1.0) if self.table.turns[k] else rec.input(f"scale{k}")
+        return rec.constant(1.0) if self.table.is_angle[k] else rec.input(f"scale{k}")
 
     def iterate(self) -> Recorder:
         """One step with λ held, and the rates of the others by λ."""
@@ -79,7 +77,7 @@ class _Writer:
         closure = self._closure(rec)
         drives = [row[0] for row in closure.jacobian([self.lead])]
         matrix = closure.jacobian(self.part.unknowns)
-        change, moved = solved(rec, matrix, [closure.residual(), drives]).columns
+        change, moved = solve_linear(rec, matrix, [closure.residual(), drives]).columns
         live, sizes = rec.input("live"), []
         for d, r, k in zip(change, moved, self.part.unknowns, strict=True):
             sizes.append(rec.divide(rec.absolute(d), self._scale(rec, k)))
@@ -121,19 +119,21 @@ class _Writer:
         used = (*self.part.unknowns, *closure.known())
         proof = BlockProof(closure, {k: self._scale(rec, k) for k in used})
         here, node = closure.v[self.lead], rec.input(f"w{self.lead}")
-        near = rec.absolute(here) * (4.0 * _UNIT)
+        near = rec.absolute(here) * (4.0 * UNIT_ROUNDOFF)
         # a node's own λ is known as well as its position
-        away = rec.absolute(here - node) * (1.0 + 16.0 * _UNIT)
+        away = rec.absolute(here - node) * (1.0 + 16.0 * UNIT_ROUNDOFF)
         far = away + 2.0 * near + rec.input(f"x{self.lead}")
         place = proof.within(dict.fromkeys(proof.known, near))
         arc = proof.within(dict.fromkeys(proof.known, far))
         rec.write("sound", rec.where(place.holds, 1.0, 0.0))
         masks = [place.holds, arc.holds]
-        for k, error, alone in zip(self.part.unknowns, place.each, arc.alone, strict=True):
+        for k, error, alone in zip(
+            self.part.unknowns, place.error_bound, arc.isolation_radius, strict=True
+        ):
             rec.write(f"e{k}", error)
             off = rec.absolute(closure.v[k] - rec.input(f"w{k}"))
             known = rec.largest([error, rec.input(f"x{k}")])
-            masks.append(rec.at_most(off + known, alone * (1.0 - 4.0 * _UNIT)))
+            masks.append(rec.at_most(off + known, alone * (1.0 - 4.0 * UNIT_ROUNDOFF)))
         rec.write("good", rec.all_of(masks))
         return rec
 
@@ -186,7 +186,7 @@ def fold_programs(table: LoopTable, lead: int, zeros: Set[str] = frozenset()) ->
     lead : int
         The unknown that leads.
     """
-    writer = _Writer(table, lead, zeros)
+    writer = _FoldWriter(table, lead, zeros)
     recorded = {
         "iterate": writer.iterate(),
         "move": writer.move(),
@@ -198,7 +198,9 @@ def fold_programs(table: LoopTable, lead: int, zeros: Set[str] = frozenset()) ->
     registers = Registers()
     for rec in recorded.values():
         reserve(rec, registers)
-    programs = {name: lowered(rec, registers, registers.count) for name, rec in recorded.items()}
+    programs = {
+        name: lower_program(rec, registers, registers.count) for name, rec in recorded.items()
+    }
     return FoldPrograms(
         registers=registers,
         height=max(program.height for program in programs.values()),

@@ -9,33 +9,39 @@ nodes moved instead.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.kernels.march.march_programs import NODES
-from linkwork.kernels.march.step_control import GROWTH
+from linkwork.kernels.march.step_control import aim, grow, is_lost, stride
 from linkwork.kernels.march.step_trial import (
     GOOD,
     RADIUS,
     TOPOLOGY,
     Topology,
-    chosen,
-    copied,
-    loaded,
-    settled,
+    copy_lane,
+    correct_and_judge,
+    load_lane,
+    update_weights,
 )
-from linkwork.kernels.march.work_arrays import FOUND, TABLE, TASKS, Found, Table, Tasks
-from linkwork.kernels.program.compiling import compiled_for, types, uncounted
+from linkwork.kernels.march.work_arrays import (
+    INPUT_TABLE,
+    MARCH_RESULT,
+    TASKS,
+    InputTable,
+    MarchResult,
+    Tasks,
+)
+from linkwork.kernels.program.compiling import compiled_for, njit_no_refcount, types
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.program import ROLES
+from linkwork.marching.step_size import HALF
 
 __all__ = ["march"]
 
 
-@uncounted
-def _noted(
+@njit_no_refcount
+def _store_row(
     w: Array,
     lane: int,
     topology: Topology,
@@ -43,7 +49,7 @@ def _noted(
     row: int,
     member: int,
     unknowns: int,
-    found: Found,
+    found: MarchResult,
 ) -> None:
     """A row is reached."""
     place = found.first + member
@@ -54,9 +60,9 @@ def _noted(
         found.radius[row, place] = w[topology.noted[RADIUS], lane]
 
 
-@uncounted
-def _stopped(
-    w: Array, lane: int, topology: Topology, turn: int, way: int, member: int, found: Found
+@njit_no_refcount
+def _stop_design(
+    w: Array, lane: int, topology: Topology, turn: int, way: int, member: int, found: MarchResult
 ) -> None:
     """A mechanism goes no further."""
     nodes = topology.nodes
@@ -70,17 +76,17 @@ def _stopped(
 @compiled_for(
     types.void(
         TOPOLOGY, types.Array(types.float64, 2, "C"),
-        types.Array(types.float64, 2, "C"), TABLE, TASKS, types.int64, FOUND,
+        types.Array(types.float64, 2, "C"), INPUT_TABLE, TASKS, types.int64, MARCH_RESULT,
     )
 )  # fmt: skip
 def march(
     topology: Topology,
     w: Array,
     design: Array,
-    table: Table,
+    table: InputTable,
     tasks: Tasks,
     count: int,
-    found: Found,
+    found: MarchResult,
 ) -> None:
     """Go all ways that are asked for.
 
@@ -89,10 +95,10 @@ def march(
     topology : Topology
     w : (registers, LANES) workspace with constants and options in place
     design : (C, M) coefficients
-    table : Table
+    table : InputTable
     tasks : Tasks
         The first ``count`` of them.
-    found : Found
+    found : MarchResult
     """
     rows, steps, nodes = table.rows, table.steps, topology.nodes
     weights, size = topology.weights, nodes.shape[1]
@@ -119,9 +125,9 @@ def march(
                 task[i] = following
                 following += 1
                 way[i] = tasks.way[task[i]]
-                loaded(w, i, topology.coefficients, design, tasks.member[task[i]])
+                load_lane(w, i, topology.coefficients, design, tasks.member[task[i]])
                 for role in range(1, ROLES):
-                    loaded(w, i, nodes[(role - turn) % ROLES], tasks.node, task[i])
+                    load_lane(w, i, nodes[(role - turn) % ROLES], tasks.node, task[i])
                 known[i] = 1
                 spacing[i, :] = np.inf  # like no other
                 h[i] = steps[0]
@@ -130,37 +136,34 @@ def march(
             if task[i] < 0:
                 continue
             goal = rows[row[i]]
-            away = goal - w[t1, i]
-            step = away if abs(away) <= h[i] else math.copysign(h[i], away)
-            w[t0, i] = goal if abs(away) <= h[i] else w[t1, i] + step
+            step = stride(goal, w[t1, i], h[i])
+            w[t0, i] = aim(goal, w[t1, i], h[i])
             for role in range(1, ROLES):
                 times[role - 1] = w[nodes[(role - turn) % ROLES, size - 1], i]
-            chosen(w, i, weights, times, step, known[i], spacing[i])
+            update_weights(w, i, weights, times, step, known[i], spacing[i])
         if busy == 0:
             break
-        settled(topology, turn, w, standing, False, LANES)
+        correct_and_judge(topology, turn, w, standing, False, LANES)
         for i in range(LANES):
             if task[i] < 0:
                 continue
             m = tasks.member[task[i]]
             moved = abs(w[t0, i] - w[t1, i])
-            lost = moved == 0.0 and w[t0, i] != rows[row[i]]  # a step lost in rounding
-            taken = w[good, i] > 0.5 and not lost
+            taken = w[good, i] > 0.5 and not is_lost(w[t0, i], w[t1, i], rows[row[i]])
             if taken:
                 if w[t0, i] == rows[row[i]]:
-                    _noted(w, i, topology, turn, row[i], m, table.unknowns, found)
+                    _store_row(w, i, topology, turn, row[i], m, table.unknowns, found)
                     row[i] += 2 * way[i] - 1
-                if moved >= 0.5 * h[i]:
-                    h[i] = min(GROWTH * h[i], steps[1])
+                h[i] = grow(h[i], moved, steps[1])
                 known[i] = min(known[i] + 1, NODES)
             else:
-                h[i] = 0.5 * moved
+                h[i] = HALF * moved
                 if h[i] < steps[2]:
-                    _stopped(w, i, topology, turn, way[i], m, found)
+                    _stop_design(w, i, topology, turn, way[i], m, found)
                     row[i] = len(rows) if way[i] == 1 else -1
             if not taken or moved == 0.0:  # the trial is no new node: move the others on
                 if taken:
                     known[i] = 1
                 for role in range(NODES):
-                    copied(w, i, nodes[(role - turn) % ROLES], nodes[(role + 1 - turn) % ROLES])
+                    copy_lane(w, i, nodes[(role - turn) % ROLES], nodes[(role + 1 - turn) % ROLES])
         turn = (turn + 1) % ROLES

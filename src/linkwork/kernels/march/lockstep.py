@@ -18,18 +18,25 @@ from linkwork.kernels.march.step_trial import (
     RADIUS,
     TOPOLOGY,
     Topology,
-    all_loaded,
-    chosen,
-    settled,
+    correct_and_judge,
+    load_all_lanes,
+    update_weights,
 )
-from linkwork.kernels.march.work_arrays import FOUND, TABLE, TASKS, Found, Table, Tasks
+from linkwork.kernels.march.work_arrays import (
+    INPUT_TABLE,
+    MARCH_RESULT,
+    TASKS,
+    InputTable,
+    MarchResult,
+    Tasks,
+)
 from linkwork.kernels.program.compiling import (
     compiled,
     compiled_for,
-    copied_to,
-    soon_written,
+    memcpy,
+    njit_no_refcount,
+    prefetch,
     types,
-    uncounted,
 )
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.program import ROLES
@@ -41,8 +48,8 @@ _LARGEST = 0.5  # of the largest step: further apart, rows have nodes between th
 _WORTH = LANES // 2  # with fewer lanes left each goes on by itself
 
 
-@uncounted
-def _left(
+@njit_no_refcount
+def _leave_lockstep(
     lane: int,
     member: int,
     way: int,
@@ -60,8 +67,8 @@ def _left(
     return count + 1
 
 
-@uncounted
-def _weighted(
+@njit_no_refcount
+def _update_lane_weights(
     w: Array,
     topology: Topology,
     turn: int,
@@ -84,30 +91,30 @@ def _weighted(
         step = w[trial, lane] - times[0]
         if not shared:
             spacing[:] = np.inf  # each lane's own
-        changed = chosen(w, lane, weights, times, step, steps, spacing)
+        changed = update_weights(w, lane, weights, times, step, steps, spacing)
         if shared and changed:
             for j in range(len(weights)):
                 w[weights[j], 1:] = w[weights[j], 0]
 
 
-@uncounted
+@njit_no_refcount
 def _address(array: Array, j: int, row: int, first: int) -> int:
     strides = array.strides
     return array.ctypes.data + j * strides[0] + row * strides[1] + first * strides[2]
 
 
-@uncounted
-def _fetched(first: int, width: int, row: int, table: Table, found: Found) -> None:
+@njit_no_refcount
+def _prefetch_row(first: int, width: int, row: int, table: InputTable, found: MarchResult) -> None:
     """The places of a row are brought near while the row is computed."""
     target = found.unknowns
     for j in range(table.unknowns):
         place = _address(target, j, row, first)
         for line in range(0, width * target.strides[2], _LINE):
-            soon_written(place + line)
+            prefetch(place + line)
 
 
-@uncounted
-def _kept(
+@njit_no_refcount
+def _store_row(
     first: int,
     width: int,
     row: int,
@@ -116,8 +123,8 @@ def _kept(
     w: Array,
     standing: Array,
     all_stand: bool,
-    table: Table,
-    found: Found,
+    table: InputTable,
+    found: MarchResult,
 ) -> None:
     """A row is reached by the lanes that stand."""
     target, radius, reached = found.unknowns, found.radius, found.reached
@@ -127,7 +134,7 @@ def _kept(
         for j in range(table.unknowns):
             source = place[-turn % ROLES, j]
             if target.strides[2] == w.itemsize:
-                copied_to(_address(target, j, row, first), w[source].ctypes.data, width)
+                memcpy(_address(target, j, row, first), w[source].ctypes.data, width)
                 continue
             for i in range(width):
                 target[j, row, first + i] = w[source, i]
@@ -146,7 +153,7 @@ def _kept(
             reached[row, first + i] = True
 
 
-@uncounted
+@njit_no_refcount
 def _set_out(
     base: int,
     way: int,
@@ -168,7 +175,7 @@ def _set_out(
     """
     size, width = topology.nodes.shape[1], min(LANES, node.shape[1] - base)
     for role in range(1, ROLES):
-        all_loaded(w, topology.nodes[role], node, base, width)
+        load_all_lanes(w, topology.nodes[role], node, base, width)
     t = topology.nodes[1, size - 1]
     ahead, there, together = -1, False, True
     standing[:] = 0.0
@@ -186,12 +193,12 @@ def _set_out(
         if own == ahead and (rows[own] == w[t, i]) == there:
             standing[i] = 1.0
         else:
-            count = _left(i, base + i, way, topology, 0, w, tasks, count)
+            count = _leave_lockstep(i, base + i, way, topology, 0, w, tasks, count)
     return ahead, together, count
 
 
-@uncounted
-def _aimed(
+@njit_no_refcount
+def _aim_at_row(
     base: int,
     width: int,
     row: int,
@@ -199,8 +206,8 @@ def _aimed(
     turn: int,
     w: Array,
     standing: Array,
-    table: Table,
-    found: Found,
+    table: InputTable,
+    found: MarchResult,
 ) -> tuple[float, int]:
     """The trial's t: of the row, or on the way to it. How far the row is; in how many steps, -1
     where a step would be lost in rounding.
@@ -216,22 +223,22 @@ def _aimed(
     if parts > 1 and w[t0, lead] == w[t1, lead]:
         return away, -1
     if parts <= 1:
-        _fetched(found.first + base, width, row, table, found)
+        _prefetch_row(found.first + base, width, row, table, found)
     return away, parts
 
 
 @compiled
-def _one_way(
+def _march_one_way(
     base: int,
     way: int,
     topology: Topology,
     w: Array,
     begun: BoolArray,
     node: Array,
-    table: Table,
+    table: InputTable,
     tasks: Tasks,
     count: int,
-    found: Found,
+    found: MarchResult,
 ) -> int:
     """64 mechanisms in one direction; how many tasks there are now."""
     width, standing = min(LANES, node.shape[1] - base), np.zeros(LANES)
@@ -242,12 +249,12 @@ def _one_way(
     turn, steps, good = 0, 0, topology.noted[GOOD]
     left = int(standing.sum())
     while 0 <= row < len(table.rows) and left >= min(_WORTH, (width + 1) // 2):
-        away, parts = _aimed(base, width, row, topology, turn, w, standing, table, found)
+        away, parts = _aim_at_row(base, width, row, topology, turn, w, standing, table, found)
         if parts < 0:
             break
         steps += 1
-        _weighted(w, topology, turn, steps, together, spacing, times)
-        settled(topology, turn, w, standing, True, LANES)
+        _update_lane_weights(w, topology, turn, steps, together, spacing, times)
+        correct_and_judge(topology, turn, w, standing, True, LANES)
         bad = 0
         for i in range(LANES):
             bad += standing[i] > w[good, i]
@@ -256,10 +263,10 @@ def _one_way(
                 if standing[i] > 0.5 and not w[good, i] > 0.5:
                     standing[i] = 0.0
                     left -= 1
-                    count = _left(i, base + i, way, topology, turn, w, tasks, count)
+                    count = _leave_lockstep(i, base + i, way, topology, turn, w, tasks, count)
         if parts <= 1:
             first, all_stand = found.first + base, left == width
-            _kept(first, width, row, topology, turn, w, standing, all_stand, table, found)
+            _store_row(first, width, row, topology, turn, w, standing, all_stand, table, found)
             row += 2 * way - 1
         if away != 0.0:
             turn = (turn + 1) % ROLES
@@ -268,7 +275,7 @@ def _one_way(
     if 0 <= row < len(table.rows):
         for i in range(width):
             if standing[i] > 0.5:
-                count = _left(i, base + i, way, topology, turn, w, tasks, count)
+                count = _leave_lockstep(i, base + i, way, topology, turn, w, tasks, count)
     return count
 
 
@@ -276,7 +283,7 @@ def _one_way(
     types.int64(
         TOPOLOGY, types.Array(types.float64, 2, "C"),
         types.Array(types.float64, 2, "C"), types.Array(types.float64, 2, "C"),
-        types.Array(types.boolean, 1, "C"), TABLE, TASKS, FOUND,
+        types.Array(types.boolean, 1, "C"), INPUT_TABLE, TASKS, MARCH_RESULT,
     )
 )  # fmt: skip
 def in_step(
@@ -285,9 +292,9 @@ def in_step(
     design: Array,
     node: Array,
     begun: BoolArray,
-    table: Table,
+    table: InputTable,
     tasks: Tasks,
-    found: Found,
+    found: MarchResult,
 ) -> int:
     """Lead mechanisms through the rows of the table as far as they go together.
 
@@ -297,10 +304,10 @@ def in_step(
     w : (registers, LANES) workspace with constants and options in place
     design : (C, M) coefficients
     node, begun : (S, M), (M,) where they start, and whether they do
-    table : Table
+    table : InputTable
     tasks : Tasks
         Room for 2 M; filled with what is left to do.
-    found : Found
+    found : MarchResult
 
     Returns
     -------
@@ -310,7 +317,7 @@ def in_step(
     count = 0
     for base in range(0, node.shape[1], LANES):
         width = min(LANES, node.shape[1] - base)
-        all_loaded(w, topology.coefficients, design, base, width)
+        load_all_lanes(w, topology.coefficients, design, base, width)
         for way in (1, 0):
-            count = _one_way(base, way, topology, w, begun, node, table, tasks, count, found)
+            count = _march_one_way(base, way, topology, w, begun, node, table, tasks, count, found)
     return count

@@ -33,17 +33,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import IndexArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.march.closure import (
     BlockPart,
     Closure,
     Phase,
+    cosine_and_sine,
     phasor_name,
-    solved,
-    turned,
+    solve_linear,
 )
 from linkwork.kernels.march.proof_program import BlockProof
-from linkwork.kernels.program.lowering import lowered, reserve
+from linkwork.kernels.program.lowering import lower_program, reserve
 from linkwork.kernels.program.program import ROLES, Program, Registers
 from linkwork.kernels.program.recorder import Recorder, Value
 
@@ -52,7 +53,6 @@ __all__ = ["NODES", "WEIGHTS", "MarchPrograms", "march_programs"]
 NODES = ROLES - 1  # that a prediction can use
 #: Registers of the weights of nodes' values and derivatives in a prediction.
 WEIGHTS = tuple(f"{name}{role}" for role in range(1, ROLES) for name in "ab")
-_UNIT = float(np.finfo(float).eps) / 2.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -102,7 +102,7 @@ class MarchPrograms:
         )
 
 
-class _Writer:
+class _MarchWriter:
     """Records the programs of one table."""
 
     def __init__(
@@ -120,17 +120,17 @@ class _Writer:
 
     def _scale(self, rec: Recorder, k: int) -> Value:
         """The weight of a variable: 1 for angles."""
-        return rec.constant(1.0) if self.table.turns[k] else rec.input(f"scale{k}")
+        return rec.constant(1.0) if self.table.is_angle[k] else rec.input(f"scale{k}")
 
     def _rate(self, rec: Recorder, j: int) -> Value:
         """By how much an input changes with t."""
         return rec.constant(1.0) if self.alone else rec.input(f"u{j}.rate")
 
-    def _moved(self, rec: Recorder, k: int) -> Value:
+    def _rate_of_known(self, rec: Recorder, k: int) -> Value:
         """The rate of a variable that a block takes as known."""
         return rec.input(f"d{k}.0") if k < self.n else self._rate(rec, k - self.n)
 
-    def _weighted(self, rec: Recorder, k: int, change: Value) -> Value:
+    def _weigh(self, rec: Recorder, k: int, change: Value) -> Value:
         """|change| of a variable in its weight."""
         return rec.divide(rec.absolute(change), self._scale(rec, k))
 
@@ -163,7 +163,7 @@ class _Writer:
                 rec.write(f"u{j}.0", value)
         variables = [t] * self.n + inputs  # phases of inputs alone know no unknowns
         for phase in sorted(self._given_phases()):
-            cosine, sine = turned(rec, variables, phase)
+            cosine, sine = cosine_and_sine(rec, variables, phase)
             rec.write(phasor_name("cos", phase), cosine)
             rec.write(phasor_name("sin", phase), sine)
         return rec
@@ -179,14 +179,16 @@ class _Writer:
         matrix, sides = closure.jacobian(part.unknowns), [closure.residual()]
         if not self.certified:
             sides.append(self._drives(closure, rec))
-        answer = solved(rec, matrix, sides)
+        answer = solve_linear(rec, matrix, sides)
         change, live = answer.columns[0], rec.input(f"live{number}.0")
-        turns = [abs(d) for d, k in zip(change, part.unknowns, strict=True) if self.table.turns[k]]
+        turns = [
+            abs(d) for d, k in zip(change, part.unknowns, strict=True) if self.table.is_angle[k]
+        ]
         if damped and turns:
             factor = rec.smallest([1.0, rec.input("most_turn") / rec.largest(turns)])
             change = [factor * d for d in change]
         size = rec.largest(
-            self._weighted(rec, k, d) for d, k in zip(change, part.unknowns, strict=True)
+            self._weigh(rec, k, d) for d, k in zip(change, part.unknowns, strict=True)
         )
 
         def put(name: str, value: Value) -> None:
@@ -216,16 +218,16 @@ class _Writer:
     ) -> list[Value]:
         """Rates after the correction, from those before it: the Jacobian is not solved again."""
         rec, unknowns = closure.rec, closure.part.unknowns
-        rates = {k: self._moved(rec, k) for k in closure.known()}
+        rates = {k: self._rate_of_known(rec, k) for k in closure.known()}
         rates |= {k: -r for k, r in zip(unknowns, moved, strict=True)}
         correction = {k: -d for k, d in zip(unknowns, change, strict=True)}
-        (more,) = solved(rec, matrix, [closure.bending(correction, rates)]).columns
+        (more,) = solve_linear(rec, matrix, [closure.bending(correction, rates)]).columns
         return [rec.subtract(rates[k], m) for k, m in zip(unknowns, more, strict=True)]
 
     def _drives(self, closure: Closure, rec: Recorder) -> list[Value]:
         """F_k times the rates of the known variables."""
         known = closure.known()
-        rates = [self._moved(rec, k) for k in known]
+        rates = [self._rate_of_known(rec, k) for k in known]
         return [
             rec.total([rec.multiply(x, rate) for x, rate in zip(row, rates, strict=True)])
             for row in closure.jacobian(known)
@@ -239,25 +241,27 @@ class _Writer:
         proof = BlockProof(closure, {k: self._scale(rec, k) for k in used})
         near: dict[int, Value] = {}
         far: dict[int, Value] = {}
-        step = abs(rec.input("t.0") - rec.input("t.1")) * (1.0 + 16.0 * _UNIT)
+        step = abs(rec.input("t.0") - rec.input("t.1")) * (1.0 + 16.0 * UNIT_ROUNDOFF)
         for k in proof.known:
             if k < self.n:
                 near[k], far[k] = rec.input(f"e{k}.0"), rec.input(f"y{k}.0")
             else:
-                near[k] = abs(closure.v[k]) * (4.0 * _UNIT) + rec.input(f"u{k - self.n}.spread")
+                near[k] = abs(closure.v[k]) * (4.0 * UNIT_ROUNDOFF) + rec.input(
+                    f"u{k - self.n}.spread"
+                )
                 far[k] = step * abs(self._rate(rec, k - self.n)) + 2.0 * near[k]
-        for k, rate in zip(part.unknowns, proof.rates(self._moved), strict=True):
+        for k, rate in zip(part.unknowns, proof.rates(self._rate_of_known), strict=True):
             rec.write(f"d{k}.0", rate)
         here, there = proof.within(near), proof.within(far)
         masks = [here.holds, there.holds]
         for k, error, reach, alone in zip(
-            part.unknowns, here.each, there.each, there.alone, strict=True
+            part.unknowns, here.error_bound, there.error_bound, there.isolation_radius, strict=True
         ):
             rec.write(f"e{k}.0", error)
             rec.write(f"y{k}.0", reach)
             away = abs(closure.v[k] - rec.input(f"x{k}.1"))
             away = away + rec.largest([error, rec.input(f"e{k}.1")])
-            masks.append(rec.at_most(away, alone * (1.0 - 4.0 * _UNIT)))
+            masks.append(rec.at_most(away, alone * (1.0 - 4.0 * UNIT_ROUNDOFF)))
         rec.write(f"ok{number}.0", rec.all_of(masks))
         rec.write(f"radius{number}.0", here.radius)
         return rec
@@ -284,7 +288,7 @@ class _Writer:
             masks.append(rec.at_most(0.0, product))
         h = rec.input("t.0") - rec.input("t.1")
         drifts = [
-            self._weighted(rec, k, (rec.input(f"d{k}.0") - rec.input(f"d{k}.1")) * h)
+            self._weigh(rec, k, (rec.input(f"d{k}.0") - rec.input(f"d{k}.1")) * h)
             for k in range(self.n)
         ]
         masks.append(rec.at_most(rec.largest(drifts), rec.input("most_drift")))
@@ -318,7 +322,7 @@ def march_programs(
     certified : bool
         Whether every step is proved.
     """
-    writer, blocks = _Writer(table, parts, zeros, certified), range(len(parts))
+    writer, blocks = _MarchWriter(table, parts, zeros, certified), range(len(parts))
     recorded = [
         writer.predict(),
         writer.given(),
@@ -335,7 +339,7 @@ def march_programs(
     registers.all_of(sorted(noted))
     for rec in recorded:
         reserve(rec, registers)
-    programs = [lowered(rec, registers, registers.count) for rec in recorded]
+    programs = [lower_program(rec, registers, registers.count) for rec in recorded]
     count = len(parts)
     predict, given, judge, *rest = programs
     return MarchPrograms(

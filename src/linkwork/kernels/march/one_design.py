@@ -10,9 +10,9 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray, CountArray
 from linkwork.kernels.march.rowwise import DONE, NOT_NEAR, by_rows
 from linkwork.kernels.march.step_trial import Topology
-from linkwork.kernels.march.work_arrays import Found, Table
+from linkwork.kernels.march.work_arrays import InputTable, MarchResult
 
-__all__ = ["Alone", "Ready", "RowsOfOne"]
+__all__ = ["Ready", "RowsOfOne", "SingleDesign"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,17 +36,17 @@ class Ready:
 
 
 class Scout(Protocol):
-    """What finds starts from guesses that are not near; see :class:`LaneKernel`."""
+    """What finds starts from guesses that are not near; see :class:`SweepKernel`."""
 
-    def given(self, guess: Array, start: Array) -> Array:
+    def guess_nodes(self, guess: Array, start: Array) -> Array:
         """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""
 
-    def begun(self, ready: Ready, space: Array, given: Array) -> tuple[Array, BoolArray]:
+    def start_nodes(self, ready: Ready, space: Array, given: Array) -> tuple[Array, BoolArray]:
         """Nodes (S, D) where designs start, and whether they do, (D,)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Alone:
+class SingleDesign:
     """What computes the rows of one design side by side, with room for one of them at a time.
 
     ``scale`` (D, n): weights of the unknowns.
@@ -57,26 +57,28 @@ class Alone:
     ahead: Ready
     space: Array
     own: Array
-    table: Table
+    table: InputTable
     scale: Array
 
-    def loaded(self, k: int) -> Loaded:
+    def with_design(self, k: int) -> LoadedDesign:
         """With a design in place, until another one is."""
         self.ready.load(self.space, k)
         if self.own is not self.space:
             self.ahead.load(self.own, k)
-        return Loaded(self, k, (self.ready.topology, self.ahead.topology, self.space, self.own))
+        return LoadedDesign(
+            self, k, (self.ready.topology, self.ahead.topology, self.space, self.own)
+        )
 
 
 @dataclass(frozen=True, eq=False)
-class Loaded:
+class LoadedDesign:
     """One design in place."""
 
-    alone: Alone
+    alone: SingleDesign
     design: int
     spaces: tuple[Topology, Topology, Array, Array]
 
-    def run(self, guess: Array, found: Found, counts: CountArray) -> bool:
+    def run(self, guess: Array, found: MarchResult, counts: CountArray) -> bool:
         """From a guess (n + 1,) of the unknowns and of t; whether all rows are found.
 
         ``counts`` (R,): filled with the corrections that they took.
@@ -84,8 +86,8 @@ class Loaded:
         alone, scale = self.alone, self.alone.scale[self.design]
         code = by_rows(*self.spaces, guess, False, alone.table, scale, found, counts)
         if code == NOT_NEAR:
-            node = alone.scout.given(guess[:-1, None], guess[-1:])
-            start, begun = alone.scout.begun(alone.ahead.one(self.design), alone.own, node)
+            node = alone.scout.guess_nodes(guess[:-1, None], guess[-1:])
+            start, begun = alone.scout.start_nodes(alone.ahead.one(self.design), alone.own, node)
             if not begun[0]:
                 return False
             own = start[:, 0].copy()
@@ -95,9 +97,12 @@ class Loaded:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RowsOfOne:
-    """The rows of one design, computed as often as wanted; see :meth:`LaneKernel.alone`."""
+    """The rows of one design, computed as often as wanted.
 
-    loaded: Loaded
+    :meth:`SweepKernel.prepare_single` makes them.
+    """
+
+    loaded: LoadedDesign
     guess: Array
     room: tuple[BoolArray, Array, Array]
     counts: CountArray
@@ -112,5 +117,5 @@ class RowsOfOne:
         rows = len(table.rows)
         v = np.empty((table.unknowns, rows, 1))
         radius = np.empty((rows if self.certified else 0, 1))
-        done = self.loaded.run(self.guess, Found(0, v, radius, *self.room), self.counts)
+        done = self.loaded.run(self.guess, MarchResult(0, v, radius, *self.room), self.counts)
         return (v, radius) if done else None

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray, TurnArray
-from linkwork.foundation.sharing import shared_out
+from linkwork.foundation.sharing import share_out
 from linkwork.kernels.march.rate_programs import PlaceProgram
 from linkwork.kernels.program.compiling import compiled, compiled_for, types
 from linkwork.kernels.program.interpreter import LANES, run
@@ -58,7 +58,7 @@ def at_places(
         )  # fmt: skip
 
     firsts = range(0, count, _PART)
-    shared_out(one, firsts, min(threads, len(firsts)))
+    share_out(one, firsts, min(threads, len(firsts)))
     return found
 
 

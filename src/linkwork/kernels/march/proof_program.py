@@ -11,15 +11,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
-from linkwork.kernels.march.closure import Closure, Phase, solved
+from linkwork.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
+from linkwork.kernels.march.closure import Closure, Phase, solve_linear
 from linkwork.kernels.program.recorder import Recorder, Value
 
-__all__ = ["BlockProof", "Constants", "Found"]
+__all__ = ["BlockProof", "BlockRadii", "Constants"]
 
-_UNIT = float(np.finfo(float).eps) / 2.0
-_SLACK = 1.0 + 1e-12
 _PHASOR = 14.0  # roundings in one term: sine and cosine (2.5 each), products
 _ROOM = 1e-9  # 1 - Z below which nothing is proved
 _TINY = 1e-300
@@ -28,16 +25,16 @@ Number = Value | float
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
-    """``holds`` as a mask; a solution within ``each``, no other within ``alone`` (own units); the
-    same as ``radius`` and ``unique``, weighted.
+class BlockRadii:
+    """``holds`` as a mask; a solution within ``error_bound``, no other within ``isolation_radius``
+    (own units); the same as ``radius`` and ``uniqueness_radius``, weighted.
     """
 
     holds: Value
     radius: Value
-    unique: Value
-    each: list[Value]
-    alone: list[Value]
+    uniqueness_radius: Value
+    error_bound: list[Value]
+    isolation_radius: list[Value]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,32 +64,32 @@ class BlockProof:
         self.count = n = len(self.unknowns)
         jacobian = closure.jacobian(self.unknowns)
         unit = [[1.0 if i == k else 0.0 for i in range(n)] for k in range(n)]
-        columns = solved(self.rec, jacobian, unit).columns
+        columns = solve_linear(self.rec, jacobian, unit).columns
         self.inverse = [[columns[k][i] for k in range(n)] for i in range(n)]
         self.size = [[self.rec.absolute(a) for a in row] for row in self.inverse]
         row_error, slope_error = _Rounding(closure, scale).bounds()
         self.loss = [self.product(row, slope_error) for row in self.size]
-        self.residual = self._seen_residual(row_error)
-        self.defect = [self._seen_defect(i, jacobian) for i in range(n)]
-        self._see_slopes()
-        self._see_bending()
+        self.residual = self._bound_residual(row_error)
+        self.defect = [self._bound_defect(i, jacobian) for i in range(n)]
+        self._bound_slopes()
+        self._group_terms()
 
     def product(self, row: Sequence[Number], column: Sequence[Number]) -> Value:
         """Σ a b."""
         rec = self.rec
         return rec.total([rec.multiply(a, b) for a, b in zip(row, column, strict=True)])
 
-    def _seen_residual(self, error: Sequence[Number]) -> list[Value]:
+    def _bound_residual(self, error: Sequence[Number]) -> list[Value]:
         """|A F| with its rounding."""
         rec, f = self.rec, self.closure.residual()
-        own = (self.count + 2.0) * _UNIT
+        own = (self.count + 2.0) * UNIT_ROUNDOFF
         noise = [rec.add(e, own * rec.absolute(x)) for e, x in zip(error, f, strict=True)]
         return [
             rec.add(rec.absolute(self.product(row, f)), self.product(size, noise))
             for row, size in zip(self.inverse, self.size, strict=True)
         ]
 
-    def _seen_defect(self, i: int, jacobian: Sequence[Sequence[Number]]) -> list[Value]:
+    def _bound_defect(self, i: int, jacobian: Sequence[Sequence[Number]]) -> list[Value]:
         """Row i of |I - A J|."""
         found = []
         for k in range(self.count):
@@ -100,7 +97,7 @@ class BlockProof:
             found.append(self.rec.absolute(self.rec.subtract(entry, 1.0 if i == k else 0.0)))
         return found
 
-    def _see_slopes(self) -> None:
+    def _bound_slopes(self) -> None:
         """A F_k by the known variables; of linear rows alone."""
         rec, slopes = self.rec, self.closure.jacobian(self.known)
         lines = range(2 * len(self.closure.loops), self.count)
@@ -118,7 +115,7 @@ class BlockProof:
             for row in self.inverse
         ]
 
-    def _see_bending(self) -> None:
+    def _group_terms(self) -> None:
         """Terms sorted by phase; what bends along each phase, seen through the inverse."""
         closure = self.closure
         groups: dict[Phase, list[tuple[int, int]]] = {}
@@ -155,7 +152,7 @@ class BlockProof:
             seen = rec.add(rec.absolute(a), rec.absolute(b))
             extent = rec.add(extent, rec.multiply(seen, size))
         square = rec.add(rec.multiply(real, real), rec.multiply(imag, imag))
-        noise = rec.multiply(_UNIT * (4.0 * len(members) + 12.0), extent)
+        noise = rec.multiply(UNIT_ROUNDOFF * (4.0 * len(members) + 12.0), extent)
         return rec.add(rec.sqrt(square), noise)
 
     def rates(self, rate: Callable[[Recorder, int], Value]) -> list[Value]:
@@ -163,7 +160,7 @@ class BlockProof:
         moved = [rate(self.rec, k) for k in self.known]
         return [-self.product(row, moved) for row in self.signed]
 
-    def within(self, known: Mapping[int, Value]) -> Found:
+    def within(self, known: Mapping[int, Value]) -> BlockRadii:
         """The proof for every value of the known variables so far from theirs."""
         return self._radii(self.constants(known))
 
@@ -172,8 +169,8 @@ class BlockProof:
         spread = _Spread(self, known)
         return [spread.constants(i) for i in range(self.count)]
 
-    def _radii(self, rows: Sequence[Constants]) -> Found:
-        """Existence and uniqueness from the constants, as ``numerics.certificate.radii``."""
+    def _radii(self, rows: Sequence[Constants]) -> BlockRadii:
+        """Existence and uniqueness from the constants, as ``numerics.proof.kantorovich.radii``."""
         rec = self.rec
         y, z = rec.largest(row.y for row in rows), rec.largest(row.z for row in rows)
         omega = rec.largest(row.omega for row in rows)
@@ -185,20 +182,20 @@ class BlockProof:
             root = rec.sqrt(omega * omega + 8.0 * bent * rec.largest([room, 0.0]))
             reach = 4.0 * room / (omega + root)
             whole = omega + reach * bent
-        square = room * room - 2.0 * _SLACK * whole * y
+        square = room * room - 2.0 * PROOF_SLACK * whole * y
         holds = rec.all_of([rec.at_most(_ROOM, room), rec.at_most(_TINY, square)])
         total = room + rec.sqrt(rec.largest([square, 0.0]))
-        exists = 2.0 * _SLACK * y / total
-        unique = total / (whole * _SLACK)
+        existence_radius = 2.0 * PROOF_SLACK * y / total
+        uniqueness_radius = total / (whole * PROOF_SLACK)
         if reach is not None:
-            unique = rec.smallest([unique, reach / _SLACK])
-        each, alone = [], []
+            uniqueness_radius = rec.smallest([uniqueness_radius, reach / PROOF_SLACK])
+        error_bound, isolation_radius = [], []
         for row, k in zip(rows, self.unknowns, strict=True):
             curve = row.omega if reach is None else row.omega + reach * row.bent
-            own = row.y + exists * (row.z + 0.5 * curve * exists)
-            each.append(rec.smallest([own * _SLACK, exists]) * self.scale[k])
-            alone.append(unique * self.scale[k])
-        return Found(holds, exists, unique, each, alone)
+            own = row.y + existence_radius * (row.z + 0.5 * curve * existence_radius)
+            error_bound.append(rec.smallest([own * PROOF_SLACK, existence_radius]) * self.scale[k])
+            isolation_radius.append(uniqueness_radius * self.scale[k])
+        return BlockRadii(holds, existence_radius, uniqueness_radius, error_bound, isolation_radius)
 
 
 class _Spread:
@@ -227,7 +224,7 @@ class _Spread:
         z, omega, bent = self._bending(i)
         y = rec.add(proof.residual[i], self._shift(i))
         weight = proof.scale[proof.unknowns[i]]
-        per = rec.divide(_SLACK, weight)
+        per = rec.divide(PROOF_SLACK, weight)
         return Constants(*(rec.multiply(x, per) for x in (y, z, omega, bent)))
 
     def _shift(self, i: int) -> Value:
@@ -306,7 +303,7 @@ class _Rounding:
             if length >= 0:
                 along = rec.add(along, rec.multiply(bare, self.scale[length]))
             slope = rec.add(slope, rec.multiply(rec.add(factor, self.products), along))
-        return rec.multiply(_UNIT, error), rec.multiply(_UNIT, slope)
+        return rec.multiply(UNIT_ROUNDOFF, error), rec.multiply(UNIT_ROUNDOFF, slope)
 
     def _roundings(self, phase: Phase, usual: float) -> Number:
         """A phase that has to be computed is itself rounded, in proportion to its parts."""
@@ -322,5 +319,5 @@ class _Rounding:
         constant = 0.0 if name in closure.zeros else rec.absolute(rec.input(name))
         size = rec.total([constant, *[abs(closure.v[k]) * abs(w) for k, w in entries]])
         spread = rec.total([self.scale[k] * abs(w) for k, w in entries])
-        error = rec.multiply(_UNIT * (len(entries) + 4.0), size)
-        return error, rec.multiply(_UNIT * (self.products + len(entries)), spread)
+        error = rec.multiply(UNIT_ROUNDOFF * (len(entries) + 4.0), size)
+        return error, rec.multiply(UNIT_ROUNDOFF * (self.products + len(entries)), spread)

@@ -21,18 +21,16 @@ import math
 from collections.abc import Sequence, Set
 from dataclasses import dataclass
 
-import numpy as np
-
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.kernels.march.closure import BlockPart, Closure, solved
+from linkwork.kernels.march.closure import BlockPart, Closure, solve_linear
 from linkwork.kernels.march.proof_program import BlockProof
-from linkwork.kernels.program.lowering import lowered, reserve
+from linkwork.kernels.program.lowering import lower_program, reserve
 from linkwork.kernels.program.program import Program, Registers
 from linkwork.kernels.program.recorder import Recorder, Value
 
 __all__ = ["PlaceProgram", "evidence_program", "rate_program", "row_program"]
 
-_UNIT = float(np.finfo(float).eps) / 2.0
 
 Number = Value | float
 
@@ -46,18 +44,18 @@ class PlaceProgram:
     wanted: tuple[str, ...]
 
 
-class _Writer:
+class _RateWriter:
     def __init__(self, table: LoopTable, parts: Sequence[BlockPart], zeros: Set[str]) -> None:
         self.table, self.n = table, table.unknowns
         self.rec = rec = Recorder()
         variables = [rec.input(f"v{k}") for k in range(table.variables)]
         self.closures = [Closure(table, part, rec, variables, zeros) for part in parts]
 
-    def finished(self, wanted: Sequence[str]) -> PlaceProgram:
+    def finish(self, wanted: Sequence[str]) -> PlaceProgram:
         """The program, which computes these."""
         registers = Registers()
         reserve(self.rec, registers)
-        program = lowered(self.rec, registers, registers.count)
+        program = lower_program(self.rec, registers, registers.count)
         return PlaceProgram(program=program, registers=registers, wanted=tuple(wanted))
 
     # ---------------------------------------------------------------- rates
@@ -92,7 +90,7 @@ class _Writer:
             second[k] = -x
 
     def _solution(self, matrix: list[list[Number]], side: Sequence[Number]) -> list[Value]:
-        return solved(self.rec, matrix, [side]).columns[0]
+        return solve_linear(self.rec, matrix, [side]).columns[0]
 
     def _driven(self, drives: list[list[Number]], rates: list[Number]) -> list[Value]:
         """Σ dF/dv times the rates of known variables."""
@@ -122,14 +120,14 @@ class _Writer:
 
     def _weight(self, k: int) -> Value:
         """Of a variable: 1 for angles."""
-        return self.rec.constant(1.0) if self.table.turns[k] else self.rec.input(f"scale{k}")
+        return self.rec.constant(1.0) if self.table.is_angle[k] else self.rec.input(f"scale{k}")
 
     def _condition(self, closure: Closure, scales: Sequence[Number]) -> Value:
         rec, n = self.rec, len(scales)
         weights = [self._weight(k) for k in closure.part.unknowns]
         matrix = closure.jacobian(closure.part.unknowns)
         units = [[1.0 if i == j else 0.0 for i in range(n)] for j in range(n)]
-        columns = solved(rec, matrix, units).columns
+        columns = solve_linear(rec, matrix, units).columns
         forward = self._norm(matrix, weights, scales)
         inverse = [[columns[j][i] for j in range(n)] for i in range(n)]
         return rec.multiply(forward, self._norm(inverse, scales, weights))
@@ -155,17 +153,20 @@ class _Writer:
         """That there is one position near, for all values the inputs may stand for."""
         rec = self.rec
         near: dict[int, Value] = {
-            k: rec.absolute(rec.input(f"v{k}")) * (4.0 * _UNIT) + rec.input(f"u{k - self.n}.spread")
+            k: rec.absolute(rec.input(f"v{k}")) * (4.0 * UNIT_ROUNDOFF)
+            + rec.input(f"u{k - self.n}.spread")
             for k in range(self.n, self.table.variables)
         }
         proofs = []
         for closure in self.closures:
             used = (*closure.part.unknowns, *closure.known())
             proofs.append(BlockProof(closure, {k: self._weight(k) for k in used}).within(near))
-            near |= dict(zip(closure.part.unknowns, proofs[-1].each, strict=True))
+            near |= dict(zip(closure.part.unknowns, proofs[-1].error_bound, strict=True))
         holds = rec.all_of([proof.holds for proof in proofs])
         rec.write("radius", rec.where(holds, rec.largest(p.radius for p in proofs), math.nan))
-        rec.write("unique", rec.where(holds, rec.smallest(p.unique for p in proofs), math.nan))
+        rec.write(
+            "unique", rec.where(holds, rec.smallest(p.uniqueness_radius for p in proofs), math.nan)
+        )
         return ["radius", "unique"]
 
 
@@ -183,8 +184,8 @@ def rate_program(
     zeros : set of str
         Names of coefficients that are zero in every design.
     """
-    writer = _Writer(table, parts, zeros)
-    return writer.finished(writer.rates())
+    writer = _RateWriter(table, parts, zeros)
+    return writer.finish(writer.rates())
 
 
 def evidence_program(
@@ -200,8 +201,8 @@ def evidence_program(
     lengths : set of int
         The linear rows whose residual is a length.
     """
-    writer = _Writer(table, parts, zeros)
-    return writer.finished(writer.evidence(lengths))
+    writer = _RateWriter(table, parts, zeros)
+    return writer.finish(writer.evidence(lengths))
 
 
 def row_program(
@@ -216,6 +217,6 @@ def row_program(
 
     Parameters are those of :func:`evidence_program`.
     """
-    writer = _Writer(table, parts, zeros)
+    writer = _RateWriter(table, parts, zeros)
     proof = writer.proof() if certified else []
-    return writer.finished([*writer.rates(), *writer.evidence(lengths), *proof])
+    return writer.finish([*writer.rates(), *writer.evidence(lengths), *proof])

@@ -9,27 +9,27 @@ left to :mod:`linkwork.kernels.march.independent`.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from linkwork.foundation.arrays import AnyArray, Array, CountArray
 from linkwork.kernels.march.march_programs import NODES
-from linkwork.kernels.march.step_control import GROWTH, SAME
+from linkwork.kernels.march.step_control import aim, grow, stride
 from linkwork.kernels.march.step_trial import (
     GOOD,
     RADIUS,
     TOPOLOGY,
     Topology,
-    chosen,
-    met,
-    proved,
-    settled,
+    correct_and_judge,
+    correct_from_guess,
+    proves_trials,
+    update_weights,
 )
-from linkwork.kernels.march.work_arrays import FOUND, TABLE, Found, Table
-from linkwork.kernels.program.compiling import compiled, compiled_for, types, uncounted
+from linkwork.kernels.march.work_arrays import INPUT_TABLE, MARCH_RESULT, InputTable, MarchResult
+from linkwork.kernels.program.compiling import compiled, compiled_for, njit_no_refcount, types
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.program import ROLES
+from linkwork.marching.prediction import SAME
+from linkwork.marching.step_size import HALF
 
 __all__ = ["DONE", "LEFT", "NOT_NEAR", "by_rows"]
 
@@ -48,7 +48,7 @@ _BEND = 0.1  # without proofs, from row to row: a change of rates times the dist
 _ROUGH = 0.03  # and what rates do not explain, of the way and of as much for a largest step
 
 
-@uncounted
+@njit_no_refcount
 def _gap(rows: Array) -> float:
     """From row to row; 0 where it is not the same everywhere."""
     gap: float = (rows[-1] - rows[0]) / (len(rows) - 1)
@@ -58,7 +58,7 @@ def _gap(rows: Array) -> float:
     return gap
 
 
-@uncounted
+@njit_no_refcount
 def _set_out(topology: Topology, w: Array, node: Array) -> None:
     """A node (S,) into the first lane, as the only one."""
     for role in range(1, ROLES):
@@ -66,15 +66,15 @@ def _set_out(topology: Topology, w: Array, node: Array) -> None:
             w[topology.nodes[role, j], 0] = node[j]
 
 
-@uncounted
-def _noted(topology: Topology, turn: int, w: Array, lane: int, node: Array) -> None:
+@njit_no_refcount
+def _store_node(topology: Topology, turn: int, w: Array, lane: int, node: Array) -> None:
     """The trial of a lane as a node (S,)."""
     for j in range(len(node)):
         node[j] = w[topology.nodes[-turn % ROLES, j], lane]
 
 
 @compiled
-def _started(topology: Topology, w: Array, guess: Array, scale: Array, node: Array) -> bool:
+def _solve_start(topology: Topology, w: Array, guess: Array, scale: Array, node: Array) -> bool:
     """The position at a guess (n + 1,) close to it, into ``node`` (S,); whether it is close."""
     nodes, n, last = topology.nodes, len(scale), topology.nodes.shape[1] - 1
     for role in range(1, ROLES):
@@ -82,9 +82,9 @@ def _started(topology: Topology, w: Array, guess: Array, scale: Array, node: Arr
             w[nodes[role, j], 0] = guess[j] if j < n else 0.0
         w[nodes[role, last], 0] = guess[n]
     w[nodes[0, last], 0] = guess[n]
-    if topology.trial == 0 or met(topology, 0, w, np.ones(1), 1, n) == 0:
+    if topology.trial == 0 or correct_from_guess(topology, 0, w, np.ones(1), 1, n) == 0:
         return False
-    _noted(topology, 0, w, 0, node)
+    _store_node(topology, 0, w, 0, node)
     near = 0
     for k in range(n):
         near += abs(node[k] - guess[k]) <= _CLOSE * scale[k]
@@ -92,7 +92,7 @@ def _started(topology: Topology, w: Array, guess: Array, scale: Array, node: Arr
 
 
 @compiled
-def _scouted(
+def _march_to(
     topology: Topology, w: Array, turn: int, known: int, end: float, steps: Array, enough: int
 ) -> tuple[int, int]:
     """In the first lane to ``end``, or until ``enough`` nodes are behind: how often roles have
@@ -104,33 +104,34 @@ def _scouted(
     while known < enough and w[nodes[(1 - turn) % ROLES, last], 0] != end:
         for role in range(1, ROLES):
             times[role - 1] = w[nodes[(role - turn) % ROLES, last], 0]
-        away = end - times[0]
-        step = math.copysign(min(abs(away), h), away)
-        w[nodes[-turn % ROLES, last], 0] = end if step == away else times[0] + step
-        chosen(w, 0, topology.weights, times, step, known, spacing)
-        settled(topology, turn, w, alone, False, 1)
+        step = stride(end, times[0], h)
+        w[nodes[-turn % ROLES, last], 0] = aim(end, times[0], h)
+        update_weights(w, 0, topology.weights, times, step, known, spacing)
+        correct_and_judge(topology, turn, w, alone, False, 1)
         if w[topology.noted[GOOD], 0] > 0.5:
-            known, h = known + 1, min(GROWTH * h, steps[1])
+            known, h = known + 1, grow(h, abs(step), steps[1])
             turn = (turn + 1) % ROLES
         else:
-            h = 0.5 * abs(step)
+            h = HALF * abs(step)
             if h < steps[2]:
                 return turn, 0
     return turn, known
 
 
 @compiled
-def _ready(topology: Topology, w: Array, node: Array, row: int, table: Table) -> tuple[int, int]:
-    """Nodes from a node to a row and some behind that; the same as :func:`_scouted`."""
+def _find_nodes(
+    topology: Topology, w: Array, node: Array, row: int, table: InputTable
+) -> tuple[int, int]:
+    """Nodes from a node to a row and some behind that; the same as :func:`_march_to`."""
     rows, steps = table.rows, table.steps
     _set_out(topology, w, node)
-    turn, known = _scouted(topology, w, 0, 1, rows[row], steps, _ANY)
+    turn, known = _march_to(topology, w, 0, 1, rows[row], steps, _ANY)
     if known and known < NODES:
-        turn, known = _scouted(topology, w, turn, known, rows[-1], steps, NODES)
+        turn, known = _march_to(topology, w, turn, known, rows[-1], steps, NODES)
     return turn, known
 
 
-@uncounted
+@njit_no_refcount
 def _all_good(topology: Topology, w: Array, lanes: int) -> bool:
     good, bad = topology.noted[GOOD], 0
     for i in range(lanes):
@@ -138,8 +139,8 @@ def _all_good(topology: Topology, w: Array, lanes: int) -> bool:
     return bad == 0
 
 
-@uncounted
-def _weighed(times: AnyArray, count: int, t: AnyArray, lanes: int, cells: Array) -> None:
+@njit_no_refcount
+def _hermite_weights(times: AnyArray, count: int, t: AnyArray, lanes: int, cells: Array) -> None:
     """Weights at t (lanes,) of values and derivatives at ``count`` times, (2 count, lanes), in
     Hermite's polynomial.
     """
@@ -162,7 +163,7 @@ def _weighed(times: AnyArray, count: int, t: AnyArray, lanes: int, cells: Array)
 
 
 @compiled
-def _from_nodes(
+def _predict_from_nodes(
     topology: Topology, turn: int, w: Array, lanes: int, used: int, unknowns: int, cells: Array
 ) -> None:
     """Guesses for the first rows by the polynomial through the nodes behind them, which are the
@@ -180,7 +181,7 @@ def _from_nodes(
         if apart:
             times[count], places[count] = time, (k + 1 - turn) % ROLES
             count += 1
-    _weighed(times, count, w[t], lanes, cells)
+    _hermite_weights(times, count, w[t], lanes, cells)
     for k in range(unknowns):
         guess = nodes[(ROLES - 1 - turn) % ROLES, k]
         for i in range(lanes):
@@ -201,8 +202,8 @@ def _knots(width: int) -> CountArray:
     return knots
 
 
-@uncounted
-def _predicted(
+@njit_no_refcount
+def _predict_from_rows(
     topology: Topology,
     turn: int,
     w: Array,
@@ -224,8 +225,8 @@ def _predicted(
                 w[guess, i] += cells[2 * j, i] * value + cells[2 * j + 1, i] * rate
 
 
-@uncounted
-def _smooth(
+@njit_no_refcount
+def _is_smooth(
     topology: Topology,
     turn: int,
     w: Array,
@@ -258,9 +259,9 @@ def _smooth(
     return rough == 0
 
 
-@uncounted
-def _kept(
-    topology: Topology, turn: int, w: Array, lanes: int, row: int, unknowns: int, found: Found
+@njit_no_refcount
+def _keep_rows(
+    topology: Topology, turn: int, w: Array, lanes: int, row: int, unknowns: int, found: MarchResult
 ) -> None:
     """The lanes are rows, from that one on."""
     m, trial = found.first, -turn % ROLES
@@ -271,17 +272,17 @@ def _kept(
 
 
 @compiled
-def _stretch(
+def _solve_stretch(
     topology: Topology,
     w: Array,
     first: int,
     width: int,
     before: Array,
-    table: Table,
+    table: InputTable,
     scale: Array,
     gap: float,
     trusting: bool,
-    found: Found,
+    found: MarchResult,
     counts: CountArray,
 ) -> int:
     """From a row on, as far as it goes well with so many rows at once: the first row not found.
@@ -292,7 +293,7 @@ def _stretch(
     rows, n, nodes = table.rows, table.unknowns, topology.nodes
     size = nodes.shape[1]
     standing, cells, knots = np.ones(LANES), np.empty((2 * _KNOTS, LANES)), _knots(width)
-    turn, known = _ready(topology, w, before, first, table)
+    turn, known = _find_nodes(topology, w, before, first, table)
     if known == 0:
         return first
     for role in range(ROLES):
@@ -310,36 +311,38 @@ def _stretch(
         for i in range(lanes):
             w[t, i] = rows[first + i]
         if block == 0:
-            _from_nodes(topology, turn, w, lanes, min(known, NODES - 1), n, cells)
+            _predict_from_nodes(topology, turn, w, lanes, min(known, NODES - 1), n, cells)
         else:
             if block == 1:
-                _weighed((knots - width) * gap, len(knots), np.arange(width) * gap, width, cells)
-            _predicted(topology, turn, w, lanes, knots, cells, n)
-        count = met(topology, turn, w, standing, lanes, n)
+                _hermite_weights(
+                    (knots - width) * gap, len(knots), np.arange(width) * gap, width, cells
+                )
+            _predict_from_rows(topology, turn, w, lanes, knots, cells, n)
+        count = correct_from_guess(topology, turn, w, standing, lanes, n)
         if count == 0:
             return first
-        if not trusting and not _smooth(
+        if not trusting and not _is_smooth(
             topology, turn, w, lanes, before, first == 0, scale, gap, table.steps[1]
         ):
             return first
-        _kept(topology, turn, w, lanes, first, n, found)
+        _keep_rows(topology, turn, w, lanes, first, n, found)
         for i in range(lanes):
             counts[first + i] = count
-        _noted(topology, turn, w, lanes - 1, before)
+        _store_node(topology, turn, w, lanes - 1, before)
         turn = (turn + 1) % ROLES
         first, block = first + lanes, block + 1
     return first
 
 
-@uncounted
-def _linked(
+@njit_no_refcount
+def _prove_steps(
     topology: Topology,
     w: Array,
     first: int,
-    table: Table,
+    table: InputTable,
     scale: Array,
     standing: Array,
-    found: Found,
+    found: MarchResult,
     counts: CountArray,
 ) -> bool:
     """Prove rows from one on, each from the one before it; whether that is done.
@@ -359,7 +362,7 @@ def _linked(
             w[near, i] = source[max(first + i - 1, 0), m]
         for i in range(lanes):
             w[nodes[1, 2 * n + k], i] = _FAR * scale[k]
-    count = settled(topology, 0, w, standing, False, lanes)
+    count = correct_and_judge(topology, 0, w, standing, False, lanes)
     if not _all_good(topology, w, lanes):
         return False
     outside = 0
@@ -367,7 +370,7 @@ def _linked(
         x, error, guess = nodes[0, k], nodes[0, 2 * n + k], nodes[2, k]
         for i in range(lanes):
             outside += not abs(w[x, i] - w[guess, i]) + w[error, i] <= _FAR * scale[k]
-    _kept(topology, 0, w, lanes, first, n, found)
+    _keep_rows(topology, 0, w, lanes, first, n, found)
     radius = topology.noted[RADIUS]
     for i in range(lanes):
         found.radius[first + i, m] = w[radius, i]
@@ -375,14 +378,14 @@ def _linked(
     return outside == 0
 
 
-@uncounted
-def _joined(
+@njit_no_refcount
+def _joins_start(
     topology: Topology,
     w: Array,
     start: Array,
     rows: Array,
     scale: Array,
-    found: Found,
+    found: MarchResult,
     standing: Array,
 ) -> bool:
     """Whether the start (S,) is proved to lie on the branch of the row next to it."""
@@ -395,18 +398,18 @@ def _joined(
         w[nodes[2, k], 0], w[nodes[1, k], 0] = start[k], found.unknowns[k, row, found.first]
         w[nodes[1, 2 * n + k], 0] = _FAR * scale[k]
     w[nodes[0, last], 0], w[nodes[1, last], 0] = start[-1], rows[row]
-    settled(topology, 0, w, standing, False, 1)
+    correct_and_judge(topology, 0, w, standing, False, 1)
     return bool(w[topology.noted[GOOD], 0] > 0.5)
 
 
 @compiled
-def _proved(
+def _prove_rows(
     topology: Topology,
     w: Array,
     start: Array,
-    table: Table,
+    table: InputTable,
     scale: Array,
-    found: Found,
+    found: MarchResult,
     counts: CountArray,
 ) -> bool:
     """Whether all rows are proved, and to be on the branch of the start."""
@@ -415,16 +418,16 @@ def _proved(
             w[topology.weights[j], i] = 1.0 if j == 2 else 0.0
     standing = np.ones(LANES)
     for first in range(0, len(table.rows), LANES):
-        if not _linked(topology, w, first, table, scale, standing, found, counts):
+        if not _prove_steps(topology, w, first, table, scale, standing, found, counts):
             return False
-    return _joined(topology, w, start, table.rows, scale, found, standing)
+    return _joins_start(topology, w, start, table.rows, scale, found, standing)
 
 
 @compiled_for(
     types.int64(
         TOPOLOGY, TOPOLOGY, types.Array(types.float64, 2, "C"), types.Array(types.float64, 2, "C"),
-        types.Array(types.float64, 1, "C"), types.boolean, TABLE,
-        types.Array(types.float64, 1, "C"), FOUND, types.Array(types.int64, 1, "C"),
+        types.Array(types.float64, 1, "C"), types.boolean, INPUT_TABLE,
+        types.Array(types.float64, 1, "C"), MARCH_RESULT, types.Array(types.int64, 1, "C"),
     )
 )  # fmt: skip
 def by_rows(
@@ -434,9 +437,9 @@ def by_rows(
     own: Array,
     begin: Array,
     solved: bool,
-    table: Table,
+    table: InputTable,
     scale: Array,
-    found: Found,
+    found: MarchResult,
     counts: CountArray,
 ) -> int:
     """One mechanism through all rows.
@@ -452,10 +455,10 @@ def by_rows(
         Where it starts: a node of the scout if it is ``solved``, else a guess of the unknowns, and
         t behind it.
     solved : bool
-    table : Table
+    table : InputTable
     scale : (n,)
         Weights of the unknowns: 1 of an angle.
-    found : Found
+    found : MarchResult
         The column ``first`` is filled.
     counts : (R,)
         Filled: how many corrections each row took.
@@ -476,17 +479,17 @@ def by_rows(
     else:
         for j in range(len(scout.weights)):
             own[scout.weights[j], 0] = 1.0 if j == 2 * NODES - 2 else 0.0
-        if not _started(scout, own, begin, scale, start):
+        if not _solve_start(scout, own, begin, scale, start):
             return NOT_NEAR
-    before, certify, first = start.copy(), proved(topology), 0
+    before, certify, first = start.copy(), proves_trials(topology), 0
     while first < len(rows):
         if width < _FEWEST:
             return LEFT
-        reached = _stretch(
+        reached = _solve_stretch(
             scout, own, first, width, before, table, scale, gap, certify, found, counts
         )
         first, width = reached, width // 2
-    if certify and not _proved(topology, w, start, table, scale, found, counts):
+    if certify and not _prove_rows(topology, w, start, table, scale, found, counts):
         return LEFT
     for row in range(len(rows)):
         found.reached[row, found.first] = True

@@ -10,10 +10,10 @@ from linkwork.kernels.march.step_trial import (
     LIVE,
     TOPOLOGY,
     Topology,
-    all_loaded,
-    copied,
-    solved_slowly,
-    tangent,
+    copy_lane,
+    correct_slowly,
+    load_all_lanes,
+    predict_by_tangent,
 )
 from linkwork.kernels.program.compiling import compiled_for, types
 from linkwork.kernels.program.interpreter import LANES
@@ -43,14 +43,14 @@ def begin(
     count, nodes, good = design.shape[1], topology.nodes, topology.noted[GOOD]
     for base in range(0, count, LANES):
         width = min(LANES, count - base)
-        all_loaded(w, topology.coefficients, design, base, width)
-        all_loaded(w, nodes[1], guess, base, width)
+        load_all_lanes(w, topology.coefficients, design, base, width)
+        load_all_lanes(w, nodes[1], guess, base, width)
         for lane in range(LANES):
             for role in range(len(nodes)):
-                copied(w, lane, nodes[role], nodes[1])
-            tangent(w, lane, topology.weights, 0.0)
+                copy_lane(w, lane, nodes[role], nodes[1])
+            predict_by_tangent(w, lane, topology.weights, 0.0)
             w[good, lane] = 1.0
-        solved_slowly(topology, w, 1 if width == 1 else LANES)
+        correct_slowly(topology, w, 1 if width == 1 else LANES)
         for lane in range(width):
             member = base + lane
             fine = w[good, lane] > 0.5

@@ -12,8 +12,21 @@ from typing import NamedTuple
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.kernels.march.step_control import SAME, START_STEPS, STEPS, hermite, trusted
-from linkwork.kernels.program.compiling import call_at, compiled, named_tuple, types, uncounted
+from linkwork.kernels.march.step_control import (
+    START_STEPS,
+    STEPS,
+    hermite_weights,
+    is_same_spacing,
+    keep_spacing,
+    trusted_nodes,
+)
+from linkwork.kernels.program.compiling import (
+    call_at,
+    compiled,
+    named_tuple,
+    njit_no_refcount,
+    types,
+)
 from linkwork.kernels.program.interpreter import LANES, run_part
 from linkwork.kernels.program.program import ROLES, Code
 
@@ -26,17 +39,17 @@ __all__ = [
     "RADIUS",
     "TOPOLOGY",
     "Topology",
-    "all_loaded",
-    "chosen",
-    "copied",
-    "extrapolated",
-    "judged",
-    "loaded",
-    "met",
-    "proved",
-    "settled",
-    "solved_slowly",
-    "tangent",
+    "copy_lane",
+    "correct_and_judge",
+    "correct_from_guess",
+    "correct_slowly",
+    "extrapolate",
+    "judge",
+    "load_all_lanes",
+    "load_lane",
+    "predict_by_tangent",
+    "proves_trials",
+    "update_weights",
 ]
 
 # where a program stands in the packed code; behind BLOCKS: begin, damped, iterate, prove
@@ -59,7 +72,7 @@ class Topology(NamedTuple):
     shared : registers of what is given at t, if that is the same for every design
     coefficients : (C,) registers of a design's coefficients
     trial : address of the trial written out (prediction, one correction, proof, judgement), see
-        :func:`linkwork.kernels.program.printing.trial_source`; 0 where the machine does it
+        :func:`linkwork.kernels.program.printing.trial_source`; 0 where the interpreter does it
     """
 
     code: Code
@@ -89,24 +102,24 @@ TOPOLOGY = named_tuple(
 )
 
 
-@uncounted
-def _one(topology: Topology, turn: int, w: Array, number: int, lanes: int) -> None:
+@njit_no_refcount
+def _run_program(topology: Topology, turn: int, w: Array, number: int, lanes: int) -> None:
     first, spans = turn * topology.length, topology.spans
     run_part(topology.code, first + spans[number, 0], first + spans[number, 1], w, lanes)
 
 
-@uncounted
+@njit_no_refcount
 def _blocks(topology: Topology) -> int:
     return len(topology.noted) - LIVE
 
 
-@uncounted
-def proved(topology: Topology) -> bool:
+@njit_no_refcount
+def proves_trials(topology: Topology) -> bool:
     """Whether its trials are proved."""
     return len(topology.spans) > BLOCKS + 3 * _blocks(topology)
 
 
-@uncounted
+@njit_no_refcount
 def _any(w: Array, row: int, standing: Array, lanes: int) -> bool:
     """Whether a mask holds in a lane that counts."""
     found = 0
@@ -115,7 +128,7 @@ def _any(w: Array, row: int, standing: Array, lanes: int) -> bool:
     return found > 0
 
 
-@uncounted
+@njit_no_refcount
 def _any_live(topology: Topology, w: Array, standing: Array, lanes: int) -> bool:
     """Whether a lane that counts has not converged."""
     found = False
@@ -124,7 +137,7 @@ def _any_live(topology: Topology, w: Array, standing: Array, lanes: int) -> bool
     return found
 
 
-@uncounted
+@njit_no_refcount
 def _iterate(
     topology: Topology,
     turn: int,
@@ -139,20 +152,20 @@ def _iterate(
     for k in range(most):
         if not _any(w, live, standing, lanes):
             return k
-        _one(topology, turn, w, program, lanes)
+        _run_program(topology, turn, w, program, lanes)
     return most
 
 
-@uncounted
-def judged(topology: Topology, turn: int, w: Array, lanes: int) -> None:
+@njit_no_refcount
+def judge(topology: Topology, turn: int, w: Array, lanes: int) -> None:
     """Proofs, if there are any, and the judgement."""
     for program in range(BLOCKS + 3 * _blocks(topology), len(topology.spans)):
-        _one(topology, turn, w, program, lanes)
-    _one(topology, turn, w, JUDGE, lanes)
+        _run_program(topology, turn, w, program, lanes)
+    _run_program(topology, turn, w, JUDGE, lanes)
 
 
-@uncounted
-def _by_written(topology: Topology, turn: int, w: Array, lanes: int) -> None:
+@njit_no_refcount
+def _run_compiled_trial(topology: Topology, turn: int, w: Array, lanes: int) -> None:
     place, first = 8 * LANES * topology.nodes.shape[1], w.ctypes.data
     call_at(
         topology.trial,
@@ -166,20 +179,20 @@ def _by_written(topology: Topology, turn: int, w: Array, lanes: int) -> None:
     )
 
 
-@uncounted
-def _given(topology: Topology, turn: int, w: Array, together: bool, lanes: int) -> None:
+@njit_no_refcount
+def _evaluate_inputs(topology: Topology, turn: int, w: Array, together: bool, lanes: int) -> None:
     """What is given at the trial."""
     shared = topology.shared
     if together and len(shared):
-        _one(topology, turn, w, GIVEN, 1)
+        _run_program(topology, turn, w, GIVEN, 1)
         for register in shared:
             w[register, 1:lanes] = w[register, 0]
     else:
-        _one(topology, turn, w, GIVEN, lanes)
+        _run_program(topology, turn, w, GIVEN, lanes)
 
 
-@uncounted
-def settled(
+@njit_no_refcount
+def correct_and_judge(
     topology: Topology, turn: int, w: Array, standing: Array, together: bool, lanes: int
 ) -> int:
     """From the prediction to the judgement; how many corrections the block with most of them took.
@@ -195,40 +208,42 @@ def settled(
     """
     blocks, live = _blocks(topology), topology.noted[LIVE:]
     is_written = topology.trial != 0
-    _given(topology, turn, w, together, lanes)
+    _evaluate_inputs(topology, turn, w, together, lanes)
     if is_written:
-        _by_written(topology, turn, w, lanes)
+        _run_compiled_trial(topology, turn, w, lanes)
         if not _any_live(topology, w, standing, lanes):
             return 1
     else:
-        _one(topology, turn, w, PREDICT, lanes)
+        _run_program(topology, turn, w, PREDICT, lanes)
     most = 0
     for k in range(blocks):
         if not is_written:
-            _one(topology, turn, w, BLOCKS + k, lanes)
+            _run_program(topology, turn, w, BLOCKS + k, lanes)
         elif _any(w, live[k], standing, lanes):  # what follows was computed with a worse position
             for later in range(k + 1, blocks):
                 w[live[later], :lanes] = 1.0
         program = BLOCKS + 2 * blocks + k
         more = _iterate(topology, turn, w, program, live[k], STEPS - 1, standing, lanes)
         most = max(most, more)
-    judged(topology, turn, w, lanes)
+    judge(topology, turn, w, lanes)
     return 1 + most
 
 
-@uncounted
-def met(topology: Topology, turn: int, w: Array, standing: Array, lanes: int, unknowns: int) -> int:
+@njit_no_refcount
+def correct_from_guess(
+    topology: Topology, turn: int, w: Array, standing: Array, lanes: int, unknowns: int
+) -> int:
     """From a guess in the place of the oldest node, the only one that has weight, to a position:
     how many corrections that took, 0 if not all lanes have converged. The judgement is made, but
     need not be good.
     """
     nodes = topology.nodes
     if topology.trial == 0:
-        count = settled(topology, turn, w, standing, False, lanes)
+        count = correct_and_judge(topology, turn, w, standing, False, lanes)
         return 0 if _any_live(topology, w, standing, lanes) else count
-    _given(topology, turn, w, False, lanes)
+    _evaluate_inputs(topology, turn, w, False, lanes)
     for k in range(STEPS):
-        _by_written(topology, turn, w, lanes)
+        _run_compiled_trial(topology, turn, w, lanes)
         if not _any_live(topology, w, standing, lanes):
             return k + 1
         for k in range(unknowns):
@@ -239,28 +254,28 @@ def met(topology: Topology, turn: int, w: Array, standing: Array, lanes: int, un
 
 
 @compiled
-def solved_slowly(topology: Topology, w: Array, lanes: int) -> None:
+def correct_slowly(topology: Topology, w: Array, lanes: int) -> None:
     """From a guess in role 1 to a position, with small steps; its own proof.
 
     The first proof knows nothing of the node it compares with, the second that it is this position.
     """
     blocks, nodes = _blocks(topology), topology.nodes
     everywhere = np.ones(LANES)
-    _one(topology, 0, w, PREDICT, lanes)
-    _one(topology, 0, w, GIVEN, lanes)
+    _run_program(topology, 0, w, PREDICT, lanes)
+    _run_program(topology, 0, w, GIVEN, lanes)
     for b in range(blocks):
         live = topology.noted[LIVE + b]
         w[live, :] = 1.0
         _iterate(topology, 0, w, BLOCKS + blocks + b, live, START_STEPS, everywhere, lanes)
-    if proved(topology):
+    if proves_trials(topology):
         for _ in range(2):
             for lane in range(lanes):
-                copied(w, lane, nodes[1], nodes[0])
-            judged(topology, 0, w, lanes)
+                copy_lane(w, lane, nodes[1], nodes[0])
+            judge(topology, 0, w, lanes)
 
 
-@uncounted
-def all_loaded(w: Array, registers: IndexArray, data: Array, base: int, count: int) -> None:
+@njit_no_refcount
+def load_all_lanes(w: Array, registers: IndexArray, data: Array, base: int, count: int) -> None:
     """Columns of data from ``base`` on into the lanes; behind the last one it stands again."""
     for j in range(len(registers)):
         register = registers[j]
@@ -269,22 +284,22 @@ def all_loaded(w: Array, registers: IndexArray, data: Array, base: int, count: i
         w[register, count:] = data[j, base + count - 1]
 
 
-@uncounted
-def loaded(w: Array, lane: int, registers: IndexArray, data: Array, member: int) -> None:
+@njit_no_refcount
+def load_lane(w: Array, lane: int, registers: IndexArray, data: Array, member: int) -> None:
     """One column of data into a lane."""
     for j in range(len(registers)):
         w[registers[j], lane] = data[j, member]
 
 
-@uncounted
-def copied(w: Array, lane: int, to: IndexArray, source: IndexArray) -> None:
+@njit_no_refcount
+def copy_lane(w: Array, lane: int, to: IndexArray, source: IndexArray) -> None:
     """Registers of one lane into others."""
     for j in range(len(to)):
         w[to[j], lane] = w[source[j], lane]
 
 
-@uncounted
-def tangent(w: Array, lane: int, weights: IndexArray, h: float) -> None:
+@njit_no_refcount
+def predict_by_tangent(w: Array, lane: int, weights: IndexArray, h: float) -> None:
     """Predict from the last node alone."""
     for j in range(len(weights)):
         w[weights[j], lane] = 0.0
@@ -292,8 +307,8 @@ def tangent(w: Array, lane: int, weights: IndexArray, h: float) -> None:
     w[weights[1], lane] = h
 
 
-@uncounted
-def extrapolated(
+@njit_no_refcount
+def extrapolate(
     w: Array, lane: int, weights: IndexArray, t: float, times: Array, known: int
 ) -> None:
     """Predict at t by the polynomial through the last nodes with their derivatives.
@@ -303,16 +318,16 @@ def extrapolated(
     times : (4,) of the last nodes
     known : how many of them there are; fewer are trusted far ahead
     """
-    used = trusted(t, times, known)
+    used = trusted_nodes(t, times, known)
     for j in range(len(weights)):
         w[weights[j], lane] = 0.0
     for i in range(used):
-        a, b = hermite(t, times, i, used)
+        a, b = hermite_weights(t, times, i, used)
         w[weights[2 * i], lane], w[weights[2 * i + 1], lane] = a, b
 
 
-@uncounted
-def chosen(
+@njit_no_refcount
+def update_weights(
     w: Array, lane: int, weights: IndexArray, times: Array, step: float, known: int, spacing: Array
 ) -> bool:
     """The weights of a lane's prediction, computed anew where its spacing has changed; whether it
@@ -325,14 +340,8 @@ def chosen(
     known : how many of them there are
     spacing : (4,) for which the weights are at hand, changed
     """
-    near = SAME * abs(step)
-    same = abs(step - spacing[0]) <= near
-    for k in range(1, len(times)):
-        same &= abs(times[k - 1] - times[k] - spacing[k]) <= near
-    if same:
+    if is_same_spacing(step, times, spacing):
         return False
-    spacing[0] = step
-    for k in range(1, len(times)):
-        spacing[k] = times[k - 1] - times[k]
-    extrapolated(w, lane, weights, times[0] + step, times, known)
+    keep_spacing(step, times, spacing)
+    extrapolate(w, lane, weights, times[0] + step, times, known)
     return True

@@ -9,27 +9,27 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.foundation.aligned import aligned
+from linkwork.foundation.aligned import allocate_aligned
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.sharing import shared_out
+from linkwork.foundation.sharing import share_out
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.march.closure import BlockPart
 from linkwork.kernels.march.dead_points import LastNodes
 from linkwork.kernels.march.independent import march
 from linkwork.kernels.march.lockstep import in_step
 from linkwork.kernels.march.march_programs import WEIGHTS, march_programs
-from linkwork.kernels.march.one_design import Alone, Ready, RowsOfOne
+from linkwork.kernels.march.one_design import Ready, RowsOfOne, SingleDesign
 from linkwork.kernels.march.start_positions import begin
 from linkwork.kernels.march.step_trial import Topology
-from linkwork.kernels.march.work_arrays import Found, Table, Tasks
-from linkwork.kernels.program.code_cache import is_written, written
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.march.work_arrays import InputTable, MarchResult, Tasks
+from linkwork.kernels.program.code_cache import is_cached, load_compiled
+from linkwork.kernels.program.execution import Execution
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.printing import trial_source
 from linkwork.kernels.program.program import ROLES, SOURCES, Op, Program
 
-__all__ = ["LaneKernel", "LaneRows", "RowsOfOne", "Steps"]
+__all__ = ["LaneRows", "RowsOfOne", "Steps", "SweepKernel"]
 
 _FEW = 16  # designs in a part of which each goes with its rows side by side
 _PART = 4096  # designs that one thread works on at a time, at most
@@ -71,7 +71,7 @@ class LaneRows:
     ``v`` (n, R, D): unknowns, untouched where not reached. ``radius`` (R, D): of the proof,
     weighted ((0, D) without). ``reached`` (R, D). ``found`` (D,): the start. ``stopped`` (2, D):
     the last value of t downwards and upwards where a design could go no further, NaN where it went
-    through; ``last`` (2, S, D): the node there, see :meth:`LaneKernel.last_nodes`.
+    through; ``last`` (2, S, D): the node there, see :meth:`SweepKernel.last_nodes`.
     """
 
     v: Array
@@ -82,7 +82,7 @@ class LaneRows:
     last: Array
 
     @classmethod
-    def over(cls, v: Array, radius: Array, kernel: LaneKernel) -> LaneRows:
+    def over(cls, v: Array, radius: Array, kernel: SweepKernel) -> LaneRows:
         """Nothing found yet; ``v`` and ``radius`` are written to."""
         _, rows, count = v.shape
         return cls(
@@ -94,9 +94,9 @@ class LaneRows:
             last=np.empty((2, 2 * kernel.nodes.shape[1], count)),
         )
 
-    def at(self, first: int) -> Found:
+    def at(self, first: int) -> MarchResult:
         """As the march sees it, designs from one on."""
-        return Found(first, self.v, self.radius, self.reached, self.stopped, self.last)
+        return MarchResult(first, self.v, self.radius, self.reached, self.stopped, self.last)
 
     def take(self, where: IndexArray) -> LaneRows:
         """Some of the designs."""
@@ -110,7 +110,7 @@ class LaneRows:
         )
 
 
-class LaneKernel:
+class SweepKernel:
     """Programs and registers for one loop table.
 
     Parameters
@@ -144,18 +144,18 @@ class LaneKernel:
         self.height = max(programs.height, reg.count)
         self._sections = programs
         #: The same without proofs, which goes ahead where rows are side by side.
-        self.scout = LaneKernel(table, parts, zeros, certified=False) if certified else None
+        self.scout = SweepKernel(table, parts, zeros, certified=False) if certified else None
         #: The workspace of the steps asked for last; replaced whole, for threads share a kernel.
         self._blank: tuple[Steps, Array] | None = None
         self._trial: Any = None  # written out; kept, for its address is used
 
     @property
     def trial(self) -> int:
-        """Address of the trial written out, 0 where the machine does it."""
+        """Address of the trial written out, 0 where the interpreter does it."""
         written_out = self._trial  # read once: another thread may shift
         return 0 if written_out is None else int(written_out.address)
 
-    def shift(self, gear: Gear) -> None:
+    def shift(self, execution: Execution) -> None:
         """Write the trial out, if that is asked for or saves time.
 
         Raises
@@ -163,22 +163,22 @@ class LaneKernel:
         InputError
             If it is asked for, and the folder for compiled code cannot be written to.
         """
-        if gear.specialised is False:
+        if execution.specialised is False:
             self._trial = None
-        elif gear.specialised:
-            self._trial = self._trial or written(self.source(), "trial")
-        elif self._trial is None and gear.pays_compiled(len(self.code)):
+        elif execution.specialised:
+            self._trial = self._trial or load_compiled(self.source(), "trial")
+        elif self._trial is None and execution.pays_compiled(len(self.code)):
             source = self.source()
-            if gear.pays(len(self.code)) or is_written(source):
-                with suppress(InputError):  # nobody asked: the machine serves
-                    self._trial = written(source, "trial")
+            if execution.pays(len(self.code)) or is_cached(source):
+                with suppress(InputError):  # nobody asked: the interpreter serves
+                    self._trial = load_compiled(source, "trial")
 
     def source(self) -> str:
         """A trial of this topology written out: prediction, one correction, proof, judgement."""
         sections = self._sections
         ordered = [sections.predict, *sections.begin, *sections.prove, sections.judge]
         after = [*sections.iterate, *sections.prove, sections.judge]
-        kept = {*self.nodes[0].tolist(), *self.noted.tolist(), *_read(after)}
+        kept = {*self.nodes[0].tolist(), *self.noted.tolist(), *_registers_read(after)}
         return trial_source(
             [section.code for section in ordered],
             self.nodes.shape[1],
@@ -209,7 +209,7 @@ class LaneKernel:
         found : LaneRows
             Filled.
         """
-        count, given = len(start), self.given(guess, start)
+        count, given = len(start), self.guess_nodes(guess, start)
         ready, table = self._ready(coefficients, count), self._table(rows, steps)
 
         def one(part: slice) -> None:
@@ -219,9 +219,9 @@ class LaneKernel:
             self._few(ready, coefficients, given, table, steps, found)
             return
         parts = _parts(count, threads)
-        shared_out(one, parts, min(threads, len(parts)))
+        share_out(one, parts, min(threads, len(parts)))
 
-    def given(self, guess: Array, start: Array) -> Array:
+    def guess_nodes(self, guess: Array, start: Array) -> Array:
         """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""
         node = np.zeros((self.nodes.shape[1], len(start)))
         node[: self.table.unknowns], node[-1] = guess, start
@@ -235,7 +235,7 @@ class LaneKernel:
         errors = x if self.certified else np.zeros_like(w)
         return LastNodes(t=found.stopped[way, where], w=w, s=s, q=q, p=p, x=errors)
 
-    def _registered(
+    def _coefficient_registers(
         self, coefficients: Mapping[str, Array], count: int
     ) -> tuple[IndexArray, Array]:
         """Registers (C,) of the coefficients that programs use, and their values (C, D)."""
@@ -245,7 +245,7 @@ class LaneKernel:
         return np.array([named[name] for name in used], dtype=np.intp), values
 
     def _ready(self, coefficients: Mapping[str, Array], count: int) -> Ready:
-        places, design = self._registered(coefficients, count)
+        places, design = self._coefficient_registers(coefficients, count)
         return Ready(self._topology(places), design)
 
     def _space(self, steps: Steps) -> Array:
@@ -257,11 +257,11 @@ class LaneKernel:
                 if name in self.registers.named:
                     space[self.registers.named[name]] = getattr(steps, name)
             blank = self._blank = steps, space
-        own = aligned(self.height, LANES)
+        own = allocate_aligned(self.height, LANES)
         own[:] = blank[1]
         return own
 
-    def begun(self, ready: Ready, space: Array, given: Array) -> tuple[Array, BoolArray]:
+    def start_nodes(self, ready: Ready, space: Array, given: Array) -> tuple[Array, BoolArray]:
         """Nodes (S, D) where designs start, and whether they do, (D,)."""
         node, begun = np.empty_like(given), np.zeros(given.shape[1], dtype=bool)
         given = np.ascontiguousarray(given)
@@ -272,44 +272,44 @@ class LaneKernel:
         self,
         ready: Ready,
         given: Array,
-        table: Table,
+        table: InputTable,
         steps: Steps,
         found: LaneRows,
         part: slice,
     ) -> None:
         """Designs side by side."""
         space = self._space(steps)
-        node, begun = self.begun(ready, space, given)
+        node, begun = self.start_nodes(ready, space, given)
         found.found[part] = begun
-        _marched(ready, space, node, begun, table, found.at(part.start))
+        _march_part(ready, space, node, begun, table, found.at(part.start))
 
-    def _table(self, rows: Array, steps: Steps) -> Table:
+    def _table(self, rows: Array, steps: Steps) -> InputTable:
         sizes = np.array([steps.first, steps.largest, steps.smallest])
-        return Table(rows, sizes, self.table.unknowns)
+        return InputTable(rows, sizes, self.table.unknowns)
 
     def _few(
         self,
         ready: Ready,
         coefficients: Mapping[str, Array],
         given: Array,
-        table: Table,
+        table: InputTable,
         steps: Steps,
         found: LaneRows,
     ) -> None:
         """One design after the other, its rows side by side; then those that this is not for."""
-        alone, n = self._alone(ready, coefficients, table, steps), self.table.unknowns
+        alone, n = self._prepare_single(ready, coefficients, table, steps), self.table.unknowns
         counts = np.zeros(len(table.rows), dtype=np.int64)
         for k in range(given.shape[1]):
             guess = np.append(given[:n, k], given[-1, k])
-            found.found[k] = alone.loaded(k).run(guess, found.at(k), counts)
+            found.found[k] = alone.with_design(k).run(guess, found.at(k), counts)
         left = ~found.found
         if left.any():
             space = self._space(steps)
-            node, begun = self.begun(ready, space, given)
+            node, begun = self.start_nodes(ready, space, given)
             found.found[left] = begun[left]
-            _marched(ready, space, node, begun & left, table, found.at(0))
+            _march_part(ready, space, node, begun & left, table, found.at(0))
 
-    def alone(
+    def prepare_single(
         self,
         coefficients: Mapping[str, Array],
         guess: Array,
@@ -328,7 +328,7 @@ class LaneKernel:
         """
         ready = self._ready(coefficients, 1)
         table = self._table(rows, steps)
-        loaded = self._alone(ready, coefficients, table, steps).loaded(0)
+        loaded = self._prepare_single(ready, coefficients, table, steps).with_design(0)
         size = 2 * self.nodes.shape[1]
         room = (np.zeros((len(rows), 1), dtype=bool), np.empty((2, 1)), np.empty((2, size, 1)))
         return RowsOfOne(
@@ -339,19 +339,19 @@ class LaneKernel:
             certified=self.certified,
         )
 
-    def _alone(
-        self, ready: Ready, coefficients: Mapping[str, Array], table: Table, steps: Steps
-    ) -> Alone:
+    def _prepare_single(
+        self, ready: Ready, coefficients: Mapping[str, Array], table: InputTable, steps: Steps
+    ) -> SingleDesign:
         count = ready.design.shape[1]
         ahead, scout = ready, self.scout or self
         if self.scout is not None:
             if self.trial:
-                self.scout.shift(Gear(specialised=True))
+                self.scout.shift(Execution(specialised=True))
             ahead = self.scout._ready(coefficients, count)
         space = self._space(steps)
         ones = np.ones(count)
         scales = [coefficients.get(f"scale{k}", ones) for k in range(self.table.unknowns)]
-        return Alone(
+        return SingleDesign(
             scout=scout,
             ready=ready,
             ahead=ahead,
@@ -390,15 +390,15 @@ def _parts(count: int, threads: int) -> list[slice]:
     return parts
 
 
-def _marched(
-    ready: Ready, space: Array, node: Array, begun: BoolArray, table: Table, kept: Found
+def _march_part(
+    ready: Ready, space: Array, node: Array, begun: BoolArray, table: InputTable, kept: MarchResult
 ) -> None:
     tasks = Tasks.room(2 * len(begun), len(node))
     many = in_step(ready.topology, space, ready.design, node, begun, table, tasks, kept)
     march(ready.topology, space, ready.design, table, tasks, many, kept)
 
 
-def _read(programs: Sequence[Program]) -> set[int]:
+def _registers_read(programs: Sequence[Program]) -> set[int]:
     """Registers that programs read before they write them."""
     read, written = set[int](), set[int]()
     for program in programs:

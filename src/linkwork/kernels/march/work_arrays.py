@@ -9,10 +9,10 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.kernels.program.compiling import named_tuple, types
 
-__all__ = ["FOUND", "TABLE", "TASKS", "Found", "Table", "Tasks"]
+__all__ = ["INPUT_TABLE", "MARCH_RESULT", "TASKS", "InputTable", "MarchResult", "Tasks"]
 
 
-class Table(NamedTuple):
+class InputTable(NamedTuple):
     """``rows`` (R,): increasing values of t. ``steps``: the first, largest and smallest step.
 
     ``unknowns``: how many a position has.
@@ -39,7 +39,7 @@ class Tasks(NamedTuple):
         return cls(np.empty(count, np.int64), np.empty(count, np.int64), np.empty((size, count)))
 
 
-class Found(NamedTuple):
+class MarchResult(NamedTuple):
     """What is found of M mechanisms; the one with number k of a part stands at ``first + k``.
 
     Parameters
@@ -63,8 +63,9 @@ class Found(NamedTuple):
     last: Array
 
 
-TABLE = named_tuple(
-    [types.Array(types.float64, 1, "C"), types.Array(types.float64, 1, "C"), types.int64], Table
+INPUT_TABLE = named_tuple(
+    [types.Array(types.float64, 1, "C"), types.Array(types.float64, 1, "C"), types.int64],
+    InputTable,
 )
 TASKS = named_tuple(
     [
@@ -74,7 +75,7 @@ TASKS = named_tuple(
     ],
     Tasks,
 )
-FOUND = named_tuple(
+MARCH_RESULT = named_tuple(
     [
         types.int64,
         types.Array(types.float64, 3, "C"),
@@ -83,5 +84,5 @@ FOUND = named_tuple(
         types.Array(types.float64, 2, "C"),
         types.Array(types.float64, 3, "C"),
     ],
-    Found,
+    MarchResult,
 )

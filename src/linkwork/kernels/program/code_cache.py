@@ -15,25 +15,27 @@ from platformdirs import user_cache_path
 
 from linkwork.foundation.errors import InputError
 
-__all__ = ["is_written", "written"]
+__all__ = ["is_cached", "load_compiled"]
 
 #: A folder that takes the place of the user's cache.
 FOLDER = "LINKWORK_CACHE"
-#: Modules of this package that written ones are compiled with.
+#: Modules that written ones are compiled with.
 _WITH = (
-    "gpu/compiling.py",
-    "gpu/march.py",
-    "march/step_control.py",
-    "march/step_trial.py",
-    "march/work_arrays.py",
-    "program/compiling.py",
-    "program/sine.py",
+    "kernels/gpu/compiling.py",
+    "kernels/gpu/march.py",
+    "kernels/march/step_control.py",
+    "kernels/march/step_trial.py",
+    "kernels/march/work_arrays.py",
+    "kernels/program/compiling.py",
+    "kernels/program/sine.py",
+    "marching/prediction.py",
+    "marching/step_size.py",
 )
-_KERNELS = Path(__file__).parents[1]
+_LINKWORK = Path(__file__).parents[2]
 _ONE_AT_A_TIME = RLock()  # a module is among the known ones before it is whole
 
 
-def written(source: str, function: str) -> Any:
+def load_compiled(source: str, function: str) -> Any:
     """A function of a module of which the source is given; compiled at most once.
 
     Raises
@@ -48,11 +50,11 @@ def written(source: str, function: str) -> Any:
             path = _path(name)
             if not path.exists() or path.read_text(encoding="utf-8") != source:
                 _write(path, source)
-            known = _loaded(name, path)
+            known = _load_module(name, path)
     return getattr(known, function)
 
 
-def is_written(source: str) -> bool:
+def is_cached(source: str) -> bool:
     """Whether the module is there already, so that it costs next to nothing."""
     return _name(source) in sys.modules or _path(_name(source)).exists()
 
@@ -70,7 +72,7 @@ def _name(source: str) -> str:
     """By the text and all that it is compiled with."""
     digest = hashlib.sha256(source.encode())
     for module in _WITH:
-        digest.update((_KERNELS / module).read_bytes())
+        digest.update((_LINKWORK / module).read_bytes())
     return f"linkwork_kernel_{digest.hexdigest()[:24]}"
 
 
@@ -85,12 +87,12 @@ def _write(path: Path, source: str) -> None:
         os.replace(part.name, path)
     except OSError as error:
         raise InputError(
-            f"compiled code cannot be kept in {path.parent} ({error.strerror}): "
-            f"name another folder in {FOLDER}, or ask for specialised=False"
+            f"compiled code cannot be stored in {path.parent} ({error.strerror}): "
+            f"name another folder in {FOLDER}, or use specialised=False"
         ) from None
 
 
-def _loaded(name: str, path: Path) -> Any:
+def _load_module(name: str, path: Path) -> Any:
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None
     assert spec.loader is not None

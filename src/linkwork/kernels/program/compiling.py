@@ -25,12 +25,12 @@ __all__ = [
     "call_at",
     "compiled",
     "compiled_for",
-    "copied_to",
+    "memcpy",
     "named_tuple",
-    "soon_written",
+    "njit_no_refcount",
+    "prefetch",
     "trial_at",
     "types",
-    "uncounted",
 ]
 
 _njit: Any = numba.njit  # whose types do not know of the option ``_nrt``
@@ -67,7 +67,7 @@ compiled = compiled_for(None)
 
 #: The same for functions that make no arrays: they do not count who refers to those they are given.
 #: Counting would take a fifth of the time.
-uncounted: Compiling = _njit(
+njit_no_refcount: Compiling = _njit(
     cache=True, error_model="numpy", fastmath={"contract"}, nogil=True, _nrt=False
 )
 say_that_it_compiles()
@@ -141,7 +141,7 @@ def _copy(
 
 
 #: Copies numbers, at once, to an address from another one; ``count`` of them.
-copied_to = cast(Callable[[int, int, int], None], intrinsic(_copy))
+memcpy = cast(Callable[[int, int, int], None], intrinsic(_copy))
 
 
 def _prefetch(typing: Context, address: types.Type) -> tuple[Signature, Emitter]:
@@ -162,4 +162,4 @@ def _prefetch(typing: Context, address: types.Type) -> tuple[Signature, Emitter]
 
 
 #: Says that the cache line of an address will be written to.
-soon_written = cast(Callable[[int], None], intrinsic(_prefetch))
+prefetch = cast(Callable[[int], None], intrinsic(_prefetch))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from linkwork.foundation.errors import InputError
 from linkwork.kernels.program.program import ROLES
 
-__all__ = ["DEVICES", "Gear"]
+__all__ = ["DEVICES", "Execution"]
 
 #: What a march can run on.
 DEVICES = ("cpu", "gpu")
@@ -19,8 +19,8 @@ _LONGEST = 4_000  # instructions: the compiler's time grows faster than they do
 
 
 @dataclass(frozen=True, kw_only=True)
-class Gear:
-    """Whether the trial of a topology is written out and compiled, or done by the machine.
+class Execution:
+    """Whether the trial of a topology is written out and compiled, or done by the interpreter.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Gear:
             )
         if self.device == "gpu" and self.specialised is False:
             raise InputError(
-                "a graphics card runs nothing but compiled equations: leave out "
+                "a graphics card runs compiled equations only: leave out "
                 'specialised=False or device="gpu"'
             )
 

@@ -1,4 +1,4 @@
-"""The machine that runs programs over lanes: one instruction at a time, all lanes at once.
+"""The interpreter, which runs programs over lanes: one instruction at a time, all lanes at once.
 
 Registers are rows of a workspace (R, LANES). A pass over one row is a loop of known length over
 contiguous numbers, which the compiler turns into vector instructions; choosing the operation costs
@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from linkwork.foundation.arrays import Array
-from linkwork.kernels.program.compiling import uncounted
+from linkwork.kernels.program.compiling import njit_no_refcount
 from linkwork.kernels.program.program import Code, Op
 from linkwork.kernels.program.sine import sin_cos
 
@@ -19,7 +19,7 @@ __all__ = ["LANES", "run", "run_part"]
 LANES = 64
 
 
-@uncounted
+@njit_no_refcount
 def run_part(code: Code, first: int, end: int, w: Array, lanes: int) -> None:
     """Run some instructions of a program in the first lanes."""
     for k in range(first, end):
@@ -88,7 +88,7 @@ def run_part(code: Code, first: int, end: int, w: Array, lanes: int) -> None:
                 w[d, i] = math.sqrt(w[a, i])
 
 
-@uncounted
+@njit_no_refcount
 def run(code: Code, w: Array) -> None:
     """Run a program (K, 5) over a workspace (R, LANES)."""
     run_part(code, 0, code.shape[0], w, LANES)

@@ -10,7 +10,7 @@ import numpy as np
 from linkwork.kernels.program.program import Op, Program, Registers
 from linkwork.kernels.program.recorder import Recorder
 
-__all__ = ["lowered", "reserve"]
+__all__ = ["lower_program", "reserve"]
 
 
 @dataclass
@@ -23,8 +23,8 @@ class _Lowering:
 
     def run(self) -> Program:
         rec = self.recorder
-        live = self._needed()
-        self.fused = self._fused(live)
+        live = self._find_needed()
+        self.fused = self._fuse_products(live)
         order = [k for k in sorted(live) if self._is_computed(k)]
         self.last = self._last_uses(order)
         self.place: dict[int, int] = {}
@@ -61,7 +61,7 @@ class _Lowering:
             found.append((int(Op.COPY), there, here, there, there))
         return found
 
-    def _needed(self) -> set[int]:
+    def _find_needed(self) -> set[int]:
         rec, todo, found = self.recorder, list(self.recorder.writes.values()), set[int]()
         while todo:
             k = todo.pop()
@@ -74,7 +74,7 @@ class _Lowering:
                 todo += [] if cosine is None else [cosine]
         return found
 
-    def _fused(self, live: set[int]) -> dict[int, tuple[Op, tuple[int, int, int]]]:
+    def _fuse_products(self, live: set[int]) -> dict[int, tuple[Op, tuple[int, int, int]]]:
         """Sums with a product that is used nowhere else, as one instruction."""
         rec = self.recorder
         uses = dict.fromkeys(live, 0)
@@ -192,7 +192,7 @@ class _Lowering:
                 self.free.append(place)
 
 
-def lowered(recorder: Recorder, registers: Registers, scratch_from: int) -> Program:
+def lower_program(recorder: Recorder, registers: Registers, scratch_from: int) -> Program:
     """The program of what was recorded, its scratch registers from a number on.
 
     Every name and constant it uses must have its register before (see :func:`reserve`).

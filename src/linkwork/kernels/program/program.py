@@ -2,7 +2,7 @@
 
 A register holds one number for every lane. Some registers are named and stay between runs
 (variables, coefficients); constants have registers of their own; the rest are scratch. Programs are
-recorded (:mod:`recorder`), given their registers (:mod:`lowering`) and run (:mod:`machine`).
+recorded (:mod:`recorder`), given their registers (:mod:`lowering`) and run (:mod:`interpreter`).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from linkwork.foundation.aligned import aligned
+from linkwork.foundation.aligned import allocate_aligned
 from linkwork.foundation.arrays import Array, IndexArray
 
 __all__ = ["ROLES", "SOURCES", "Code", "Op", "Program", "Registers"]
@@ -93,7 +93,7 @@ class Registers:
 
     def filled(self, height: int, lanes: int) -> Array:
         """A workspace (height, lanes) with the constants in their places."""
-        space = aligned(height, lanes)
+        space = allocate_aligned(height, lanes)
         space[:] = 0.0
         for value, register in self.constants.items():
             space[register] = value

@@ -1,4 +1,4 @@
-"""Recording arithmetic: what is computed, before it is known by which machine."""
+"""Recording arithmetic: what is computed, before it is known by which interpreter or compiler."""
 
 from __future__ import annotations
 
@@ -198,17 +198,17 @@ class Recorder:
 
     def largest(self, values: Iterable[Value | float]) -> Value:
         """The largest of some values; not a number if one of them is not."""
-        return self._folded(Op.MAX, values)
+        return self._fold_pairs(Op.MAX, values)
 
     def smallest(self, values: Iterable[Value | float]) -> Value:
         """The smallest of some values; not a number if one of them is not."""
-        return self._folded(Op.MIN, values)
+        return self._fold_pairs(Op.MIN, values)
 
     def all_of(self, masks: Iterable[Value]) -> Value:
         """Where all masks are true."""
-        return self._folded(Op.AND, masks)
+        return self._fold_pairs(Op.AND, masks)
 
-    def _folded(self, op: Op, values: Iterable[Value | float]) -> Value:
+    def _fold_pairs(self, op: Op, values: Iterable[Value | float]) -> Value:
         first, *rest = [self._value(x) for x in values]
         for x in rest:
             if x.number != first.number:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from linkwork.kernels.program.compiling import uncounted
+from linkwork.kernels.program.compiling import njit_no_refcount
 
 __all__ = ["sin_cos"]
 
@@ -17,7 +17,7 @@ _PART_2 = float.fromhex("0x1.0b4611a600000p-34")
 _PART_3 = float.fromhex("0x1.3198a2e037073p-69")
 
 
-@uncounted
+@njit_no_refcount
 def sin_cos(x: float) -> tuple[float, float]:
     """Reduced to within π/4 of a multiple of π/2, then Taylor's series.
 

@@ -1,1 +1,1 @@
-"""Every way to put a mechanism together at one input."""
+"""All assembly configurations of a mechanism at one input."""

@@ -1,4 +1,4 @@
-"""All ways to put a mechanism together at given inputs, block by block, as arrays.
+"""All configurations at given inputs, block by block, as arrays.
 
 Every block is solved once for each configuration of the blocks before it, so the configurations of
 the whole are counted like a product.
@@ -20,14 +20,15 @@ from linkwork.foundation.arrays import (
     IndexArray,
 )
 from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.rounding import ALMOST_DOUBLE, ALMOST_REAL
 from linkwork.foundation.status import Status
 from linkwork.kernels.loop_table import LoopTable
-from linkwork.motion.assembly.configuration_names import combined_name, ordered
+from linkwork.motion.assembly.configuration_names import combined_name, order_configurations
 from linkwork.motion.assembly.turned_slides import TurnedSlide, turned_slides
 from linkwork.motion.model import Model
 from linkwork.motion.redundancy import FITS, misfit
-from linkwork.numerics.block_solver import Block, Linearised, linearised
-from linkwork.numerics.homotopy.bilinear import proved_roots
+from linkwork.numerics.block_solver import Block, Linearised, linearise_block
+from linkwork.numerics.homotopy.bilinear import prove_roots
 from linkwork.numerics.homotopy.bilinear_family import structure_of
 from linkwork.numerics.homotopy.isolated_roots import isolated_roots
 from linkwork.numerics.homotopy.polynomial_system import Roots
@@ -40,11 +41,9 @@ from linkwork.results.configurations import PathCount
 __all__ = ["Assemblies", "positions_at"]
 
 _LARGEST = 4096  # configurations of the whole that are listed
-_ALMOST_REAL = 1e-6  # an unproved root this near to its mirror image is tried as a real one,
-_ALMOST_DOUBLE = 1e-3  # and a multiple one
 _MOVED = 1e-5  # weighted: how far Newton's method may carry a root to its position,
 _MOVED_DOUBLE = 1e-2  # and a multiple one
-_SAME = 1e-10  # weighted: two positions of a block are one
+_SAME_POSITION = 1e-10  # weighted: two positions of a block are one
 _CLOSED = 1e-12  # scaled residual at which a multiple root is a position
 
 
@@ -94,10 +93,15 @@ class _Assembly:
         self.model, self.solver = model, solver
         self.v = model.equations.start[None, :].copy()
         self.v[:, solver.unknowns :] = inputs
-        each = np.zeros_like(self.v)
-        each[:, solver.unknowns :] = rounding_of_inputs(self.v, solver.unknowns)
+        error_bound = np.zeros_like(self.v)
+        error_bound[:, solver.unknowns :] = rounding_of_inputs(self.v, solver.unknowns)
         nothing = np.zeros((1, 0))
-        self.proof = Proof(holds=np.ones(1, dtype=bool), exists=nothing, unique=nothing, each=each)
+        self.proof = Proof(
+            holds=np.ones(1, dtype=bool),
+            existence_radius=nothing,
+            uniqueness_radius=nothing,
+            error_bound=error_bound,
+        )
         self.iterations = np.zeros(1, dtype=np.int64)
         self.labels: list[tuple[str, ...]] = [()]
         self.completeness = Completeness.PROVED
@@ -121,7 +125,7 @@ class _Assembly:
                 break
         if self.model.equations.redundant:
             self._keep(misfit(self.model.equations, self.v) <= FITS)
-            self.notes.append("positions that a redundant link does not fit are left out")
+            self.notes.append("positions that do not fit a redundant link are left out")
         theorems = self.theorems if self.completeness.complete else []
         notes = [self.completeness.value, *theorems, *self.notes]
         return Assemblies(
@@ -153,11 +157,11 @@ class _Assembly:
         table = block.system
         if not isinstance(table, LoopTable):
             raise NoDirectionForm("are not loops")
-        if table.is_straight and (table.functions or not table.turns[: table.unknowns].all()):
+        if table.is_straight and (table.functions or not table.is_angle[: table.unknowns].all()):
             self._follow(block)
             return
         form = direction_form(table)
-        found = _block_configurations(self.model, block, form, self.v, self.proof.each)
+        found = _block_configurations(self.model, block, form, self.v, self.proof.error_bound)
         self.completeness = self.completeness.and_then(found.completeness)
         count = replace(found.paths, unknowns=self._names(block))
         self.paths.append(count)
@@ -166,14 +170,14 @@ class _Assembly:
         slides = [slide for slide in self.slides if slide.angle in block.unknowns]
         v = found.v
         for slide in slides:
-            v = _folded(slide, v)
+            v = _fold_lengths(slide, v)
         keep = np.ones(len(v), dtype=bool)
         if slides:
-            keep = _different(self.model, v, found.rows)
+            keep = _find_distinct(self.model, v, found.rows)
             self.notes += [self._fold_note(slide) for slide in slides if not keep.all()]
         v, rows, double = v[keep], found.rows[keep], found.multiple[keep]
-        part = linearised(block, v)
-        order, labels = ordered(block, form, v, rows, part.sign, double, bool(slides))
+        part = linearise_block(block, v)
+        order, labels = order_configurations(block, form, v, rows, part.sign, double, bool(slides))
         self.iterations = np.maximum(self.iterations[rows], found.iterations[keep])[order]
         self._place(block, part, v, rows, np.array(order, dtype=np.intp))
         self.labels = [(*self.labels[rows[k]], labels[k]) for k in order]
@@ -185,21 +189,27 @@ class _Assembly:
         v[:, block.unknowns] = done.v[:, : len(block.unknowns)]
         every = np.arange(len(v))
         self.paths.append(replace(_FOLLOWS.paths, unknowns=self._names(block)))
-        self._place(block, linearised(block, v), v, every, every)
+        self._place(block, linearise_block(block, v), v, every, every)
 
     def _place(
         self, block: Block, part: Linearised, v: Array, rows: IndexArray, order: IndexArray
     ) -> None:
         """Take over a block's positions v with their proof, in a new order."""
         before = _rows_of(self.proof, rows)
-        radii = prove_block(block, part, v, before.each)
-        each = before.each
-        each[:, block.unknowns] = np.where(np.isfinite(radii.each), radii.each, 0.0)
+        radii = prove_block(block, part, v, before.error_bound)
+        error_bound = before.error_bound
+        error_bound[:, block.unknowns] = np.where(
+            np.isfinite(radii.error_bound), radii.error_bound, 0.0
+        )
         proof = Proof(
             holds=before.holds & radii.holds,
-            exists=np.concatenate([before.exists, radii.exists[:, None]], axis=1),
-            unique=np.concatenate([before.unique, radii.unique[:, None]], axis=1),
-            each=each,
+            existence_radius=np.concatenate(
+                [before.existence_radius, radii.existence_radius[:, None]], axis=1
+            ),
+            uniqueness_radius=np.concatenate(
+                [before.uniqueness_radius, radii.uniqueness_radius[:, None]], axis=1
+            ),
+            error_bound=error_bound,
         )
         self.v, self.proof = v[order], _rows_of(proof, order)
 
@@ -222,15 +232,15 @@ class _BlockFound:
 
 
 def _block_configurations(
-    model: Model, block: Block, form: DirectionForm, v: Array, each: Array
+    model: Model, block: Block, form: DirectionForm, v: Array, error_bound: Array
 ) -> _BlockFound:
-    """A block solved for every row of v (R, N), known within ``each`` (R, N)."""
+    """A block solved for every row of v (R, N), known within ``error_bound`` (R, N)."""
     known = v[:, block.variables[len(block.unknowns) :]]
     near = model.equations.start[block.unknowns]
     if form.table.loops.rows:
-        spread = each[:, block.variables[len(block.unknowns) :]]
+        spread = error_bound[:, block.variables[len(block.unknowns) :]]
         closures = zip(*form.closures(known, spread), strict=True)
-        solved = [_solved(form, left, off) for left, off in closures]
+        solved = [_solve_block(form, left, off) for left, off in closures]
     else:  # angles that follow from others without a loop
         solved = [_FOLLOWS] * len(v)
     rows = np.repeat(np.arange(len(v)), [len(part.x) for part in solved])
@@ -238,8 +248,8 @@ def _block_configurations(
     multiple = np.concatenate([part.multiple for part in solved])
     start = v[rows]
     start[:, block.unknowns] = form.unknowns(x, known[rows], near)
-    end, good, iterations = _settled(model, block, start, multiple)
-    good[good] = _different(model, end[good], rows[good])
+    end, good, iterations = _polish_roots(model, block, start, multiple)
+    good[good] = _find_distinct(model, end[good], rows[good])
     grade, count = solved[0].grade, solved[0].paths
     for part in solved[1:]:
         grade, count = grade.and_then(part.grade), count.plus(part.paths)
@@ -255,7 +265,7 @@ def _block_configurations(
     )
 
 
-def _settled(
+def _polish_roots(
     model: Model, block: Block, start: Array, multiple: BoolArray
 ) -> tuple[Array, BoolArray, CountArray]:
     """Newton's method in angles and lengths from (R, N); which stayed at their root; iterations."""
@@ -264,7 +274,7 @@ def _settled(
     weights = block.system.variable_scale[:n]
     here = start[:, block.unknowns] / weights
     far = np.abs(done.v[:, :n] / weights - here).max(axis=1, initial=0.0)
-    far /= 1.0 + np.abs(here[:, ~block.system.turns[:n]]).max(axis=1, initial=0.0)
+    far /= 1.0 + np.abs(here[:, ~block.system.is_angle[:n]]).max(axis=1, initial=0.0)
     good = (done.status == Status.CONVERGED.code) & (far <= _MOVED)
     good |= multiple & (done.residual <= _CLOSED) & (far <= _MOVED_DOUBLE)
     end = start.copy()
@@ -272,18 +282,18 @@ def _settled(
     return end, good, done.iterations
 
 
-def _different(model: Model, v: Array, rows: IndexArray) -> BoolArray:
+def _find_distinct(model: Model, v: Array, rows: IndexArray) -> BoolArray:
     """Which positions (R, N) are no repetition of an earlier one of the same row (ascending)."""
-    size, turns = model.compiled.solver.variable_scale, model.compiled.table.turns
+    size, turns = model.compiled.solver.variable_scale, model.compiled.table.is_angle
     fresh = np.ones(len(v), dtype=bool)
     for k, begin in enumerate(np.searchsorted(rows, rows)):
         gap = within_half_a_turn(v[begin:k] - v[k], turns)
-        fresh[k] = not ((np.abs(gap) <= _SAME * size).all(axis=1) & fresh[begin:k]).any()
+        fresh[k] = not ((np.abs(gap) <= _SAME_POSITION * size).all(axis=1) & fresh[begin:k]).any()
     return fresh
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Solved:
+class _BlockRoots:
     """The real solutions of one system, (R, 2M), with what is known about completeness."""
 
     x: ComplexArray
@@ -293,7 +303,7 @@ class _Solved:
 
 
 #: A block without loops: its only solution has no directions.
-_FOLLOWS = _Solved(
+_FOLLOWS = _BlockRoots(
     x=np.zeros((1, 0), dtype=complex),
     multiple=np.zeros(1, dtype=bool),
     grade=Completeness.PROVED,
@@ -301,7 +311,7 @@ _FOLLOWS = _Solved(
 )
 
 
-def _solved(form: DirectionForm, left: ComplexArray, off: Array) -> _Solved:
+def _solve_block(form: DirectionForm, left: ComplexArray, off: Array) -> _BlockRoots:
     system = form.system(left)
     if system.loops == 1:
         roots, bound = quadratic_roots(system), bound_by_products(system.products)
@@ -309,12 +319,12 @@ def _solved(form: DirectionForm, left: ComplexArray, off: Array) -> _Solved:
         family = structure_of(system)
         roots = isolated_roots(system, family)
         bound = family.bound_of(system, off, len(roots.x))
-    proofs = proved_roots(system, roots.x, off)
+    proofs = prove_roots(system, roots.x, off)
     m = system.size
-    real = proofs.real | (~proofs.holds & (_mirror_gap(roots.x, m) < _ALMOST_REAL))
+    real = proofs.real | (~proofs.holds & (_mirror_gap(roots.x, m) < ALMOST_REAL))
     undecided = not (proofs.holds & (proofs.real | proofs.unreal)).all()
     unproved = real & ~proofs.holds
-    doubles = roots.multiple[_mirror_gap(roots.multiple, m) < _ALMOST_DOUBLE]
+    doubles = roots.multiple[_mirror_gap(roots.multiple, m) < ALMOST_DOUBLE]
     if roots.continuum:
         grade = Completeness.CONTINUUM
     elif (
@@ -330,7 +340,7 @@ def _solved(form: DirectionForm, left: ComplexArray, off: Array) -> _Solved:
     else:
         grade = Completeness.WITH_PROBABILITY_ONE
     x = np.concatenate([roots.x[real], doubles])
-    return _Solved(
+    return _BlockRoots(
         x=x,
         multiple=np.concatenate([unproved[real], np.ones(len(doubles), dtype=bool)]),
         grade=grade,
@@ -371,13 +381,13 @@ def _rows_of(proof: Proof, rows: IndexArray) -> Proof:
     """Some rows of a proof, copied."""
     return Proof(
         holds=proof.holds[rows],
-        exists=proof.exists[rows],
-        unique=proof.unique[rows],
-        each=proof.each[rows],
+        existence_radius=proof.existence_radius[rows],
+        uniqueness_radius=proof.uniqueness_radius[rows],
+        error_bound=proof.error_bound[rows],
     )
 
 
-def _folded(slide: TurnedSlide, v: Array) -> Array:
+def _fold_lengths(slide: TurnedSlide, v: Array) -> Array:
     """Positions (R, N) with negative lengths turned around."""
     v = v.copy()
     negative = v[:, slide.lengths[0]] < 0.0

@@ -1,4 +1,4 @@
-"""In which order configurations stand, and what they are called."""
+"""The order and the names of configurations."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from linkwork.equations.directions import DirectionForm
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray, StatusArray
 from linkwork.numerics.block_solver import Block
 
-__all__ = ["combined_name", "ordered"]
+__all__ = ["combined_name", "order_configurations"]
 
 _ROUND = 1e-9  # rad: angles are ordered from 0 to a full turn, this much below counts as 0
 _OF_DYADS = ("open", "crossed", "double")
 
 
-def ordered(
+def order_configurations(
     block: Block,
     form: DirectionForm,
     v: Array,
@@ -26,7 +26,7 @@ def ordered(
     """The documented order of a block's configurations, and what each is called."""
     dyad = form.table.loops.rows == 1
     single = len(form.turning) == 0 or form.rows.shape[1] == 0 or (dyad and folded)
-    turns = block.system.turns[: len(block.unknowns)]
+    turns = block.system.is_angle[: len(block.unknowns)]
     keys: list[tuple[float, ...]] = []
     names = []
     for k in range(len(v)):

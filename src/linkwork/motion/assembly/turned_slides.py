@@ -32,7 +32,7 @@ def turned_slides(model: Model) -> tuple[TurnedSlide, ...]:
     for block in model.compiled.solver.blocks:
         own = set(block.unknowns.tolist())
         for angle in sorted(own - tied):
-            if table.turns[angle]:
+            if table.is_angle[angle]:
                 lengths = _directed(tables, angle)
                 if lengths and lengths <= own:
                     found.append(TurnedSlide(angle=angle, lengths=tuple(sorted(lengths))))

@@ -1,4 +1,4 @@
-"""Whether compiled kernels serve a mechanism, and are quicker than plain NumPy."""
+"""Decide whether compiled kernels can solve a mechanism faster than NumPy."""
 
 from __future__ import annotations
 

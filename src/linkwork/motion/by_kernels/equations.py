@@ -1,4 +1,4 @@
-"""A mechanism's equations as compiled kernels read them: blocks, coefficients by register."""
+"""The equations of a mechanism as input of compiled kernels."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def own_coefficients(model: Model) -> dict[str, Array]:
         found[f"c{term}.re"], found[f"c{term}.im"] = c.real, c.imag
     found |= {f"k{row}": x for row, x in enumerate(table.linear.constant.tolist())}
     weights = table.variable_scale.tolist()
-    found |= {f"scale{k}": weights[k] for k in np.flatnonzero(~table.turns).tolist()}
+    found |= {f"scale{k}": weights[k] for k in np.flatnonzero(~table.is_angle).tolist()}
     return {name: np.array([value]) for name, value in found.items()}
 
 

@@ -1,4 +1,4 @@
-"""The kernels of mechanisms, made once each. This module loads compiled code."""
+"""The kernels of mechanisms, each made once; this module loads compiled code."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from weakref import WeakKeyDictionary
 from linkwork.equations.compiling import Compiled
 from linkwork.kernels.gpu.kernel import DeviceKernel
 from linkwork.kernels.march.rate_programs import PlaceProgram, row_program
-from linkwork.kernels.march.sweep_kernel import LaneKernel
+from linkwork.kernels.march.sweep_kernel import SweepKernel
 from linkwork.motion.by_kernels.equations import block_parts, lines_of_lengths
 from linkwork.motion.model import Model
 
 __all__ = ["kernel_of", "row_program_of"]
 
 #: Kernels and programs of mechanisms that are in use.
-_KERNELS: WeakKeyDictionary[Compiled, dict[tuple[frozenset[str], bool, str], LaneKernel]] = (
+_KERNELS: WeakKeyDictionary[Compiled, dict[tuple[frozenset[str], bool, str], SweepKernel]] = (
     WeakKeyDictionary()
 )
 _ROW_PROGRAMS: WeakKeyDictionary[Compiled, dict[tuple[frozenset[str], bool], PlaceProgram]] = (
@@ -24,7 +24,7 @@ _ROW_PROGRAMS: WeakKeyDictionary[Compiled, dict[tuple[frozenset[str], bool], Pla
 
 def kernel_of(
     model: Model, zeros: frozenset[str], certify: bool, device: str = "cpu"
-) -> LaneKernel:
+) -> SweepKernel:
     """The kernel of a mechanism's equations, made once.
 
     Parameters
@@ -34,7 +34,7 @@ def kernel_of(
     """
     known, key = _KERNELS.setdefault(model.compiled, {}), (zeros, certify, device)
     if key not in known:
-        kind = DeviceKernel if device == "gpu" else LaneKernel
+        kind = DeviceKernel if device == "gpu" else SweepKernel
         known[key] = kind(model.compiled.table, block_parts(model), zeros, certify)
     return known[key]
 

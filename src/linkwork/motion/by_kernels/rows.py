@@ -1,4 +1,4 @@
-"""Long tables of one mechanism by the compiled kernels.
+"""Long tables of one mechanism computed by the compiled kernels.
 
 A track has been followed to the ends of the table. The kernels compute the rows along it, which
 they predict from each other and prove from each other; the row next to every node of the track is
@@ -16,7 +16,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.kernels.march.position_programs import along_rows
 from linkwork.kernels.march.sweep_kernel import Steps
-from linkwork.kernels.program.execution import Gear
+from linkwork.kernels.program.execution import Execution
 from linkwork.motion.by_kernels.equations import own_coefficients, zero_names
 from linkwork.motion.by_kernels.kernels import kernel_of, row_program_of
 from linkwork.motion.drive import Drive
@@ -27,7 +27,7 @@ __all__ = ["KernelRows", "kernel_rows"]
 
 _FINE = 32  # rows: a track with steps as short as that comes near to its end
 _TWICE = 1e-6  # of the distance from row to row: a row as near to another one stands twice
-_SAME = 1e-9  # weighted: positions nearer to each other are one
+_SAME_POSITION = 1e-9  # weighted: positions nearer to each other are one
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -35,9 +35,9 @@ class KernelRows:
     """Some rows of a table along a track.
 
     ``where`` (R,): which rows they are. ``v``, ``first``, ``second`` (N, R); ``condition``,
-    ``residual``, ``iterations`` (R,); ``radius``, ``unique`` (R,), NaN without a proof. ``checked``
-    (C,): rows of the table that have to be solved along the track, among them all that are not
-    here.
+    ``residual``, ``iterations`` (R,); ``radius``, ``uniqueness_radius`` (R,), NaN without a proof.
+    ``checked`` (C,): rows of the table that have to be solved along the track, among them all that
+    are not here.
     """
 
     where: IndexArray
@@ -48,7 +48,7 @@ class KernelRows:
     residual: Array
     iterations: CountArray
     radius: Array
-    unique: Array
+    uniqueness_radius: Array
     checked: IndexArray
 
     def put_into(self, found: SolvedRows, there: IndexArray, weights: Array, certify: bool) -> bool:
@@ -66,10 +66,10 @@ class KernelRows:
         mine = np.flatnonzero(np.isin(self.where, self.checked))
         place = there[self.where[mine]]
         away = (np.abs(found.v[place] - self.v[:, mine].T) / weights).max(axis=1)
-        same = (found.status[place] == Status.CONVERGED.code) & (away <= _SAME)
+        same = (found.status[place] == Status.CONVERGED.code) & (away <= _SAME_POSITION)
         if certify:
             same &= found.certification[place] == Certification.CERTIFIED.code
-            same &= away + self.radius[mine] < found.unique[place]
+            same &= away + self.radius[mine] < found.uniqueness_radius[place]
             same &= bool(np.isfinite(self.radius).all())
         if not same.all():
             return False
@@ -81,7 +81,10 @@ class KernelRows:
         for name in ("condition", "residual", "iterations"):
             getattr(found, name)[rows] = getattr(self, name)[fresh]
         if certify:
-            found.radius[rows], found.unique[rows] = self.radius[fresh], self.unique[fresh]
+            found.radius[rows], found.uniqueness_radius[rows] = (
+                self.radius[fresh],
+                self.uniqueness_radius[fresh],
+            )
             found.certification[rows] = Certification.CERTIFIED.code
         return True
 
@@ -107,10 +110,10 @@ def kernel_rows(
         own = {"origin": origin, "rate": rate, "spread": spread[j]}
         coefficients |= {f"u{j}.{name}": np.array([value]) for name, value in own.items()}
     kernel = kernel_of(model, zeros, certify)
-    kernel.shift(Gear(positions=len(rows)))
+    kernel.shift(Execution(positions=len(rows)))
     nearest, begin = _nearest(track, rows)
     steps = Steps().times(path.size)
-    march = kernel.alone(coefficients, begin.v[:n], begin.t, rows, steps)
+    march = kernel.prepare_single(coefficients, begin.v[:n], begin.t, rows, steps)
     done = march.run()
     if done is None:
         return None
@@ -118,7 +121,7 @@ def kernel_rows(
     read = along_rows(row_program_of(model, zeros, certify), coefficients, v)
     moving = np.repeat(path.rate[:, None], len(rows), axis=1)
     unproved = np.full((0 if certify else 2, len(rows)), np.nan)
-    condition, residual, radius, unique = np.concatenate([read[2 * n :], unproved])
+    condition, residual, radius, uniqueness_radius = np.concatenate([read[2 * n :], unproved])
     return KernelRows(
         where=where,
         v=v,
@@ -128,7 +131,7 @@ def kernel_rows(
         residual=residual,
         iterations=march.counts,
         radius=radius,
-        unique=unique,
+        uniqueness_radius=uniqueness_radius,
         checked=np.setdiff1d(np.arange(len(t)), np.delete(where, nearest)),
     )
 

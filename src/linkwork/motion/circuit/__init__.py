@@ -1,1 +1,1 @@
-"""Circuits and branches: what can be reached without taking the mechanism apart."""
+"""Circuits and branches: all positions reachable without disassembly."""

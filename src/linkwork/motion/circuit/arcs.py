@@ -1,4 +1,4 @@
-"""All curves of positions that can be reached from a few: closed ones, and arcs between crossings.
+"""All curves of positions through given ones: closed curves, and arcs between crossings.
 
 Where two curves cross (a change point) four half-branches leave; each is followed, so that what is
 connected is found as a whole.
@@ -13,12 +13,13 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.foundation.rounding import CLOSER_TANGENT, REGULAR_CONDITION
 from linkwork.foundation.status import Status
-from linkwork.motion.circuit.branches import CurveBranch, Traced, branches_of, traced
+from linkwork.motion.curve_branches import CurveBranch, TracedCurve, branches_of, trace_with_proof
 from linkwork.numerics.continuation.change_point import ChangePoint, Crossing
 from linkwork.numerics.continuation.local_parametrization import (
-    Leads,
-    Led,
+    Parametrization,
+    Parametrizations,
     apart,
     coincide,
     fastest_leader,
@@ -28,8 +29,6 @@ from linkwork.numerics.continuation.local_parametrization import (
 __all__ = ["Arc", "Explorer", "positions_near"]
 
 _STRIDES = (1e-2, 3e-3, 1e-3, 1e-4)  # weighted, tried in this order
-_CLOSER = 0.1  # a position belongs to a tangent it is so many times nearer to than to the other
-_REGULAR = 1e5
 _NEAR = 0.3  # weighted: positions further from a branch do not lie on it
 _STILL = 1e-5  # weighted change of the parameter along an arc on which it rests, up to a crossing
 
@@ -43,14 +42,14 @@ class Arc:
     onwards, backwards.
     """
 
-    up: Traced
-    down: Traced | None
+    up: TracedCurve
+    down: TracedCurve | None
     end: CircuitEnd
     crossings: tuple[int, ...]
     branches: tuple[CurveBranch, ...]
 
     @property
-    def walks(self) -> tuple[Traced, ...]:
+    def walks(self) -> tuple[TracedCurve, ...]:
         """All pieces."""
         return (self.up,) if self.down is None else (self.up, self.down)
 
@@ -65,14 +64,14 @@ class Explorer:
 
     Parameters
     ----------
-    leads : Leads
+    leads : Parametrizations
     certify : bool
         Prove every curve.
     fine : int
         Positions per step that branches keep.
     """
 
-    def __init__(self, leads: Leads, certify: bool, fine: int) -> None:
+    def __init__(self, leads: Parametrizations, certify: bool, fine: int) -> None:
         self.leads, self.certify, self.fine = leads, certify, fine
         self.arcs: list[Arc] = []
         self.crossings: list[Crossing] = []
@@ -117,7 +116,7 @@ class Explorer:
         ends = [c for c in (above, below) if c is not None]
         return self._keep(up, down, seed, ends)
 
-    def _keep(self, up: Traced, down: Traced | None, seed: Array, ends: list[int]) -> int:
+    def _keep(self, up: TracedCurve, down: TracedCurve | None, seed: Array, ends: list[int]) -> int:
         number = len(self.arcs)
         reasons = [walk.curve.end for walk in (up, down) if walk is not None]
         # the reason that leaves most open
@@ -137,9 +136,9 @@ class Explorer:
             self._passed += [(v, number) for _, v in walk.curve.passes]
         return number
 
-    def _walk(self, start: Array, heading: float | Array) -> tuple[Traced, int | None]:
+    def _walk(self, start: Array, heading: float | Array) -> tuple[TracedCurve, int | None]:
         """A walk and the number of the crossing it ends at, if it does."""
-        walk = traced(self.leads, start, heading, self.certify)
+        walk = trace_with_proof(self.leads, start, heading, self.certify)
         found = walk.curve.crossing
         if found is None or not walk.curve.legs:
             return walk, None
@@ -148,7 +147,7 @@ class Explorer:
         side = math.copysign(1.0, node.t - first.t)
         return walk, self._register(led, found, -side * led.whole(node.first))
 
-    def _register(self, led: Led, found: ChangePoint, came_from: Array) -> int:
+    def _register(self, led: Parametrization, found: ChangePoint, came_from: Array) -> int:
         v = led.whole(found.v)
         directions = np.stack([led.whole(d) for d in found.directions])
         number = next(
@@ -187,13 +186,13 @@ def _unit(direction: Array) -> Array:
     return unit
 
 
-def _beyond(leads: Leads, v: Array, direction: Array, other: Array) -> Array | None:
+def _beyond(leads: Parametrizations, v: Array, direction: Array, other: Array) -> Array | None:
     """A position just beyond a crossing along a direction, told from the other curve."""
     speed = np.abs(direction) / leads.scale
     gap = min(float(np.abs((direction - sign * other) / leads.scale).max()) for sign in (1.0, -1.0))
     leader = fastest_leader(leads, v, speed)
     lead = int(np.argmax(speed)) if leader is None else leader[0].lead
-    led = leads.by(lead)
+    led = leads.with_parameter(lead)
     if led is None:
         return None
     for stride in _STRIDES:
@@ -204,12 +203,14 @@ def _beyond(leads: Leads, v: Array, direction: Array, other: Array) -> Array | N
         found = led.whole(done.v[0])
         moving = speed > 0.0
         off = float(np.abs((found - guess) / leads.scale)[moving].max())
-        if off <= _CLOSER * stride * gap and led.node(found).nearness < _REGULAR:
+        if off <= CLOSER_TANGENT * stride * gap and led.node(found).nearness < REGULAR_CONDITION:
             return found
     return None
 
 
-def _branches(leads: Leads, up: Traced, down: Traced | None, fine: int) -> list[CurveBranch]:
+def _branches(
+    leads: Parametrizations, up: TracedCurve, down: TracedCurve | None, fine: int
+) -> list[CurveBranch]:
     """The branches of an arc; the first one is joined from both walks."""
     onward = branches_of(leads, up, fine) if up.curve.legs else []
     back = branches_of(leads, down, fine) if down is not None and down.curve.legs else []
@@ -230,12 +231,12 @@ def _branches(leads: Leads, up: Traced, down: Traced | None, fine: int) -> list[
     return [joined, *onward[1:], *back[1:]]
 
 
-def _lies_on(leads: Leads, branch: CurveBranch, seed: Array) -> bool:
+def _lies_on(leads: Parametrizations, branch: CurveBranch, seed: Array) -> bool:
     """Whether a position is the one of a branch at the same value of the parameter.
 
     The branch's samples are so dense that Newton's method from between two of them stays there.
     """
-    own = leads.by(leads.parameter)
+    own = leads.with_parameter(leads.parameter)
     if own is None:
         return False
     for guess in positions_near(leads, branch, float(seed[leads.parameter])):
@@ -249,12 +250,12 @@ def _lies_on(leads: Leads, branch: CurveBranch, seed: Array) -> bool:
     return False
 
 
-def positions_near(leads: Leads, branch: CurveBranch, value: float) -> list[Array]:
+def positions_near(leads: Parametrizations, branch: CurveBranch, value: float) -> list[Array]:
     """Interpolated positions (N,) of a branch at a value of the parameter, whole turns aside."""
     p = leads.parameter
     low, high = branch.range(p)
     shifts = [0.0]
-    if leads.turns[p]:
+    if leads.is_angle[p]:
         turn = 2.0 * math.pi
         first, last = math.ceil((low - value) / turn), math.floor((high - value) / turn)
         shifts = [k * turn for k in range(first, last + 1)]
@@ -273,7 +274,7 @@ def positions_near(leads: Leads, branch: CurveBranch, value: float) -> list[Arra
     return found
 
 
-def _rests(leads: Leads, arc: Arc) -> bool:
+def _rests(leads: Parametrizations, arc: Arc) -> bool:
     """Whether the parameter stands still all along."""
     p = leads.parameter
     values = [leg.v[:, p] for walk in arc.walks for leg in walk.curve.legs]

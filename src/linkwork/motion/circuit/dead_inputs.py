@@ -1,4 +1,4 @@
-"""The input values of all dead points at once, from polynomials instead of from circuits."""
+"""The input values of all dead points, from polynomials."""
 
 from __future__ import annotations
 
@@ -7,43 +7,40 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from linkwork.equations.dead_point_form import DeadPointForm, dead_point_form
 from linkwork.equations.directions import NoDirectionForm
-from linkwork.equations.leading import LeadTable
-from linkwork.equations.locking import LockingForm, locking_form
+from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.rounding import ALMOST_DOUBLE, ALMOST_REAL
 from linkwork.motion.model import Model
 from linkwork.numerics.continuation.branch_tracking import InputPath
 from linkwork.numerics.continuation.change_point import crossing_near
-from linkwork.numerics.homotopy.dead_point_family import locking_roots
+from linkwork.numerics.homotopy.dead_point_family import dead_point_roots
 from linkwork.numerics.homotopy.idle_component import keeps_complex_input, real_motion
 from linkwork.numerics.homotopy.isolated_roots import nearest_solution
 from linkwork.numerics.homotopy.polynomial_system import Roots
 
-__all__ = ["DeadPointInputs", "LockingCount", "dead_point_inputs"]
+__all__ = ["DeadPointCount", "DeadPointInputs", "dead_point_inputs"]
 
 _MOST_PATHS = 300  # from products of linear forms: three loops at most, or a dyad behind three
-_ALMOST_REAL = 1e-6  # a solution this near to its mirror image is a real one,
-_ALMOST_DOUBLE = 1e-3  # and a multiple one, whose path ends less precisely
-_SAME = 1e-9  # weighted: two inputs are one,
-_SAME_MULTIPLE = 1e-5  # and that of a multiple solution another one's
+_SAME_INPUT = 1e-9  # weighted: two inputs are one,
+_SAME_MULTIPLE_INPUT = 1e-5  # and that of a multiple solution another one's
 _MOVES = 1e-6  # part of the largest change that is one
-_COMPLEX_CURVES = (
-    "not proved: dead points at complex values form a continuum, and whether real ones are among "
-    "them is not known"
-)
+_COMPLEX_CURVES = "not proved: complex dead points form a continuum, which may contain real ones"
 _WHOLE = 1e-12  # how far a rate may be from a whole number
 _STEPS = 40  # towards a multiple solution
 _GRADES = {
     Completeness.WITH_PROBABILITY_ONE: (
-        "every dead point is listed, with probability one: all solution paths are accounted for"
+        "the list of dead points is complete with probability one: all solution paths are "
+        "accounted for"
     ),
     Completeness.NOT_PROVED: "not proved: solution paths were lost, so dead points may be missing",
 }
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class LockingCount:
+class DeadPointCount:
     """What became of the paths of one block, and how many solutions are real."""
 
     unknowns: tuple[str, ...]
@@ -72,7 +69,7 @@ class DeadPointInputs:
         Inputs at which a length runs to infinity; there, too, configurations begin and end.
     poles_known : bool
         Whether these are all.
-    counts : tuple of LockingCount
+    counts : tuple of DeadPointCount
         One for each block that can lock.
     """
 
@@ -82,7 +79,7 @@ class DeadPointInputs:
     message: str
     poles: Array
     poles_known: bool
-    counts: tuple[LockingCount, ...]
+    counts: tuple[DeadPointCount, ...]
 
     @property
     def cuts(self) -> Array:
@@ -120,12 +117,12 @@ class _Search:
         whole = np.round(path.rate)
         rate = np.where(np.abs(path.rate - whole) <= _WHOLE, whole, path.rate)
         self.model, self.path, self.number = model, replace(path, rate=rate), lead
-        self.leads = LeadTable(model.compiled.table, self.path, lead)
+        self.leads = ParametrizedTable(model.compiled.table, self.path, lead)
         self.grade = Completeness.WITH_PROBABILITY_ONE
         self.reasons: list[str] = []
         self.values: list[float] = []
         self.doubles: list[float] = []
-        self.counts: list[LockingCount] = []
+        self.counts: list[DeadPointCount] = []
         self.poles: list[float] = []
         self.poles_known = True
 
@@ -135,25 +132,25 @@ class _Search:
         for number, block in enumerate(solver.blocks):
             names = tuple(self.model.equations.unknowns[int(k)].name for k in block.unknowns)
             try:
-                form = locking_form(self.leads, solver, self.path, number)
+                form = dead_point_form(self.leads, solver, self.path, number)
                 if form is not None:
                     self._add(form, number, names)
             except NoDirectionForm as reason:
                 self.grade = self.grade.and_then(Completeness.NOT_LISTED)
                 self.reasons.append(f"the equations of {', '.join(names)} {reason}")
-        values, multiple = self._sorted()
+        values, multiple = self._sort_values()
         message = "; ".join(self.reasons) if self.reasons else _GRADES[self.grade]
         return DeadPointInputs(
             values=values,
             multiple=multiple,
             completeness=self.grade,
             message=message,
-            poles=np.sort(np.array(self._wrapped(self.poles), dtype=float)),
+            poles=np.sort(np.array(self._wrap_angle(self.poles), dtype=float)),
             poles_known=self.poles_known,
             counts=tuple(self.counts),
         )
 
-    def _add(self, form: LockingForm, number: int, names: tuple[str, ...]) -> None:
+    def _add(self, form: DeadPointForm, number: int, names: tuple[str, ...]) -> None:
         system = form.system
         if form.poles is None:
             self.poles_known = False
@@ -161,26 +158,26 @@ class _Search:
             self.poles += form.poles
         if system.bound > _MOST_PATHS:
             raise NoDirectionForm(
-                f"hang on {system.loops} loops; their dead points would take {system.bound} paths, "
-                f"more than the {_MOST_PATHS} that are followed"
+                f"depend on {system.loops} loops; their dead points would take {system.bound} "
+                f"paths, more than the {_MOST_PATHS} that are followed"
             )
-        roots = locking_roots(system)
+        roots = dead_point_roots(system)
         lost = roots.failed or not roots.sure
         lost = lost or roots.paths != len(roots.x) + roots.at_infinity + roots.singular
         if lost:
             self.grade = self.grade.and_then(Completeness.NOT_PROVED)
         if roots.continuum:
             self._tell_of_curves(form, roots.curves)
-        real = _real(form, roots.x, _ALMOST_REAL)
-        double = _real(form, _sharpened(form, roots.multiple), _ALMOST_DOUBLE)
+        real = _real(form, roots.x, ALMOST_REAL)
+        double = _real(form, _sharpen_roots(form, roots.multiple), ALMOST_DOUBLE)
         start = self.model.equations.start
-        self.values += self._wrapped(form.positions(real, start)[:, -1].tolist())
-        self.doubles += self._wrapped(
+        self.values += self._wrap_angle(form.positions(real, start)[:, -1].tolist())
+        self.doubles += self._wrap_angle(
             [self._crossing(form, number, x) for x in form.positions(double, start)]
         )
         self.counts.append(_count(names, form, roots, len(real) + len(double)))
 
-    def _tell_of_curves(self, form: LockingForm, curves: ComplexArray) -> None:
+    def _tell_of_curves(self, form: DeadPointForm, curves: ComplexArray) -> None:
         """Say what curves of dead points through solutions (C, n) mean; nothing if none is real."""
         open_ = [x for x in curves if not keeps_complex_input(form.system, x, form.lead)]
         if not open_:
@@ -193,19 +190,19 @@ class _Search:
                 return
         self.reasons.append(_COMPLEX_CURVES)
 
-    def _moving(self, form: LockingForm, x: ComplexArray) -> str:
+    def _moving(self, form: DeadPointForm, x: ComplexArray) -> str:
         """Which unknowns differ between two positions x (2, n) with the same input."""
         here, there = form.positions(x, self.model.equations.start)
         variables = self.model.equations.variables
         gap = np.abs(there - here) / self.leads.scale[form.variables]
         moving = form.variables[:-1][gap[:-1] > _MOVES * gap[:-1].max()]
         scale, lead = self.model.input_scale, self.model.equations.inputs[self.number]
-        value = self._wrapped([float(here[-1])])[0] / scale[self.number]
+        value = self._wrap_angle([float(here[-1])])[0] / scale[self.number]
         at = f"{lead.name} = {round(value, 6) + 0.0:.6g} {self.model.input_units[lead.name]}"
         names = ", ".join(variables[int(k)].name for k in np.sort(moving))
-        return f"{names} can move while the input stands still, as at {at}"
+        return f"{names} can move while the input is constant, as at {at}"
 
-    def _crossing(self, form: LockingForm, number: int, x: Array) -> float:
+    def _crossing(self, form: DeadPointForm, number: int, x: Array) -> float:
         """The input of a multiple solution x (n,): a change point's to rounding."""
         v = self.model.equations.start.copy()
         solver = self.model.compiled.solver
@@ -214,20 +211,20 @@ class _Search:
         found = crossing_near(solver, self.path, number, v)
         return float(x[-1]) if found is None else found
 
-    def _wrapped(self, values: list[float]) -> list[float]:
+    def _wrap_angle(self, values: list[float]) -> list[float]:
         """An angle's values from -π to π."""
-        if not self.leads.turns[self.leads.parameter]:
+        if not self.leads.is_angle[self.leads.parameter]:
             return values
         return [math.remainder(value, 2.0 * math.pi) for value in values]
 
-    def _sorted(self) -> tuple[Array, BoolArray]:
+    def _sort_values(self) -> tuple[Array, BoolArray]:
         """Values without repetitions; those of simple dead points come first."""
         scale = float(self.leads.scale[self.leads.parameter])
-        turns = bool(self.leads.turns[self.leads.parameter])
+        turns = bool(self.leads.is_angle[self.leads.parameter])
         kept: list[tuple[float, bool]] = []
         for values, multiple, same in (
-            (self.doubles, True, _SAME_MULTIPLE),
-            (self.values, False, _SAME),
+            (self.doubles, True, _SAME_MULTIPLE_INPUT),
+            (self.values, False, _SAME_INPUT),
         ):
             for value in values:
                 gaps = np.abs([value - old for old, many in kept if many == multiple])
@@ -242,7 +239,7 @@ class _Search:
         )
 
 
-def _real(form: LockingForm, x: ComplexArray, within: float) -> ComplexArray:
+def _real(form: DeadPointForm, x: ComplexArray, within: float) -> ComplexArray:
     """Those of solutions x (R, n) that are their own mirror images."""
     m = form.system.size
     gap = np.abs(x[:, :m] - x[:, m : 2 * m].conj()).max(axis=1, initial=0.0)
@@ -250,13 +247,13 @@ def _real(form: LockingForm, x: ComplexArray, within: float) -> ComplexArray:
     return real
 
 
-def _sharpened(form: LockingForm, x: ComplexArray) -> ComplexArray:
+def _sharpen_roots(form: DeadPointForm, x: ComplexArray) -> ComplexArray:
     """Multiple solutions (R, n), as well as rounding lets them be found."""
     return np.array([nearest_solution(form.system, each, _STEPS) for each in x]).reshape(x.shape)
 
 
-def _count(names: tuple[str, ...], form: LockingForm, roots: Roots, real: int) -> LockingCount:
-    return LockingCount(
+def _count(names: tuple[str, ...], form: DeadPointForm, roots: Roots, real: int) -> DeadPointCount:
+    return DeadPointCount(
         unknowns=names,
         paths=roots.paths,
         finite=len(roots.x),

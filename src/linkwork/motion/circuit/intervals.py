@@ -1,4 +1,4 @@
-"""Input values to look at: one in each interval between neighbouring dead points.
+"""Trial input values: one in each interval between neighbouring dead points.
 
 Between them the number of configurations is constant, so each configuration at one value stands for
 a piece of a circuit over the whole interval.

@@ -1,4 +1,4 @@
-"""Where circuits begin: configurations at inputs that no circuit can avoid."""
+"""Seeds of circuits: configurations at inputs that every circuit must pass."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Callable
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.rounding import REGULAR_CONDITION
 from linkwork.motion.assembly.assembling import Assemblies, positions_at
 from linkwork.motion.circuit.arcs import Explorer
 from linkwork.motion.circuit.dead_inputs import DeadPointInputs, dead_point_inputs
@@ -19,7 +20,6 @@ from linkwork.numerics.newton import NewtonOptions
 __all__ = ["Seeding"]
 
 _LOOKED_AT = 24  # input values at which all configurations are listed if dead points may be missing
-_REGULAR = 1e5  # condition up to which a configuration can begin a curve
 
 
 class Seeding:
@@ -49,7 +49,7 @@ class Seeding:
         if found.completeness is Completeness.NOT_LISTED:
             return
         self.names = list(zip(found.v, found.names, strict=True))
-        sure = self._visited(found)
+        sure = self._visit_circuits(found)
         self.dead = dead_point_inputs(model, self.drive.path, self.drive.lead)
         intervals = self._intervals(value, sure)
         for k, interval in enumerate(intervals):
@@ -61,7 +61,7 @@ class Seeding:
         """Where to look; a ``value`` whose list is ``sure`` stands for its own interval."""
         assert self.dead is not None
         place = self.drive.leads.parameter
-        turns, scale = bool(self.drive.leads.turns[place]), float(self.drive.leads.scale[place])
+        turns, scale = bool(self.drive.leads.is_angle[place]), float(self.drive.leads.scale[place])
         cuts = self.dead.cuts
         found = intervals_between(cuts, value if sure else None, scale, turns=turns)
         if not len(cuts) and not sure:
@@ -73,11 +73,12 @@ class Seeding:
     def _look_into(self, interval: Interval) -> None:
         """List the configurations at one value of an interval, at another where that fails."""
         if not any(
-            self._visited(positions_at(self.model, self.drive.path.at(value))) for value in interval
+            self._visit_circuits(positions_at(self.model, self.drive.path.at(value)))
+            for value in interval
         ):
             self.unclear += 1
 
-    def _visited(self, found: Assemblies) -> bool:
+    def _visit_circuits(self, found: Assemblies) -> bool:
         """Follow the circuits of all configurations; whether none is missing or left out."""
         regular = [self._regular(v) for v in found.v]
         for v, good in zip(found.v, regular, strict=True):
@@ -88,8 +89,8 @@ class Seeding:
 
     def _regular(self, v: Array, most: float | None = None) -> bool:
         """Whether the input can lead at a position: not at dead points and change points."""
-        own = self.drive.leads.by(self.drive.leads.parameter)
-        largest = _REGULAR if most is None else most
+        own = self.drive.leads.with_parameter(self.drive.leads.parameter)
+        largest = REGULAR_CONDITION if most is None else most
         return own is not None and own.node(v).nearness < largest
 
     def _further_inputs(self, start: float) -> list[float]:
@@ -124,14 +125,14 @@ class Seeding:
             if len(self.dead.cuts):
                 where = f"{count} input values, at least one between any two of them"
             return Completeness.WITH_PROBABILITY_ONE, (
-                f"every circuit is listed, with probability one: {self._ends()} were found, and "
-                f"all configurations at {where}"
+                f"the list of circuits is complete with probability one: {self._ends()} were "
+                f"found, and all configurations at {where}"
             )
-        what = "the circuits found at" if self.unclear else "every circuit that comes by one of"
+        what = "the circuits found at" if self.unclear else "every circuit that contains one of"
         reason = ""
         if not self.dead.cover_all:
             reason = f" ({self.dead.reason})"
         return Completeness.NOT_PROVED, (
-            f"{what} {count} input values looked at; one that lies between two of them "
-            f"would be missing{reason}"
+            f"{what} {count} input values; a circuit that lies between two of them would be "
+            f"missing{reason}"
         )

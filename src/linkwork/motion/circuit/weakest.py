@@ -1,4 +1,4 @@
-"""The weakest place of a circuit: where its Jacobian is nearest to being singular."""
+"""The position of a circuit at which its Jacobian is closest to being singular."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from linkwork.equations.leading import LeadTable
+from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array
-from linkwork.motion.circuit.branches import CurveBranch
+from linkwork.motion.curve_branches import CurveBranch
 from linkwork.numerics.continuation.branch_tracking import Node
 from linkwork.numerics.continuation.local_parametrization import coincide, fastest_leader
 from linkwork.numerics.continuation.step_division import sign_change
@@ -16,7 +16,7 @@ from linkwork.numerics.continuation.step_division import sign_change
 __all__ = ["weakest_place"]
 
 
-def weakest_place(leads: LeadTable, branches: Sequence[CurveBranch]) -> tuple[float, Array]:
+def weakest_place(leads: ParametrizedTable, branches: Sequence[CurveBranch]) -> tuple[float, Array]:
     """The smallest singular value σ along branches without limits, and the position (N,) there.
 
     σ = uᵀ J w of the scaled Jacobian by all variables but the parameter. Along a curve it changes
@@ -31,7 +31,7 @@ def weakest_place(leads: LeadTable, branches: Sequence[CurveBranch]) -> tuple[fl
     found: list[tuple[float, Array]] = []
     valleys: list[tuple[float, float, Array]] = []
     for branch in branches:
-        v = _closed_up(leads, branch.v)
+        v = _close_curve(leads, branch.v)
         values = smallest_singular_values(leads, v)
         k = int(np.argmin(values))
         found.append((float(values[k]), v[k]))
@@ -49,19 +49,19 @@ def weakest_place(leads: LeadTable, branches: Sequence[CurveBranch]) -> tuple[fl
     return best
 
 
-def smallest_singular_values(leads: LeadTable, v: Array) -> Array:
+def smallest_singular_values(leads: ParametrizedTable, v: Array) -> Array:
     """Of the scaled Jacobian by all variables but the parameter, at positions (B, N): (B,)."""
     return np.asarray(np.linalg.svd(leads.jacobian(v), compute_uv=False)[:, -1], dtype=float)
 
 
-def _closed_up(leads: LeadTable, v: Array) -> Array:
+def _close_curve(leads: ParametrizedTable, v: Array) -> Array:
     """Positions (K, N) along a curve; of a closed one with the second position again at the end."""
     if len(v) > 2 and coincide(leads, v[0], v[-1]):
         return np.concatenate([v, v[1:2] + (v[-1] - v[0])])
     return v
 
 
-def _bottom(leads: LeadTable, v: Array) -> tuple[float, Array] | None:
+def _bottom(leads: ParametrizedTable, v: Array) -> tuple[float, Array] | None:
     """The smallest value between three neighbouring positions (3, N), and where it is."""
     direction = np.abs(v[2] - v[0]) / leads.scale
     leader = fastest_leader(leads, v[1], direction)

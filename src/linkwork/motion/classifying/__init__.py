@@ -1,1 +1,1 @@
-"""What kind of mechanism it is: chain, type, Assur groups."""
+"""Classify a mechanism: chain, type, Assur groups."""

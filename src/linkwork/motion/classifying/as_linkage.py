@@ -1,4 +1,4 @@
-"""A mechanism as points and links, whichever way it is given, so that it can be classified."""
+"""Every mechanism as points and links, for its classification."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from linkwork.equations.reading.joints import NotRead
 from linkwork.equations.reading.linkage_of_loops import read_linkage
 from linkwork.foundation.errors import MechanismError
-from linkwork.mechanism.chain import cylinder_ends
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
 from linkwork.motion.model import Model, model_of
@@ -57,10 +56,10 @@ def as_linkage(model: Model) -> Seen | NotSeen:
             for link, angle in equations.links.items()
         }
         for cylinder in description.cylinders:
-            turning |= dict.fromkeys(cylinder_ends(cylinder.name), (cylinder.angle_name,))
+            turning |= dict.fromkeys(cylinder.ends, (cylinder.angle_name,))
         return Seen(model=model, linkage=description, turning=turning)
     if not isinstance(description, Loops):
-        return NotSeen("plain equations tell nothing of links and joints")
+        return NotSeen("plain equations do not determine links and joints")
     done = model.compiled.solver.solve(equations.start[None, :])
     v = equations.start if done.failed_block[0] >= 0 else done.v[0]
     try:

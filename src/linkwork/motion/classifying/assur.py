@@ -1,4 +1,4 @@
-"""Assur groups: which links are determined together, and what such a group is called.
+"""Assur groups: links that are determined together, and the names of such groups.
 
 Every driven joint is held. What is left has no freedom, and falls apart in one way only into parts
 of no freedom that have no such part themselves: the Assur groups, in the order in which they are
@@ -17,9 +17,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from linkwork.mechanism.chain import Chain, Joint, JointKind
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.chain import Chain
 from linkwork.mechanism.chain_graph import contours
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.joint import Joint, JointKind
+from linkwork.mechanism.linkage import Linkage
 from linkwork.motion.classifying.four_link_loop import driven_joints
 from linkwork.numerics.decomposition import block_form
 from linkwork.results.classification import AssurGroup
@@ -170,10 +172,10 @@ def _group(
         return AssurGroup(links=names, name=name, class_number=class_number, order=order)
 
     if holds_input:
-        return told("no Assur group: an input holds the angle of a link that is not at its pin")
+        return told("not an Assur group: an input drives the angle of a link away from its pin")
     higher = next((joint for joint, _ in joints if not joint.kind.lower), None)
     if higher is not None:
-        return told(f"no Assur group: it has a {higher.kind.noun}")
+        return told(f"not an Assur group: it has a {higher.kind.noun}")
     outer = sum(len(ends) == 1 for _, ends in joints)
     if len(links) == 2:
         return told(f"dyad {_dyad(joints)}", 2, outer)

@@ -1,4 +1,4 @@
-"""Four links around a loop, with their lengths between pins, as the type is read off them."""
+"""A loop of four links with their lengths between pins, from which its type follows."""
 
 from __future__ import annotations
 
@@ -8,9 +8,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from linkwork.equations.model import LinkAngle
-from linkwork.mechanism.chain import Chain, Joint, JointKind
-from linkwork.mechanism.linkage import GROUND, Linkage
-from linkwork.mechanism.parts import Slider, Slot
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.chain import Chain
+from linkwork.mechanism.joint import Joint, JointKind
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.guide import GuidePart
+from linkwork.mechanism.part.slider import Slider
 
 __all__ = ["FourLinkLoop", "driven_joints", "input_loop"]
 
@@ -59,7 +62,7 @@ class FourLinkLoop:
         along = (end - foot) / abs(end - foot)
         pin = next(j.name for j in self.ends(guide.on) if j is not slide)
         across = ((on[pin] - foot) * along.conjugate()).imag
-        if isinstance(guide, Slot):  # a pin on the line itself
+        if not isinstance(guide, Slider):  # a pin on the line itself
             return abs(across)
         own = linkage.shapes.local[guide.link]
         own_pin = next(j.name for j in self.ends(guide.link) if j is not slide)
@@ -72,10 +75,10 @@ class FourLinkLoop:
         _, guide = self._slide(linkage)
         return None if guide is None else guide.on
 
-    def _slide(self, linkage: Linkage) -> tuple[Joint, Slider | Slot | None]:
+    def _slide(self, linkage: Linkage) -> tuple[Joint, GuidePart | None]:
         """The only sliding joint, and the slider or slot that it is."""
         slide = next(j for j in self.joints if j.kind is JointKind.PRISMATIC)
-        guides: tuple[Slider | Slot, ...] = (*linkage.sliders, *linkage.slots)
+        guides = linkage.of(GuidePart)
         return slide, next((guide for guide in guides if guide.name == slide.name), None)
 
 

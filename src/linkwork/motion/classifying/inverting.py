@@ -1,18 +1,19 @@
-"""Other grounds and other inputs of a mechanism."""
+"""Inversions of a mechanism, and other inputs."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.chain import Chain
 from linkwork.mechanism.chain_graph import orbits
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.directed import directed
+from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.inversion import inverted, settled
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.parts import Input
 from linkwork.motion.classifying.as_linkage import NotSeen, Seen, as_linkage
 from linkwork.motion.classifying.classify import classify
 from linkwork.motion.model import Model, model_of
@@ -35,7 +36,7 @@ def inversion(model: Model, link: str, which: Input | None = None) -> Linkage:
     seen = _seen(model)
     if seen.loose:
         raise InputError(
-            f"the loops of {model.description.name} do not tell where on "
+            f"the loops of {model.description.name} do not determine where on "
             f"{' and '.join(seen.loose)} they are joined: write it as points and links to invert it"
         )
     linkage = seen.linkage

@@ -1,11 +1,11 @@
-"""Grashof's and the slider-crank's condition: which links of a four-link loop turn fully."""
+"""The type of a four-link loop by Grashof's condition or that of the slider-crank."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 from linkwork.equations.model import LinkAngle
-from linkwork.mechanism.chain import JointKind
+from linkwork.mechanism.joint import JointKind
 from linkwork.mechanism.linkage import Linkage
 from linkwork.motion.classifying.four_link_loop import FourLinkLoop
 from linkwork.results.classification import LoopType
@@ -47,9 +47,8 @@ def _four_bar(loop: FourLinkLoop, linkage: Linkage) -> LoopType:
     shortest, second, third, longest = sorted(lengths)
     if longest > shortest + second + third:
         told = (
-            f"{loop.links[lengths.index(longest)]} is "
-            f"{longest - (shortest + second + third):.6g} {linkage.length} longer than the other "
-            "three together"
+            f"{loop.links[lengths.index(longest)]} is {longest - (shortest + second + third):.6g} "
+            f"{linkage.length} longer than the sum of the other three"
         )
         return _no_loop(loop, told, (second + third) - (shortest + longest), longest)
     margin = (second + third) - (shortest + longest)
@@ -146,7 +145,7 @@ def _slider_crank(
     margin = long - short - offset
     if offset > long + short:
         told = (
-            f"the pins beside the slide are {offset - (long + short):.6g} {linkage.length} "
+            f"the offset pins are {offset - (long + short):.6g} {linkage.length} "
             f"further apart than {' and '.join(arms)} reach"
         )
         return _no_loop(loop, told, margin, offset)
@@ -224,6 +223,6 @@ def _condition(
     words: tuple[str, str], left: str, right: str, margin: float, small: float, unit: str
 ) -> str:
     if abs(margin) <= small:
-        return f"change point, {left} equals {right} (margin {margin:.3g} {unit})"
-    side = "below" if margin > 0 else "above"
-    return f"{words[margin < 0]}, {left} is {abs(margin):.6g} {unit} {side} {right}"
+        return f"change point, {left} = {right} (margin {margin:.3g} {unit})"
+    sign = "<" if margin > 0 else ">"
+    return f"{words[margin < 0]}, {left} {sign} {right} by {abs(margin):.6g} {unit}".rstrip()

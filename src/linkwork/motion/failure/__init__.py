@@ -1,4 +1,4 @@
-"""Why there is no position, and what would help: loaded only when something failed."""
+"""Explain failed positions and suggest remedies; loaded after a failure only."""
 
 from __future__ import annotations
 
@@ -8,30 +8,11 @@ from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
     from linkwork.motion.failure.failing import (
-        another_root,
-        beyond_reach,
-        no_position,
-        without_circuit,
-        without_start,
+        another_root as another_root,
+        beyond_reach as beyond_reach,
+        no_position as no_position,
+        without_circuit as without_circuit,
+        without_start as without_start,
     )
 else:
-    __getattr__ = loader(
-        __name__,
-        {
-            "failing": (
-                "another_root",
-                "beyond_reach",
-                "no_position",
-                "without_circuit",
-                "without_start",
-            )
-        },
-    )
-
-__all__ = [
-    "another_root",
-    "beyond_reach",
-    "no_position",
-    "without_circuit",
-    "without_start",
-]
+    __getattr__ = loader(__name__)

@@ -1,4 +1,4 @@
-"""One loop with two unknowns in closed form: how far it is from closing, and its positions.
+"""Dyads in closed form: the closure gap and the positions of one loop with two unknowns.
 
 RRR   K + a e^{iα} + b e^{iβ} = 0      closes if |a - b| ≤ |K| ≤ a + b
 RRP   K + a e^{iα} + s u = 0           closes if the line K + s u comes within a of the origin
@@ -55,7 +55,7 @@ def dyad_of(block: Block, v: Array) -> Dyad | None:
     sums = _sums(table, v[block.variables])
     if sums is None:
         return None
-    turns = [bool(turn) for turn in table.turns[:2]]
+    turns = [bool(turn) for turn in table.is_angle[:2]]
     if all(turns) and not sums.both and len(sums.turning) == 2:
         return _two_links(sums.known, sums.turning[0], sums.turning[1])
     if not any(turns):

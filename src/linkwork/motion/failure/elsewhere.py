@@ -1,4 +1,4 @@
-"""The positions that exist at one input value, as far as they are known."""
+"""The known positions at one input value."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _STARTS = 192  # per block that is no dyad
 _MOST_BLOCKS = 8
 _MOST_LOOPS = 4  # coupled, whose configurations are listed: more take seconds
 _MOST = 64  # positions; a chain of dyads has 2^blocks
-_SAME = 1e-6  # weighted
+_SAME_POSITION = 1e-6  # weighted
 _REACH = 2.0  # lengths are looked for within so many times the longest link around the guess
 
 
@@ -58,10 +58,10 @@ def positions_elsewhere(model: Model, inputs: Array) -> Elsewhere | None:
             grade = listed.completeness
             likely = grade is Completeness.WITH_PROBABILITY_ONE
             return Elsewhere(v=listed.v, complete=grade.complete, likely=likely, names=listed.names)
-    return _searched(model, inputs)
+    return _search_block(model, inputs)
 
 
-def _searched(model: Model, inputs: Array) -> Elsewhere:
+def _search_block(model: Model, inputs: Array) -> Elsewhere:
     solver = model.compiled.solver
     guess = model.equations.start.copy()
     guess[solver.unknowns :] = inputs
@@ -87,15 +87,15 @@ def block_positions(block: Block, v: Array) -> tuple[Array, bool]:
     """
     dyad = dyad_of(block, v)
     if dyad is not None:
-        polished, good = _solved(block, v, dyad.roots)
+        polished, good = _solve_starts(block, v, dyad.roots)
         return polished, bool(good.all()) and dyad.all_roots
     start = v[block.variables]
     n = len(block.unknowns)
     linear = _is_linear(block)
-    found, _ = _solved(block, v, start[None, :n] if linear else _starts(block, start[:n]))
+    found, _ = _solve_starts(block, v, start[None, :n] if linear else _starts(block, start[:n]))
     distinct: list[Array] = []
     for x in found:
-        if all(distance(block, x, other) > _SAME for other in distinct):
+        if all(distance(block, x, other) > _SAME_POSITION for other in distinct):
             distinct.append(x)
     return np.array(distinct).reshape(-1, n), linear and len(distinct) == 1
 
@@ -106,7 +106,7 @@ def _is_linear(block: Block) -> bool:
     return isinstance(table, LoopTable) and not table.loops.rows and not table.functions
 
 
-def _solved(block: Block, v: Array, starts: Array) -> tuple[Array, BoolArray]:
+def _solve_starts(block: Block, v: Array, starts: Array) -> tuple[Array, BoolArray]:
     """Newton-Raphson from the starts (K, n); the positions found, and which starts led to one."""
     n = len(block.unknowns)
     if not len(starts):
@@ -124,7 +124,7 @@ def _starts(block: Block, guess: Array) -> Array:
     root = _recurrence_root(n)
     steps = root ** -np.arange(1.0, n + 1.0)
     even = np.mod(0.5 + np.multiply.outer(np.arange(_STARTS), steps), 1.0)
-    turns = block.system.turns[:n]
+    turns = block.system.is_angle[:n]
     size = block.system.variable_scale[:n]
     lengths = guess + _REACH * size * (2.0 * even - 1.0)
     # a plain number has no natural size: some starts near the guess, some far away
@@ -137,7 +137,7 @@ def _starts(block: Block, guess: Array) -> Array:
 
 
 def _is_plain(block: Block) -> bool:
-    return not block.system.bends_boundedly
+    return not block.system.has_curvature_bound
 
 
 def _recurrence_root(n: int) -> float:
@@ -151,5 +151,5 @@ def _recurrence_root(n: int) -> float:
 def distance(block: Block, a: Array, b: Array) -> float:
     """How far apart two positions (n,) of a block are, weighted, whole turns aside."""
     n = len(block.unknowns)
-    gap = within_half_a_turn(b - a, block.system.turns[:n])
+    gap = within_half_a_turn(b - a, block.system.is_angle[:n])
     return float(np.abs(gap / block.system.variable_scale[:n]).max(initial=0.0))

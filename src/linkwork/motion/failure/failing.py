@@ -1,4 +1,4 @@
-"""Why there is no position: what does not close, what would help, what is within reach."""
+"""Explain a failed position: open loops, remedies, nearest reachable input."""
 
 from __future__ import annotations
 
@@ -14,7 +14,12 @@ from linkwork.foundation.status import Status
 from linkwork.motion.failure.dyads import dyad_of
 from linkwork.motion.failure.elsewhere import ElsewhereAt, block_positions, positions_elsewhere
 from linkwork.motion.failure.newton_reasons import Miss, miss_of, root_beside_guess, trouble_of
-from linkwork.motion.failure.reach import MOST_UNKNOWNS, Reach, assembled_near, reach_towards
+from linkwork.motion.failure.reach import (
+    MOST_UNKNOWNS,
+    ReachableRange,
+    assembled_near,
+    reach_towards,
+)
 from linkwork.motion.failure.remedies import remedies_of
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
@@ -47,10 +52,10 @@ def no_position(
     what would help; otherwise why Newton-Raphson missed those that exist.
     """
     with np.errstate(all="ignore"):
-        return _explained(model, v, status, failed_block, options)
+        return _explain(model, v, status, failed_block, options)
 
 
-def _explained(
+def _explain(
     model: Model, v: Array, status: Status, failed_block: int, options: NewtonOptions
 ) -> tuple[Status, Failure]:
     solver = model.compiled.solver
@@ -70,7 +75,7 @@ def _explained(
     what = status.value if trouble is None else f"{_head(status)}: {trouble.value}"
     meant: dict[str, float] = {}
     if miss.closed:
-        meant = _named(model, block, miss.v[: len(block.unknowns)])
+        meant = _name_unknowns(model, block, miss.v[: len(block.unknowns)])
     elif not exists and miss.known:
         what += "; " + _stays_at(model, block, miss)
     return status, _failure(
@@ -92,8 +97,8 @@ def without_start(model: Model, failure: Failure, inputs: Array) -> Failure:
     nearest = failure if not here.configurations else here
     return replace(
         failure,
-        what="the motion is followed from the guess's own input value, and there is no position "
-        f"there: {failure.what}",
+        what="the motion starts at the input value of the guess, where there is no position: "
+        f"{failure.what}",
         asked=here.asked,
         nearest_input=nearest.nearest_input,
         nearest_kind=nearest.nearest_kind,
@@ -116,7 +121,7 @@ def without_circuit(model: Model, found: Array) -> Failure:
         model,
         inputs,
         what=f"position found{' at ' if where else ''}{where}, at a dead point or change point, "
-        "but no motion that comes by there",
+        "but no motion passes through it",
     )
 
 
@@ -134,7 +139,7 @@ def another_root(model: Model, found: Array) -> Failure | None:
                 what=f"position found, but {NewtonTrouble.ANOTHER_ROOT.value}",
                 loops=_labels(model, block),
                 trouble=NewtonTrouble.ANOTHER_ROOT,
-                meant=_named(model, block, meant),
+                meant=_name_unknowns(model, block, meant),
             )
         here[block.unknowns] = found[block.unknowns]
     return None
@@ -167,7 +172,7 @@ def beyond_reach(
     scale = float(model.input_scale[lead])
     turn = 2.0 * np.pi / scale if turns_freely(model) else np.inf
     met = " and ".join(
-        f"{_turned(limit.input, asked / scale, turn):.10g}{unit}" for limit in limits
+        f"{_nearest_by_turns(limit.input, asked / scale, turn):.10g}{unit}" for limit in limits
     )
     return _failure(
         model,
@@ -178,7 +183,7 @@ def beyond_reach(
     )
 
 
-def _turned(value: float, asked: float, turn: float) -> float:
+def _nearest_by_turns(value: float, asked: float, turn: float) -> float:
     """A value as near to the one asked as whole turns bring it; exactly itself without any."""
     turns = round((asked - value) / turn)
     return value + turns * turn if turns else value
@@ -186,7 +191,7 @@ def _turned(value: float, asked: float, turn: float) -> float:
 
 def _nearest_limit(
     model: Model, path: InputPath, lead: int, asked: float, limits: tuple[Limit, ...]
-) -> Reach:
+) -> ReachableRange:
     """The limit that was met nearest to the value asked."""
     scale = float(model.input_scale[lead])
 
@@ -198,7 +203,7 @@ def _nearest_limit(
     inputs = path.at(limit.input * scale) / model.input_scale
     inputs[lead] = limit.input
     kind = limit.kind.value.partition(":")[0]
-    return Reach(inputs=inputs, kind=kind, proved=False, first_dead_point=None)
+    return ReachableRange(inputs=inputs, kind=kind, proved=False, first_dead_point=None)
 
 
 def _head(status: Status) -> str:
@@ -213,10 +218,10 @@ def _loops_in(model: Model, block: Block) -> int:
     return sum(e < len(model.equations.loops) for e in block.equations)
 
 
-def _named(model: Model, block: Block, x: Array) -> dict[str, float]:
-    """The unknowns (n,) of a block by name, everyday units, angles within half a turn."""
+def _name_unknowns(model: Model, block: Block, x: Array) -> dict[str, float]:
+    """The unknowns (n,) of a block by name, in file units, angles within half a turn."""
     unknowns = [model.equations.unknowns[int(k)] for k in block.unknowns]
-    turned = within_half_a_turn(x, block.system.turns[: len(x)])
+    turned = within_half_a_turn(x, block.system.is_angle[: len(x)])
     return {
         u.name: float(value / model.units.scale(Kind(u.kind)))
         for u, value in zip(unknowns, turned, strict=True)
@@ -226,7 +231,7 @@ def _named(model: Model, block: Block, x: Array) -> dict[str, float]:
 def _stays_at(model: Model, block: Block, miss: Miss) -> str:
     labels = _labels(model, block)
     worst = int(np.argmax(np.abs(miss.f)))
-    return f'"{labels[worst % len(labels)]}" stays at {miss.f[worst]:.6g} at best nearby'
+    return f'"{labels[worst % len(labels)]}" has at least the residual {miss.f[worst]:.6g} nearby'
 
 
 def _cannot_close(model: Model, block: Block, number: int, here: Array, miss: Miss) -> Failure:
@@ -246,8 +251,8 @@ def _cannot_close(model: Model, block: Block, number: int, here: Array, miss: Mi
         size = float(gaps[worst])
     where = _inputs_text(model, inputs)
     what = (
-        f"{names} cannot be closed{' at ' if where else ''}{where}: "
-        f"nearest to the guess a gap of {size:.6g} {unit} remains"
+        f"{names} cannot be closed{' at ' if where else ''}{where}: near the guess a gap of at "
+        f"least {size:.6g} {unit} remains"
     )
     reach, reachable = None, True
     if len(inputs) and solver.unknowns <= MOST_UNKNOWNS:
@@ -283,7 +288,7 @@ def _inputs_text(model: Model, inputs: Array) -> str:
     )
 
 
-def _everyday_inputs(model: Model, inputs: Array) -> Array:
+def _inputs_in_file_units(model: Model, inputs: Array) -> Array:
     units = model.units
     values = [
         units.angle.from_radians(float(value)) if variable.kind == "angle" else float(value)
@@ -292,7 +297,9 @@ def _everyday_inputs(model: Model, inputs: Array) -> Array:
     return np.array(values, dtype=float)
 
 
-def _failure(model: Model, inputs: Array, reach: Reach | None = None, **parts: object) -> Failure:
+def _failure(
+    model: Model, inputs: Array, reach: ReachableRange | None = None, **parts: object
+) -> Failure:
     """The explanation with the positions that exist at the inputs (p,)."""
     driven = [u.name for u in model.equations.inputs]
     found = ELSEWHERE(model, inputs)
@@ -319,7 +326,7 @@ def _failure(model: Model, inputs: Array, reach: Reach | None = None, **parts: o
         if not reach.kind and reach.first_dead_point is not None:
             towards["through"] = by_name(reach.first_dead_point)
     return Failure(
-        asked=by_name(_everyday_inputs(model, inputs)),
+        asked=by_name(_inputs_in_file_units(model, inputs)),
         configurations=tuple(dict(zip(names, map(float, row), strict=True)) for row in x),
         configuration_names=() if found is None else found.names,
         complete=None if found is None else found.complete,

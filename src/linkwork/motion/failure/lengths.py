@@ -1,4 +1,4 @@
-"""The lengths of a mechanism that its user can change, each under the user's own name."""
+"""The lengths that a user can change, under the user's names."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from linkwork.expression.grammar import parse, parse_equation
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, names_in
 from linkwork.foundation.errors import ExpressionError, InputError
-from linkwork.foundation.names import canonical
+from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
-from linkwork.mechanism.parts import Number
 from linkwork.motion.model import Model, model_of
 
 __all__ = ["ChangeableLength", "lengths_of", "model_with"]

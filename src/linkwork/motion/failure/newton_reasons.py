@@ -1,4 +1,4 @@
-"""Telling apart why Newton-Raphson misses the position that was meant."""
+"""Classify why Newton-Raphson missed the intended position."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def _is_extremum(block: Block, v: Array) -> bool:
     _, _, right = np.linalg.svd(j)
     direction = np.zeros_like(v)
     direction[:n] = right[-1] * weights
-    bend = system.second(v[None, :], direction[None, :])[0] / scale
+    bend = system.second_directional_derivative(v[None, :], direction[None, :])[0] / scale
     return bool(abs(r @ bend) > _FLAT * size)
 
 
@@ -102,7 +102,7 @@ def _bends_both_ways(block: Block, root: Array, guess: Array) -> bool:
     d = np.zeros_like(root)
     d[:n] = guess[:n] - root[:n]
     sides = np.stack([root + _ASIDE * d, root - _ASIDE * d])
-    bends = system.second(sides, np.stack([d, d]))
+    bends = system.second_directional_derivative(sides, np.stack([d, d]))
     try:
         inverse = np.linalg.inv(system.jacobian(root[None, :])[0, :, :n])
     except np.linalg.LinAlgError:

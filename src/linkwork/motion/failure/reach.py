@@ -1,4 +1,4 @@
-"""The input value nearest to the one asked that a mechanism reaches on one circuit."""
+"""The reachable input value of a circuit nearest to the requested one."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.equations.leading import LeadTable
+from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
-from linkwork.motion.circuit.branches import Traced
+from linkwork.motion.curve_branches import TracedCurve
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.continuation.branch_tracking import BOLD, InputPath, TrackOptions, follow
@@ -19,7 +19,7 @@ from linkwork.numerics.continuation.curve_tracing import Curve, CurveOptions, Le
 from linkwork.numerics.continuation.turning_point import turning_points
 from linkwork.numerics.least_squares import nearest_miss
 
-__all__ = ["MOST_UNKNOWNS", "Reach", "assembled_near", "reach_towards"]
+__all__ = ["MOST_UNKNOWNS", "ReachableRange", "assembled_near", "reach_towards"]
 
 MOST_UNKNOWNS = 200  # of a mechanism whose circuit is followed for an explanation
 _CLOSED = 1e-9  # relative gap of a position that was found with the input free
@@ -42,10 +42,10 @@ class _Edge:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reach:
+class ReachableRange:
     """The nearest input values that a circuit reaches.
 
-    ``inputs`` (p,): everyday units. ``kind``: what ends the circuit there; empty if the circuit
+    ``inputs`` (p,): file units. ``kind``: what ends the circuit there; empty if the circuit
     reaches what was asked. ``proved``: whether it was followed with proof. ``first_dead_point``
     (p,): the first one met on the way from the start.
     """
@@ -58,7 +58,7 @@ class Reach:
 
 def assembled_near(model: Model, path: InputPath, lead: int, v: Array) -> Array | None:
     """An assembled position (N,) near v, the input moved as little as need be; ``None`` if none."""
-    locked = LeadTable(model.compiled.table, path, lead).table
+    locked = ParametrizedTable(model.compiled.table, path, lead).table
     n = model.compiled.solver.unknowns
     scale = locked.variable_scale.copy()
     scale[n:] *= _HELD
@@ -74,7 +74,9 @@ def assembled_near(model: Model, path: InputPath, lead: int, v: Array) -> Array 
     return None
 
 
-def reach_towards(model: Model, path: InputPath, lead: int, v: Array, asked: float) -> Reach | None:
+def reach_towards(
+    model: Model, path: InputPath, lead: int, v: Array, asked: float
+) -> ReachableRange | None:
     """How near the circuit through a position comes to the value ``asked`` of the path.
 
     A circuit is connected: it reaches all values between its smallest and its largest, which lie
@@ -87,7 +89,7 @@ def reach_towards(model: Model, path: InputPath, lead: int, v: Array, asked: flo
     """
     if model.compiled.solver.unknowns > MOST_UNKNOWNS:
         return None
-    leads = LeadTable(model.compiled.table, path, lead)
+    leads = ParametrizedTable(model.compiled.table, path, lead)
     period = _TURN if turns_freely(model) else None
     away = asked - float(v[leads.parameter])
     if period is not None:
@@ -101,16 +103,16 @@ def reach_towards(model: Model, path: InputPath, lead: int, v: Array, asked: flo
     first = None
     if turns:
         edge = _Edge(turns[0].t, "dead point", turns[0].bracket)
-        first = _everyday(model, path, lead, edge, 0)
+        first = _in_file_units(model, path, lead, edge, 0)
     nearest = _nearest(low.t, high.t, asked, period)
     if nearest is None:
         inputs, kind = path.at(asked) / model.input_scale, ""
     else:
         end, whole = nearest
         edge = low if end == "low" else high
-        inputs, kind = _everyday(model, path, lead, edge, whole), edge.kind
+        inputs, kind = _in_file_units(model, path, lead, edge, whole), edge.kind
     proved = all(walk.certified for walk in walks)
-    return Reach(inputs=inputs, kind=kind, proved=proved, first_dead_point=first)
+    return ReachableRange(inputs=inputs, kind=kind, proved=proved, first_dead_point=first)
 
 
 def _nearest(low: float, high: float, asked: float, period: float | None) -> tuple[str, int] | None:
@@ -134,7 +136,7 @@ def _nearest(low: float, high: float, asked: float, period: float | None) -> tup
     return end, k
 
 
-def _everyday(model: Model, path: InputPath, lead: int, edge: _Edge, turns: int) -> Array:
+def _in_file_units(model: Model, path: InputPath, lead: int, edge: _Edge, turns: int) -> Array:
     """All inputs at a value of the path, the leading one as the short number in its bracket."""
     scale = float(model.input_scale[lead])
     inputs: Array = path.at(edge.t) / model.input_scale
@@ -146,9 +148,9 @@ def _everyday(model: Model, path: InputPath, lead: int, edge: _Edge, turns: int)
     return inputs
 
 
-def _circuit(leads: LeadTable, v: Array, side: float) -> list[Traced]:
+def _circuit(leads: ParametrizedTable, v: Array, side: float) -> list[TracedCurve]:
     """The whole circuit through a position (N,): one curve if it closes, else one each way."""
-    walks: list[Traced] = []
+    walks: list[TracedCurve] = []
     for care in _CARES:
         try:
             aside = _off_dead_point(leads, v, care)
@@ -165,16 +167,16 @@ def _circuit(leads: LeadTable, v: Array, side: float) -> list[Traced]:
     return walks
 
 
-def _walk(leads: LeadTable, v: Array, side: float, care: TrackOptions) -> Traced:
+def _walk(leads: ParametrizedTable, v: Array, side: float, care: TrackOptions) -> TracedCurve:
     """A curve with its proof and dead points, given up sooner than when it is asked for."""
     curve = trace(leads, v, side, CurveOptions(most_legs=_MOST_LEGS, track=care))
     if not curve.legs:
-        return Traced(curve=curve, proof=None, turns=())
+        return TracedCurve(curve=curve, proof=None, turns=())
     turns = tuple(turning_points(leads, curve))
-    return Traced(curve=curve, proof=prove_curve(leads, curve), turns=turns)
+    return TracedCurve(curve=curve, proof=prove_curve(leads, curve), turns=turns)
 
 
-def _off_dead_point(leads: LeadTable, v: Array, care: TrackOptions) -> Traced | None:
+def _off_dead_point(leads: ParametrizedTable, v: Array, care: TrackOptions) -> TracedCurve | None:
     """A way from a position (N,) at which the parameter is slow to one where it can lead."""
     table = leads.table
     slope = table.jacobian(v[None, :])[0] * table.variable_scale / table.equation_scale[:, None]
@@ -182,7 +184,7 @@ def _off_dead_point(leads: LeadTable, v: Array, care: TrackOptions) -> Traced | 
     if speed.max() <= _FAST * speed[leads.parameter]:
         return None
     lead = int(np.argmax(speed))
-    led = leads.by(lead)
+    led = leads.with_parameter(lead)
     if led is None:
         raise ValueError("the fastest variable must determine the position")
     node, weight = led.node(v), float(table.variable_scale[lead])
@@ -192,11 +194,11 @@ def _off_dead_point(leads: LeadTable, v: Array, care: TrackOptions) -> Traced | 
         if nodes:
             leg = Leg(led=led, nodes=(node, *nodes))
             curve = Curve(legs=(leg,), end=CircuitEnd.SINGULAR, passes=())
-            return Traced(curve=curve, proof=prove_curve(leads, curve), turns=())
+            return TracedCurve(curve=curve, proof=prove_curve(leads, curve), turns=())
     return None
 
 
-def _edges(leads: LeadTable, walk: Traced) -> list[_Edge]:
+def _edges(leads: ParametrizedTable, walk: TracedCurve) -> list[_Edge]:
     """The values of the parameter on a curve, with what is at those where it may turn or end."""
     p = leads.parameter
     found = [_Edge(float(t)) for leg in walk.curve.legs for t in leg.v[:, p]]

@@ -1,4 +1,4 @@
-"""Which lengths would have to be other, and by how much, for the loops just to close."""
+"""Changes of single lengths with which the loops just close."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.motion.failure.dyads import dyad_of
 from linkwork.motion.failure.lengths import ChangeableLength, lengths_of, model_with
 from linkwork.motion.model import Model
-from linkwork.numerics.continuation.fold import Family, locate_fold
+from linkwork.numerics.continuation.fold import FoldFamily, locate_fold
 from linkwork.numerics.joined_blocks import JoinedBlocks, closure_of
 from linkwork.results.failure import Remedy
 
@@ -73,7 +73,7 @@ def _needed(model: Model, length: ChangeableLength, members: list[int], v: Array
 
     step = _STEP * size
     try:
-        family = Family(
+        family = FoldFamily(
             at=at,
             inputs=v[solver.unknowns :],
             low=at(length.value - step),

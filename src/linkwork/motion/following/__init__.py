@@ -1,4 +1,4 @@
-"""A position at another input value than the guess's: loaded only when one is asked for."""
+"""Positions at other input values than the guess's; loaded on demand."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
-    from linkwork.motion.following.to_value import OutOfReach, followed
+    from linkwork.motion.following.to_value import (
+        OutOfReach as OutOfReach,
+        follow_to_value as follow_to_value,
+    )
 else:
-    __getattr__ = loader(__name__, {"to_value": ("OutOfReach", "followed")})
-
-__all__ = ["OutOfReach", "followed"]
+    __getattr__ = loader(__name__)

@@ -1,4 +1,4 @@
-"""The branch of a position followed to one other input value."""
+"""Follow the branch of a position to another input value."""
 
 from __future__ import annotations
 
@@ -8,19 +8,20 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import Status
 from linkwork.motion import failure as why
 from linkwork.motion.drive import Drive
 from linkwork.motion.following.whole_turns import Laps, laps_to
 from linkwork.motion.limits import BranchEnd, ends_of
 from linkwork.motion.model import Model
-from linkwork.motion.positions import Found
+from linkwork.motion.positions import SolvedPosition
 from linkwork.motion.proving import prove_rows
 from linkwork.motion.tracking import leading_scale, track_to, turns_freely
 from linkwork.numerics.continuation.branch_tracking import (
     InputPath,
-    Rows,
     Track,
+    TrackRows,
     node_at,
     rows_on_track,
 )
@@ -28,9 +29,7 @@ from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit
 from linkwork.results.position import Certificate
 
-__all__ = ["OutOfReach", "followed"]
-
-_UNIT = np.finfo(float).eps
+__all__ = ["OutOfReach", "follow_to_value"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,8 +41,8 @@ class OutOfReach:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Place:
-    """Where on a track the position lies; ``asked`` (p,): the input values meant there, everyday
+class _PlaceOnTrack:
+    """Where on a track the position lies; ``asked`` (p,): the input values meant there, file
     units, whole turns aside.
     """
 
@@ -52,7 +51,9 @@ class _Place:
     asked: Array
 
 
-def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | OutOfReach:
+def follow_to_value(
+    model: Model, v: Array, target: Array, certify: bool
+) -> SolvedPosition | OutOfReach:
     """The position at another input value, along the straight line from the guess's inputs.
 
     Parameters
@@ -60,7 +61,7 @@ def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | Ou
     v : (N,)
         The position at the guess's own input value.
     target : (p,)
-        The value asked, everyday units.
+        The value asked, in file units.
     """
     solver = model.compiled.solver
     origin = model.start_inputs
@@ -81,7 +82,7 @@ def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | Ou
     for turns in _turns_away(model, goal - first.t):
         t = goal - turns * 2.0 * np.pi
         track = track_to(solver, path, first, [t])
-        place = _Place(
+        place = _PlaceOnTrack(
             path=path,
             track=track,
             asked=asked - (turns * model.units.angle.turn if turns else 0.0),
@@ -90,7 +91,7 @@ def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | Ou
             break
         ends = ends_of(drive, track, certify)
         for end in ends:
-            if end.is_at(t, 4.0 * _UNIT * max(abs(goal), abs(t))):
+            if end.is_at(t, 4.0 * EPSILON * max(abs(goal), abs(t))):
                 return _at_end(model, end, place, laps, certify)
         met = [end.limit for end in ends]
         limits += tuple(limit for limit in met if limit.input not in [old.input for old in limits])
@@ -100,7 +101,7 @@ def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | Ou
         failure = why.beyond_reach(model, v, (path, lead, goal), status, limits)
         return OutOfReach(status=status, failure=failure)
     rows = rows_on_track(solver, path, track, np.array([t]))
-    return Found(
+    return SolvedPosition(
         v=rows.v[0] if laps is None else rows.v[0] + laps.gain,
         status=Status.of_code(int(rows.status[0])),
         residual=float(rows.residual[0]),
@@ -109,7 +110,9 @@ def followed(model: Model, v: Array, target: Array, certify: bool) -> Found | Ou
     )
 
 
-def _at_end(model: Model, end: BranchEnd, place: _Place, laps: Laps | None, certify: bool) -> Found:
+def _at_end(
+    model: Model, end: BranchEnd, place: _PlaceOnTrack, laps: Laps | None, certify: bool
+) -> SolvedPosition:
     """The position at the end of the branch, which is where the value asked lies."""
     solver, track, v = model.compiled.solver, place.track, end.v
     assert v is not None
@@ -118,8 +121,8 @@ def _at_end(model: Model, end: BranchEnd, place: _Place, laps: Laps | None, cert
         rows = rows_on_track(solver, place.path, track, np.array([last.t]))
         proofs = prove_rows(solver, place.path, track, rows, place.path.at(rows.t))
         proved = proofs.up_to_ends and (laps is None or laps.proved)
-        end = end if proved else end.demoted(Certification.MOTION_NOT_PROVED)
-    return Found(
+        end = end if proved else end.demote(Certification.MOTION_NOT_PROVED)
+    return SolvedPosition(
         v=v if laps is None else v + laps.gain,
         status=Status.CONVERGED,
         residual=float(solver.residual(v[None, :])[0]),
@@ -127,7 +130,7 @@ def _at_end(model: Model, end: BranchEnd, place: _Place, laps: Laps | None, cert
         certificate=Certificate(
             certification=end.certification,
             radius=_known(end.radius),
-            unique_within=_known(end.unique),
+            unique_within=_known(end.uniqueness_radius),
         ),
         first=end.first,
     )
@@ -145,7 +148,9 @@ def _turns_away(model: Model, way: float) -> list[int]:
     return list(dict.fromkeys([0, whole, whole + int(np.copysign(1.0, way))]))
 
 
-def _certificate(model: Model, place: _Place, rows: Rows, laps: Laps | None) -> Certificate:
+def _certificate(
+    model: Model, place: _PlaceOnTrack, rows: TrackRows, laps: Laps | None
+) -> Certificate:
     """Of the position and of the way to it."""
     asked = (place.asked * model.input_scale)[None, :]
     proofs = prove_rows(model.compiled.solver, place.path, place.track, rows, asked)
@@ -156,5 +161,5 @@ def _certificate(model: Model, place: _Place, rows: Rows, laps: Laps | None) -> 
     return Certificate(
         certification=certification,
         radius=float(proofs.radius[0]) if proved else None,
-        unique_within=float(proofs.unique[0]) if proved else None,
+        unique_within=float(proofs.uniqueness_radius[0]) if proved else None,
     )

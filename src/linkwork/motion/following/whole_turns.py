@@ -1,4 +1,4 @@
-"""Far input values of a mechanism that turns freely: laps that bring it back are left out."""
+"""Distant input values of a freely turning mechanism, reduced by whole periods."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.equations.leading import LeadTable
+from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array
 from linkwork.motion.model import Model
 from linkwork.numerics.continuation.branch_tracking import BOLD, InputPath
@@ -24,8 +24,8 @@ _OPTIONS = CurveOptions(most_turns=60, most_legs=200, track=replace(BOLD, most_s
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Laps:
-    """``inputs`` (p,): everyday values so many laps nearer to the start; ``gain`` (N,): what all
-    laps left out add to the variables; ``proved``: that a lap leads back to where it began.
+    """``inputs`` (p,), in file units: values so many laps nearer to the start; ``gain`` (N,): what
+    all laps left out add to the variables; ``proved``: that a lap leads back to where it began.
     """
 
     inputs: Array
@@ -41,7 +41,7 @@ def laps_to(model: Model, v: Array, target: Array) -> Laps | None:
     v : (N,)
         The position at the start.
     target : (1,)
-        The value asked, everyday units.
+        The value asked, in file units.
 
     Returns
     -------
@@ -53,11 +53,13 @@ def laps_to(model: Model, v: Array, target: Array) -> Laps | None:
     if len(inputs) != 1 or inputs[0].kind != "angle":
         return None
     n, unit = model.compiled.solver.unknowns, model.units.angle.turn
-    begin = float(model.everyday_start[0])
+    begin = float(model.start_in_file_units[0])
     span = float(target[0]) - begin
     if not abs(span) > _FAR * unit:
         return None
-    leads = LeadTable(model.compiled.table, InputPath(origin=np.zeros(1), rate=np.ones(1)), 0)
+    leads = ParametrizedTable(
+        model.compiled.table, InputPath(origin=np.zeros(1), rate=np.ones(1)), 0
+    )
     curve = trace(leads, v, math.copysign(1.0, span), _OPTIONS)
     if not curve.end.closed or any(_turns_back(leg.v[:, n]) for leg in curve.legs):
         return None

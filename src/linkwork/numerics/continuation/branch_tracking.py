@@ -14,13 +14,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array, CountArray, IndexArray, StatusArray
-from linkwork.foundation.status import Status
+from linkwork.foundation.status import CONVERGED, Status
+from linkwork.marching.loop import Attempt, StepBounds, march
+from linkwork.marching.step_size import by_error
 from linkwork.numerics.block_solver import BlockSolver, Rates
-from linkwork.numerics.newton import NewtonOptions
 
 __all__ = ["BOLD", "End", "InputPath", "Node", "Track", "TrackOptions", "follow", "rows_on_track"]
 
-_CONVERGED = Status.CONVERGED.code
 _FAST = 5.0  # rate of a variable, weighted, from which on a dead point may be ahead
 _APPROACH = 0.75  # of the estimated distance to a dead point: the largest step
 _NODE_TOLERANCE = 1e-7  # a correction this small leaves an error of its square
@@ -65,6 +65,16 @@ class TrackOptions:
     largest_step: float = 0.8
     smallest_step: float = 1e-13
     most_steps: int = 100_000
+
+    def bounds(self, size: float) -> StepBounds:
+        """Of the steps along a path of the natural length ``size``."""
+        return StepBounds(
+            size=size,
+            first=self.first_step,
+            largest=self.largest_step,
+            smallest=self.smallest_step,
+            attempts=self.most_steps,
+        )
 
 
 #: For tracks that are proved afterwards: about half the steps, none of them safe by itself.
@@ -138,6 +148,13 @@ def node_at(solver: BlockSolver, path: InputPath, t: float, v: Array) -> Node:
     return _node(t, v, rates)
 
 
+def predict(here: Node, t: float) -> Array:
+    """The second-order Taylor polynomial of a node at t, (N,)."""
+    h = t - here.t
+    value: Array = here.v + h * here.first + (0.5 * h * h) * here.second
+    return value
+
+
 def _node(t: float, v: Array, rates: Rates, iterations: int = 0) -> Node:
     return Node(
         t=t,
@@ -167,114 +184,63 @@ def follow(
         The nodes after ``start`` in the order reached; ``None`` if it was not cut short.
     """
     opt = options or TrackOptions()
-    walk = _Walk(solver, path, start, goal, opt)
     if goal == start.t:
-        return walk.nodes, None
+        return [], None
     if not (start.nearness <= opt.largest_condition and np.isfinite(start.second).all()):
-        failed = End(reached=start.t, failed=start.t, status=Status.START_SINGULAR)
-        return walk.nodes, failed
-    for _ in range(opt.most_steps):
-        before = walk.here
-        end = walk.step()
-        if end is not None:
-            return walk.nodes, end
-        after = walk.here
-        if after is not before:
-            enough = watch is not None and watch(before, after)
-            if enough or after.t == goal:
-                return walk.nodes, None
-    return walk.nodes, End(reached=walk.here.t, failed=goal, status=Status.LOST)
+        return [], End(reached=start.t, failed=start.t, status=Status.START_SINGULAR)
+    trial = _Trial(solver, path, opt)
+    nodes, stop = march(trial, start, goal, opt.bounds(path.size), watch)
+    if stop is None:
+        return nodes, None
+    lost = stop.exhausted
+    status = Status.LOST if lost else _kind_of_end(solver, start, stop.node, path.size)
+    return nodes, End(reached=stop.node.t, failed=stop.failed, status=status)
 
 
-class _Walk:
-    """The state of one track: where it stands, and the size of its next step."""
+class _Trial:
+    """A step by second-order Taylor and Newton-Raphson, taken only if nothing speaks against it."""
 
-    def __init__(
-        self, solver: BlockSolver, path: InputPath, start: Node, goal: float, options: TrackOptions
-    ) -> None:
-        self.solver, self.path, self.start, self.goal = solver, path, start, goal
-        self.options = options
+    def __init__(self, solver: BlockSolver, path: InputPath, options: TrackOptions) -> None:
+        self.solver, self.path, self.options = solver, path, options
         self.quick = replace(
             solver.options, max_steps=6, largest_turn=math.inf, solution_tolerance=_NODE_TOLERANCE
         )
-        self.sign = math.copysign(1.0, goal - start.t)
-        self.nodes: list[Node] = []
-        self.here = start
-        self.h = options.first_step * path.size
-        self.failed_at = goal
 
-    def step(self) -> End | None:
-        """Try one step: taken, or the next one will be smaller; the end where none can be taken."""
-        here, scale = self.here, self.path.size
-        rest = abs(self.goal - here.t)
-        room = _room(here, self.sign, self.solver.variable_scale, scale)
-        smallest = self.options.smallest_step * max(scale, abs(here.t))
-        if room < smallest:
-            return self._stopped(here.t + self.sign * 2.0 * room)
-        h = min(self.h, self.options.largest_step * scale, rest, room)
-        if h < rest and h < smallest:
-            return self._stopped(self.failed_at)
-        t = self.goal if h == rest else here.t + self.sign * h
-        following, correction = _step(self.solver, self.path, here, t, self.quick, self.options)
-        if following is None:
-            self.failed_at = t
-            self.h = h * (0.5 if correction is None else max(0.1, min(0.5, correction)))
-            return self._stopped(t) if self.h < smallest else None
-        self.nodes.append(following)
-        self.here = following
-        self.h = h * min(2.0, max(0.5, correction or 2.0))
-        return None
+    def room(self, here: Node, sign: float) -> float:
+        """How far a step may go towards a dead point, where rates grow like 1/√distance.
 
-    def _stopped(self, failed: float) -> End:
-        status = _kind_of_end(self.solver, self.start, self.here, self.path.size)
-        return End(reached=self.here.t, failed=failed, status=status)
+        There x'/2x'' of the fastest variable is the distance; elsewhere it is no limit.
+        """
+        speed = np.abs(here.first) / self.solver.variable_scale
+        k = int(np.argmax(speed))
+        if speed[k] * self.path.size < _FAST or sign * here.first[k] * here.second[k] <= 0.0:
+            return math.inf
+        return _APPROACH * abs(float(here.first[k] / (2.0 * here.second[k])))
 
-
-def _room(here: Node, sign: float, weights: Array, scale: float) -> float:
-    """How far a step may go towards a dead point, where rates grow like 1/√distance.
-
-    There x'/2x'' of the fastest variable is the distance; elsewhere it is no limit.
-    """
-    speed = np.abs(here.first) / weights
-    k = int(np.argmax(speed))
-    if speed[k] * scale < _FAST or sign * here.first[k] * here.second[k] <= 0.0:
-        return math.inf
-    return _APPROACH * abs(float(here.first[k] / (2.0 * here.second[k])))
-
-
-def _step(
-    solver: BlockSolver,
-    path: InputPath,
-    here: Node,
-    t: float,
-    quick: NewtonOptions,
-    opt: TrackOptions,
-) -> tuple[Node | None, float | None]:
-    """One trial step: the new node, or ``None``; and the factor for the next step size."""
-    h = t - here.t
-    guess = here.v + h * here.first + (0.5 * h * h) * here.second
-    guess[solver.unknowns :] = path.at(t)
-    found = solver.solve(guess[None, :], quick)
-    correction = float(found.first_step[0])
-    factor = (opt.aim / correction) ** (1.0 / 3.0) if correction > 0 else 2.0
-    if (
-        found.status[0] != _CONVERGED
-        or correction > opt.largest_correction
-        or found.contraction[0] > opt.contraction
-    ):
-        return None, factor if correction > opt.largest_correction else None
-    rates = solver.rates(found.v, path.rate)
-    if not (rates.orientation[0] == here.orientation).all():
-        return None, None
-    if not rates.nearness[0] <= opt.largest_condition:
-        return None, None
-    drift = (rates.first[0] - here.first - h * here.second) / solver.variable_scale
-    turn = float(np.abs(drift * h).max())
-    if not turn <= opt.rate_error:
-        return None, None
-    if turn > 0:
-        factor = min(factor, (0.5 * opt.rate_error / turn) ** (1.0 / 3.0))
-    return _node(t, found.v[0], rates, int(found.iterations[0])), factor
+    def attempt(self, here: Node, t: float) -> Attempt[Node]:
+        """Predict, correct and judge."""
+        solver, path, opt, h = self.solver, self.path, self.options, t - here.t
+        guess = predict(here, t)
+        guess[solver.unknowns :] = path.at(t)
+        found = solver.solve(guess[None, :], self.quick)
+        correction = float(found.first_step[0])
+        factor = by_error(correction, opt.aim, 3)
+        if found.status[0] != CONVERGED or found.contraction[0] > opt.contraction:
+            too_far = correction > opt.largest_correction
+            return Attempt(None, factor if too_far else None)
+        if correction > opt.largest_correction:
+            return Attempt(None, factor)
+        rates = solver.rates(found.v, path.rate)
+        if not (rates.orientation[0] == here.orientation).all():
+            return Attempt(None)
+        if not rates.nearness[0] <= opt.largest_condition:
+            return Attempt(None)
+        drift = (rates.first[0] - here.first - h * here.second) / solver.variable_scale
+        turn = float(np.abs(drift * h).max())
+        if not turn <= opt.rate_error:
+            return Attempt(None)
+        factor = min(factor, by_error(turn, 0.5 * opt.rate_error, 3))
+        return Attempt(_node(t, found.v[0], rates, int(found.iterations[0])), factor)
 
 
 def _kind_of_end(solver: BlockSolver, start: Node, here: Node, scale: float) -> Status:
@@ -286,7 +252,7 @@ def _kind_of_end(solver: BlockSolver, start: Node, here: Node, scale: float) -> 
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rows:
+class TrackRows:
     """Positions at many values t (B,): as a block solution with rates, rows not found marked."""
 
     t: Array
@@ -297,13 +263,13 @@ class Rows:
     rates: Rates
 
 
-def joined_rows(pieces: Sequence[Rows]) -> Rows:
+def concatenate_rows(pieces: Sequence[TrackRows]) -> TrackRows:
     """Batches of rows as one."""
 
-    def stacked(of: Callable[[Rows], Array]) -> Array:
+    def stacked(of: Callable[[TrackRows], Array]) -> Array:
         return np.concatenate([of(piece) for piece in pieces])
 
-    return Rows(
+    return TrackRows(
         t=stacked(lambda p: p.t),
         v=stacked(lambda p: p.v),
         status=np.concatenate([p.status for p in pieces]),
@@ -319,13 +285,13 @@ def joined_rows(pieces: Sequence[Rows]) -> Rows:
     )
 
 
-def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) -> Rows:
+def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) -> TrackRows:
     """Positions at the values ``t`` (B,), all inside the track, as many lanes at once.
 
     Starts from quintic interpolation between the track's nodes. A row that ends elsewhere than
     predicted, or with another sign of det J, is followed again from its node step by step.
     """
-    guess, left = _interpolated(track, t)
+    guess, left = _interpolate(track, t)
     guess[:, solver.unknowns :] = path.at(t)
     found = solver.solve(guess, replace(solver.options, max_steps=12, largest_turn=math.inf))
     v, status = found.v, found.status.copy()
@@ -333,9 +299,7 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
     weights = solver.variable_scale
     moved = np.abs((v - guess) / weights).max(axis=1)
     expected = np.stack([track.nodes[k].orientation for k in left])
-    doubtful = (
-        (status != _CONVERGED) | ~(moved <= 0.1) | (rates.orientation != expected).any(axis=1)
-    )
+    doubtful = (status != CONVERGED) | ~(moved <= 0.1) | (rates.orientation != expected).any(axis=1)
     residual, iterations = found.residual.copy(), found.iterations.copy()
     for row in np.flatnonzero(doubtful):
         node = _nearest(track, int(left[row]), float(t[row]))
@@ -345,11 +309,11 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
             status[row] = Status.LOST.code
             continue
         v[row] = arrived.v
-        status[row] = _CONVERGED
+        status[row] = CONVERGED
         residual[row] = solver.residual(arrived.v[None, :])[0]
     if doubtful.any():
         rates = solver.rates(v, path.rate)
-    return Rows(t=t, v=v, status=status, iterations=iterations, residual=residual, rates=rates)
+    return TrackRows(t=t, v=v, status=status, iterations=iterations, residual=residual, rates=rates)
 
 
 def _nearest(track: Track, left: int, t: float) -> Node:
@@ -357,7 +321,7 @@ def _nearest(track: Track, left: int, t: float) -> Node:
     return min(track.nodes[left], track.nodes[right], key=lambda node: abs(node.t - t))
 
 
-def _interpolated(track: Track, t: Array) -> tuple[Array, IndexArray]:
+def _interpolate(track: Track, t: Array) -> tuple[Array, IndexArray]:
     """Quintic Hermite values at t (B, N) and the index of the node at the left of each."""
     nodes = track.nodes
     times = np.array([node.t for node in nodes])

@@ -19,6 +19,7 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.rounding import EPSILON
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node
 from linkwork.numerics.joined_blocks import JoinedBlocks, closure_of
@@ -35,7 +36,6 @@ __all__ = [
     "tangents_behind_kink",
 ]
 
-_UNIT = np.finfo(float).eps
 _STEPS = 12
 _SHARES = 17  # in which rates are led around a kink
 _FAR = 1e-3  # ratio of a block's singular values from which on it is far from a singular position
@@ -116,14 +116,14 @@ def locate_change_point(
         system = JoinedBlocks(solver, closure_of(solver, block))
         mine = system.order[: system.unknowns]
         known = KnownJet.along(path)
-        found = _located(system, known, last.v[mine], last.t, last.first[mine])
+        found = _locate(system, known, last.v[mine], last.t, last.first[mine])
         if found is None or (found.t - last.t) * side < -1e-3 * near:
             continue
         if abs(found.t - last.t) > near:
             continue
         v = last.v + (found.t - last.t) * last.first
         v[mine], v[solver.unknowns :] = found.x, path.at(found.t)
-        return _placed_point(solver, path.rate, block, mine, v, found)
+        return _place_point(solver, path.rate, block, mine, v, found)
     return None
 
 
@@ -144,7 +144,7 @@ def locate_crossing(
         Derivatives by t of the branch that is followed.
     """
     block = solver.blocks[number]
-    found = _located(block.system, known, x, t, own)
+    found = _locate(block.system, known, x, t, own)
     if found is None:
         return None
     y, rate, _ = known.at(found.t)
@@ -153,7 +153,7 @@ def locate_crossing(
     moving = np.zeros(solver.variables - solver.unknowns)
     inputs = block.variables[len(found.x) :] - solver.unknowns
     moving[inputs[inputs >= 0]] = rate[inputs >= 0]
-    return _placed_point(solver, moving, number, block.unknowns, v, found)
+    return _place_point(solver, moving, number, block.unknowns, v, found)
 
 
 def tangents_behind_kink(
@@ -212,9 +212,7 @@ class _Located:
     other: Array
 
 
-def _located(
-    system: _Equations, known: KnownJet, x: Array, t: float, own: Array
-) -> _Located | None:
+def _locate(system: _Equations, known: KnownJet, x: Array, t: float, own: Array) -> _Located | None:
     """The crossing near (x, t); ``own`` (n,) is the derivative of the branch that is followed."""
     crossing = _Crossing(system, known)
     found = crossing.solve(x, t)
@@ -229,14 +227,14 @@ def _located(
     return _Located(x=x, t=t, error=error, onward=onward, other=other)
 
 
-def _placed_point(
+def _place_point(
     solver: BlockSolver, rate: Array, block: int, mine: IndexArray, v: Array, found: _Located
 ) -> ChangePoint:
     """A crossing in the order of the whole; ``mine``: which variables are the equations' own."""
     weights = solver.variable_scale[mine]
     both = (found.onward, found.other)
-    onward, other = (_placed(solver, mine, _rate(z) * weights) for z in both)
-    reach = found.error + 4.0 * _UNIT * max(1.0, abs(found.t))
+    onward, other = (_place_in_whole(solver, mine, _rate(z) * weights) for z in both)
+    reach = found.error + 4.0 * EPSILON * max(1.0, abs(found.t))
     return ChangePoint(
         t=found.t,
         bracket=(found.t - reach, found.t + reach),
@@ -287,7 +285,7 @@ def _direction(
     return unit
 
 
-def _placed(solver: BlockSolver, where: IndexArray, values: Array) -> Array:
+def _place_in_whole(solver: BlockSolver, where: IndexArray, values: Array) -> Array:
     whole = np.full(solver.variables, np.nan)
     whole[where] = values
     return whole
@@ -332,7 +330,10 @@ def _near(system: System, v: Array) -> Array:
     i, j = (index.ravel() for index in np.indices((n, count)))
     column, step = np.eye(count)[i], np.diag(system.variable_scale)[j]
     lanes = np.repeat(v[None, :], n * count, axis=0)
-    mixed = 0.25 * (system.second(lanes, column + step) - system.second(lanes, column - step))
+    mixed = 0.25 * (
+        system.second_directional_derivative(lanes, column + step)
+        - system.second_directional_derivative(lanes, column - step)
+    )
     changes: Array = np.abs(mixed / system.equation_scale).max(axis=1).reshape(n, count)
     largest: Array = changes.max(axis=1)
     return largest
@@ -349,7 +350,7 @@ class _Equations(Protocol):
     def variable_scale(self) -> Array: ...
     def jacobian(self, v: Array) -> Array: ...
     def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]: ...
-    def second(self, v: Array, d: Array) -> Array: ...
+    def second_directional_derivative(self, v: Array, d: Array) -> Array: ...
 
 
 class _Crossing:
@@ -383,7 +384,10 @@ class _Crossing:
         v, basis, second = self._at(x, t)
         lanes = np.repeat(v, size * size, axis=0)
         a, b = basis[i], basis[j]
-        values = 0.25 * (self.system.second(lanes, a + b) - self.system.second(lanes, a - b))
+        values = 0.25 * (
+            self.system.second_directional_derivative(lanes, a + b)
+            - self.system.second_directional_derivative(lanes, a - b)
+        )
         matrix: Array = (values / self.scale @ w).reshape(size, size)
         if second.any():  # what is known does not move at a constant rate
             slope = self.system.jacobian(v)[0, :, self.n :]
@@ -417,7 +421,7 @@ class _Crossing:
             beta += float(change[n + 1])
             w = w + change[n + 2 :]
             last, error = error, abs(float(change[n]))
-            if error <= 2.0 * _UNIT * max(1.0, abs(t)) or (error >= last and last < 1e-10):
+            if error <= 2.0 * EPSILON * max(1.0, abs(t)) or (error >= last and last < 1e-10):
                 break
         return x, t, w, beta, error
 

@@ -7,38 +7,43 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.numerics.continuation.curve_tracing import Curve, Leg
-from linkwork.numerics.continuation.local_parametrization import Leads, Led, apart, whole_turns
-from linkwork.numerics.continuation.path_proof import Beads, ProvenPath, prove_path
+from linkwork.numerics.continuation.local_parametrization import (
+    Parametrization,
+    Parametrizations,
+    apart,
+    whole_turns,
+)
+from linkwork.numerics.continuation.path_proof import PathPoints, ProvenPath, prove_path
 from linkwork.numerics.proof.position_proof import prove, reach
 
 __all__ = ["ProvenCurve", "leg_is_proved", "prove_curve", "same_solution"]
 
-_UNIT = np.finfo(float).eps / 2
 _MOST_STEPS = 20_000  # of a proof: a length on its way to infinity takes steps without end
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProvenCurve:
-    """``legs`` (L,): every step of the leg. ``joints`` (L-1,): from a leg to the next.
+    """``legs`` (L,): every step of the leg. ``junctions`` (L-1,): from a leg to the next.
     ``closed``: that the last position is the first one again. ``steps``: how many were proved.
     """
 
     legs: BoolArray
-    joints: BoolArray
+    junctions: BoolArray
     closed: bool
     steps: int
 
     @property
     def whole(self) -> bool:
         """Whether the curve is proved from its first to its last position."""
-        return bool(self.legs.all() and self.joints.all())
+        return bool(self.legs.all() and self.junctions.all())
 
 
-def prove_curve(leads: Leads, curve: Curve) -> ProvenCurve:
+def prove_curve(leads: Parametrizations, curve: Curve) -> ProvenCurve:
     """Prove every step of a curve, as far as it goes; with very many steps only its beginning."""
     legs = np.zeros(len(curve.legs), dtype=bool)
-    joints = np.zeros(max(len(curve.legs) - 1, 0), dtype=bool)
+    junctions = np.zeros(max(len(curve.legs) - 1, 0), dtype=bool)
     steps = 0
     if all(leg.led.provable for leg in curve.legs):
         for k, leg in enumerate(curve.legs):
@@ -49,9 +54,9 @@ def prove_curve(leads: Leads, curve: Curve) -> ProvenCurve:
                 break
         for k, (leg, following) in enumerate(zip(curve.legs, curve.legs[1:], strict=False)):
             last = leg.v[-1]
-            joints[k] = same_solution(leg.led, following.led, last)
-            joints[k] &= np.array_equal(last, following.v[0]) and _goes_on(leads, leg, following)
-    own = leads.by(leads.parameter)
+            junctions[k] = same_solution(leg.led, following.led, last)
+            junctions[k] &= np.array_equal(last, following.v[0]) and _goes_on(leads, leg, following)
+    own = leads.with_parameter(leads.parameter)
     closed = False
     if curve.end.closed and own is not None and own.provable:
         last = curve.legs[-1]
@@ -59,10 +64,10 @@ def prove_curve(leads: Leads, curve: Curve) -> ProvenCurve:
         closed = same_solution(own, first.led, first.v[0])
         closed = closed and same_solution(last.led, own, last.v[-1])
         closed = closed and _meets(leads, own, first.v[0], last.v[-1])
-    return ProvenCurve(legs=legs, joints=joints, closed=closed, steps=steps)
+    return ProvenCurve(legs=legs, junctions=junctions, closed=closed, steps=steps)
 
 
-def _goes_on(leads: Leads, leg: Leg, following: Leg) -> bool:
+def _goes_on(leads: Parametrizations, leg: Leg, following: Leg) -> bool:
     """Whether the next leg leaves in the direction in which a leg arrives."""
     arrival, departure = (
         np.sign(part.nodes[-1].t - part.nodes[0].t) * part.first[place] / leads.scale
@@ -79,19 +84,19 @@ def leg_is_proved(leg: Leg) -> bool:
 def _proof_of(leg: Leg, most: int) -> ProvenPath:
     nodes = leg.nodes
     sign = np.sign(nodes[-1].t - nodes[0].t) or 1.0
-    beads = Beads(
+    points = PathPoints(
         t=sign * np.array([node.t for node in nodes]),
         v=np.stack([node.v for node in nodes]),
         first=sign * np.stack([node.first for node in nodes]),
         second=np.stack([node.second for node in nodes]),
-        spread=np.zeros((len(nodes), 1)),
+        input_radius=np.zeros((len(nodes), 1)),
     )
     path = leg.led.path
     backwards = type(path)(origin=path.origin, rate=sign * path.rate)
-    return prove_path(leg.led.solver, backwards, beads, anchor=0, most=most)
+    return prove_path(leg.led.solver, backwards, points, anchor=0, most=most)
 
 
-def same_solution(one: Led, other: Led, v: Array) -> bool:
+def same_solution(one: Parametrization, other: Parametrization, v: Array) -> bool:
     """Whether the position that one leader proves near v (N,) is the one that another proves.
 
     The true position of the first may differ from v in the other's leader, by at most what is
@@ -102,21 +107,21 @@ def same_solution(one: Led, other: Led, v: Array) -> bool:
     first = prove(one.solver, v[one.order][None, :], np.zeros((1, 1)))
     if not first.holds[0]:
         return False
-    off = one.whole(first.each[0])[other.order]
+    off = one.whole(first.error_bound[0])[other.order]
     second = reach(other.solver, v[other.order][None, :], off[None, -1:])
-    return bool(second.holds[0] and (off[:-1] < second.alone[0]).all())
+    return bool(second.holds[0] and (off[:-1] < second.isolation_radius[0]).all())
 
 
-def _meets(leads: Leads, own: Led, start: Array, end: Array) -> bool:
+def _meets(leads: Parametrizations, own: Parametrization, start: Array, end: Array) -> bool:
     """Whether two proved positions at one value of the parameter are one, whole turns aside."""
     if not leads.repeats_after(whole_turns(leads, start, end)):
         return False
     gap = apart(leads, start, end)
     # whole turns are no floats: what is left of them, and their rounding, may be off
-    left = np.abs(gap) + 8.0 * _UNIT * np.maximum(np.abs(end), np.abs(start))
+    left = np.abs(gap) + 8.0 * UNIT_ROUNDOFF * np.maximum(np.abs(end), np.abs(start))
     left = left[own.order]
     first = reach(own.solver, start[own.order][None, :], left[None, -1:])
     last = prove(own.solver, end[own.order][None, :], left[None, -1:])
     if not (first.holds[0] and last.holds[0]):
         return False
-    return bool((left[:-1] + last.each[0, :-1] < first.alone[0]).all())
+    return bool((left[:-1] + last.error_bound[0, :-1] < first.isolation_radius[0]).all())

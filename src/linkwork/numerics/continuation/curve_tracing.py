@@ -16,12 +16,13 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
-from linkwork.foundation.status import Status
+from linkwork.foundation.rounding import EPSILON, LARGEST_POLISH
+from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.continuation.branch_tracking import BOLD, Node, TrackOptions, follow
 from linkwork.numerics.continuation.change_point import ChangePoint, locate_change_point
 from linkwork.numerics.continuation.local_parametrization import (
-    Leads,
-    Led,
+    Parametrization,
+    Parametrizations,
     fastest_leader,
     same_position,
 )
@@ -29,10 +30,7 @@ from linkwork.numerics.continuation.step_division import node_between, one_way, 
 
 __all__ = ["Curve", "CurveOptions", "Leg", "trace"]
 
-_CONVERGED = Status.CONVERGED.code
-_SAME = 1e-6  # weighted: a position is moved no further when its parameter is made exact
 _ON_PLANE = 1e-11  # a value of the parameter this near, relative, is reached
-_UNIT = np.finfo(float).eps
 _LEG = 8.0  # natural sizes of the leader, after which a leg ends if nothing else ends it
 
 
@@ -58,7 +56,7 @@ class CurveOptions:
 class Leg:
     """A piece of a curve with one leader; nodes in the order traced, in the solver's order."""
 
-    led: Led
+    led: Parametrization
     nodes: tuple[Node, ...]
 
     @property
@@ -92,14 +90,17 @@ class Curve:
     crossing: ChangePoint | None = None
 
     @property
-    def last(self) -> tuple[Led, Node]:
+    def last(self) -> tuple[Parametrization, Node]:
         """Where it ends."""
         leg = self.legs[-1]
         return leg.led, leg.nodes[-1]
 
 
 def trace(
-    leads: Leads, start: Array, heading: float | Array, options: CurveOptions | None = None
+    leads: Parametrizations,
+    start: Array,
+    heading: float | Array,
+    options: CurveOptions | None = None,
 ) -> Curve:
     """Follow the curve through a position until it closes or ends.
 
@@ -129,7 +130,9 @@ class _Pass:
 class _Tracer:
     """The state of one trace: the position reached and the direction of travel."""
 
-    def __init__(self, leads: Leads, start: Array, heading: Array, options: CurveOptions) -> None:
+    def __init__(
+        self, leads: Parametrizations, start: Array, heading: Array, options: CurveOptions
+    ) -> None:
         self.leads, self.start, self.options = leads, start, options
         self.here, self.heading = start, heading
         self.crossing: ChangePoint | None = None
@@ -146,8 +149,8 @@ class _Tracer:
             if np.isfinite(rates).all():
                 self.heading = heading[leads.parameter] * rates
 
-    def _own(self) -> Led | None:
-        return self.leads.by(self.leads.parameter)
+    def _own(self) -> Parametrization | None:
+        return self.leads.with_parameter(self.leads.parameter)
 
     def run(self) -> Curve:
         """Leg after leg."""
@@ -156,7 +159,7 @@ class _Tracer:
         for _ in range(opt.most_legs):
             leader = self._leader(avoid)
             if leader is None:
-                return self._ended(CircuitEnd.SINGULAR)
+                return self._end_trace(CircuitEnd.SINGULAR)
             led, node = leader
             leg, end = self._leg(led, node)
             moved = len(leg.nodes) > 1
@@ -166,19 +169,19 @@ class _Tracer:
             if end is not None:
                 self.crossing = _crossing_ahead(leg)
                 if self.crossing is not None:
-                    return self._ended(CircuitEnd.CHANGE_POINT)
+                    return self._end_trace(CircuitEnd.CHANGE_POINT)
                 stuck = 0 if moved else stuck + 1
                 avoid = led.lead
                 if stuck > 1:
-                    return self._ended(CircuitEnd.SINGULAR)
+                    return self._end_trace(CircuitEnd.SINGULAR)
                 continue
             stuck, avoid = 0, None
             ending = self._ending()
             if ending is not None:
-                return self._ended(ending)
-        return self._ended(CircuitEnd.NEVER_CLOSES)
+                return self._end_trace(ending)
+        return self._end_trace(CircuitEnd.NEVER_CLOSES)
 
-    def _ended(self, end: CircuitEnd) -> Curve:
+    def _end_trace(self, end: CircuitEnd) -> Curve:
         return Curve(
             legs=tuple(self.legs), end=end, passes=tuple(self.passes), crossing=self.crossing
         )
@@ -189,14 +192,14 @@ class _Tracer:
         sign = math.copysign(1.0, last.t - leg.nodes[0].t)
         self.heading = sign * leg.led.whole(last.first)
 
-    def _leader(self, avoid: int | None) -> tuple[Led, Node] | None:
+    def _leader(self, avoid: int | None) -> tuple[Parametrization, Node] | None:
         """The parameter where it is fast enough, else the fastest variable that determines all."""
         scale, parameter = self.leads.scale, self.leads.parameter
         speed = np.abs(self.heading) / scale
         first = parameter if speed[parameter] * self.options.slow >= speed.max() else None
         return fastest_leader(self.leads, self.here, speed, avoid, first)
 
-    def _leg(self, led: Led, node: Node) -> tuple[Leg, object]:
+    def _leg(self, led: Parametrization, node: Node) -> tuple[Leg, object]:
         """One leg: up to a change of leader, a pass of the starting value, or an end."""
         opt = self.options
         parameter, scale = self.leads.parameter, self.leads.scale
@@ -213,12 +216,12 @@ class _Tracer:
                 passed.extend(self._passes(led, before, after, leaving))
                 if passed or speed[place] * opt.slow >= speed.max():
                     return True
-            if bool((np.abs(after.v / weights)[~self.leads.turns[led.order]] > opt.far).any()):
+            if bool((np.abs(after.v / weights)[~self.leads.is_angle[led.order]] > opt.far).any()):
                 return True
             return bool(speed.max() > opt.fast * speed[-1])
 
         size = float(weights[-1])
-        if not self.leads.turns[led.lead]:  # a length on its way to infinity doubles in one leg
+        if not self.leads.is_angle[led.lead]:  # a length on its way to infinity doubles in one leg
             size = max(size, abs(node.t) / _LEG)
         goal = node.t + sign * _LEG * size
         if own:
@@ -240,7 +243,7 @@ class _Tracer:
 
     @property
     def _period(self) -> float:
-        return 2.0 * np.pi if self.leads.turns[self.leads.parameter] else np.inf
+        return 2.0 * np.pi if self.leads.is_angle[self.leads.parameter] else np.inf
 
     def _next_plane(self, t: float, sign: float, leaving: float | None) -> float:
         """The next value of the parameter that equals the starting one, whole turns aside.
@@ -258,7 +261,9 @@ class _Tracer:
             number += int(sign)
         return home + number * period
 
-    def _passes(self, led: Led, before: Node, after: Node, leaving: float | None) -> list[_Pass]:
+    def _passes(
+        self, led: Parametrization, before: Node, after: Node, leaving: float | None
+    ) -> list[_Pass]:
         """The first pass of the starting value (whole turns aside) between two nodes, if any."""
         place = led.place(self.leads.parameter)
         for low, high in itertools.pairwise(one_way(led, place, before, after)):
@@ -270,7 +275,7 @@ class _Tracer:
             leaving = None
         return []
 
-    def _crossing(self, led: Led, passed: _Pass) -> Node | None:
+    def _crossing(self, led: Parametrization, passed: _Pass) -> Node | None:
         """The position in a piece of a step at which the parameter has the value, to rounding.
 
         The piece is narrowed down at true positions: over a long step interpolation is not good
@@ -287,7 +292,7 @@ class _Tracer:
             gap = abs(float(here.v[place]) - value)
             if gap <= off:
                 best, off = here, gap
-            if gap <= 2.0 * _UNIT * max(1.0, abs(value)):
+            if gap <= 2.0 * EPSILON * max(1.0, abs(value)):
                 break
             if (here.v[place] < value) == (low.v[place] < value):
                 low = here
@@ -295,9 +300,9 @@ class _Tracer:
                 high = here
         if best is None and abs(float(high.v[place]) - value) <= off:
             best = high
-        return None if best is None else self._polished(led, best, value)
+        return None if best is None else self._polish(led, best, value)
 
-    def _polished(self, led: Led, here: Node, value: float) -> Node:
+    def _polish(self, led: Parametrization, here: Node, value: float) -> Node:
         """The position with exactly the value, if the parameter determines it well enough."""
         own = self.own
         near = led.whole(here.v)
@@ -305,13 +310,13 @@ class _Tracer:
         near[self.leads.parameter] = value
         found = own.solver.solve(near[own.order][None, :])
         v = own.whole(found.v[0])
-        same = np.abs((v - near) / self.leads.scale).max() < _SAME
+        same = np.abs((v - near) / self.leads.scale).max() < LARGEST_POLISH
         same = same and np.array_equal(own.node(v).orientation, side)
-        return led.node(v) if found.status[0] == _CONVERGED and same else here
+        return led.node(v) if found.status[0] == CONVERGED and same else here
 
     def _ending(self) -> CircuitEnd | None:
         v, scale = self.here, self.leads.scale
-        lengths = ~self.leads.turns
+        lengths = ~self.leads.is_angle
         if np.abs(v / scale)[lengths].max(initial=0.0) > self.options.far:
             return CircuitEnd.RUNS_TO_INFINITY
         passed = bool(self.passes) and self.passes[-1][0] == len(self.legs) - 1

@@ -19,15 +19,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.products import matrix_vector
+from linkwork.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
 from linkwork.numerics.block_solver import Block, BlockSolver, Linearised
-from linkwork.numerics.continuation.local_parametrization import Led
+from linkwork.numerics.continuation.local_parametrization import Parametrization
 from linkwork.numerics.proof.kantorovich import Expansion
 from linkwork.numerics.proof.position_proof import expansions, prove, reach
 
 __all__ = ["FoldProof", "prove_dead_point"]
 
-_UNIT = np.finfo(float).eps / 2
-_SLACK = 1.0 + 1e-12
 _ROOM = 4.0  # times the error of the rate: how far apart the ends of the interval are taken
 _LEAST = 16.0  # units of rounding of the leader
 _WIDENINGS = 12  # tries, each with an interval so many times as wide
@@ -36,18 +36,18 @@ _WIDER = 2.0
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FoldProof:
-    """``each`` (N,): how far the dead point may be from the position it was proved from, in the
-    solver's order, the leader's own last; ``alone`` (n,): within this no other position has the
-    same leader's value. ``radius``, ``unique``: both weighted.
+    """``error_bound`` (N,): how far the dead point may be from the position it was proved from, in
+    the solver's order, the leader's own last; ``isolation_radius`` (n,): within this no other
+    position has the same leader's value. ``radius``, ``uniqueness_radius``: both weighted.
     """
 
-    each: Array
-    alone: Array
+    error_bound: Array
+    isolation_radius: Array
     radius: float
-    unique: float
+    uniqueness_radius: float
 
 
-def prove_dead_point(led: Led, v: Array, place: int) -> FoldProof | None:
+def prove_dead_point(led: Parametrization, v: Array, place: int) -> FoldProof | None:
     """Prove that the parameter turns back next to a position.
 
     Parameters
@@ -72,7 +72,7 @@ def prove_dead_point(led: Led, v: Array, place: int) -> FoldProof | None:
     if own is None or not bend > 0.0:
         return None
     off = abs(float(rates.first[0, place])) + float(own.rates[0, place])
-    width = max(_ROOM * off / bend, _LEAST * _UNIT * max(1.0, abs(float(v[-1]))))
+    width = max(_ROOM * off / bend, _LEAST * UNIT_ROUNDOFF * max(1.0, abs(float(v[-1]))))
     for _ in range(_WIDENINGS):
         found = _turns_within(led, v, place, width)
         if found is not None:
@@ -81,10 +81,12 @@ def prove_dead_point(led: Led, v: Array, place: int) -> FoldProof | None:
     return None
 
 
-def _turns_within(led: Led, v: Array, place: int, width: float) -> FoldProof | None:
+def _turns_within(led: Parametrization, v: Array, place: int, width: float) -> FoldProof | None:
     """The proof with an interval of the leader of that half width, or ``None``."""
     solver = led.solver
-    whole = width + 2.0 * _UNIT * (abs(float(v[-1])) + width)  # the ends are rounded themselves
+    whole = width + 2.0 * UNIT_ROUNDOFF * (
+        abs(float(v[-1])) + width
+    )  # the ends are rounded themselves
     at_v = expansions(solver, v[None, :], exact=True)
     box = reach(solver, v[None, :], np.full((1, 1), whole), at_v)
     if not box.holds[0]:
@@ -96,18 +98,18 @@ def _turns_within(led: Led, v: Array, place: int, width: float) -> FoldProof | N
     errors = _rate_errors(solver, found, rates)
     if errors is None:
         return None
-    off = np.abs(found - v)[:, :-1] + errors.each[:, :-1]
+    off = np.abs(found - v)[:, :-1] + errors.error_bound[:, :-1]
     slow, error = rates[:, place], errors.rates[:, place]
     turned = slow[0] * slow[1] < 0.0 and (np.abs(slow) > error).all()
-    if not (turned and (off < box.alone).all()):
+    if not (turned and (off < box.isolation_radius).all()):
         return None
     weights = solver.variable_scale
-    each = np.append(box.each[0], whole)
+    error_bound = np.append(box.error_bound[0], whole)
     return FoldProof(
-        each=each,
-        alone=box.alone[0],
-        radius=float((each / weights).max()),
-        unique=float((box.alone[0] / weights[:-1]).min()),
+        error_bound=error_bound,
+        isolation_radius=box.isolation_radius[0],
+        radius=float((error_bound / weights).max()),
+        uniqueness_radius=float((box.isolation_radius[0] / weights[:-1]).min()),
     )
 
 
@@ -115,7 +117,7 @@ def _turns_within(led: Led, v: Array, place: int, width: float) -> FoldProof | N
 class _Errors:
     """How far true positions may be from computed ones, and their rates, (B, N) each."""
 
-    each: Array
+    error_bound: Array
     rates: Array
 
 
@@ -129,11 +131,11 @@ def _rate_errors(solver: BlockSolver, v: Array, rates: Array) -> _Errors | None:
     errors = np.zeros_like(rates)
     for block, part, at in zip(solver.blocks, linear, places, strict=True):
         assert at is not None  # the position is proved
-        found = _block_errors(block, part, at, v, rates, position.each, errors)
+        found = _block_errors(block, part, at, v, rates, position.error_bound, errors)
         if found is None:
             return None
         errors[:, block.unknowns] = found
-    return _Errors(each=position.each, rates=errors)
+    return _Errors(error_bound=position.error_bound, rates=errors)
 
 
 def _block_errors(
@@ -142,38 +144,37 @@ def _block_errors(
     at: Expansion,
     v: Array,
     rates: Array,
-    each: Array,
+    error_bound: Array,
     errors: Array,
 ) -> Array | None:
     """The errors of one block's rates (B, n), those of the blocks before in ``errors`` (B, N)."""
     n, system = len(block.unknowns), block.system
-    here, box, d = (x[:, block.variables] for x in (v, each, rates))
+    here, box, d = (x[:, block.variables] for x in (v, error_bound, rates))
     bend = _Bend(at.phase, at.slide, at.weights, at.pair_length, at.pair_group)
     # |A J d|: as computed, the rounding of J, and that of the products
     size, along = np.abs(part.inverse), np.abs(d)
-    slip = _apply(system.curvature(here, part.inverse).jacobian_rounding, along)
-    slip += (d.shape[1] + n + 4) * _UNIT * _apply(np.abs(part.jacobian), along)
-    y = np.abs(_apply(part.inverse, _apply(part.jacobian, d))) + _apply(size, slip)
+    slip = matrix_vector(system.curvature(here, part.inverse).jacobian_rounding, along)
+    slip += (d.shape[1] + n + 4) * UNIT_ROUNDOFF * matrix_vector(np.abs(part.jacobian), along)
+    y = np.abs(matrix_vector(part.inverse, matrix_vector(part.jacobian, d))) + matrix_vector(
+        size, slip
+    )
     y += bend.between(box, along)
     known = errors[:, block.variables]
     known[:, :n] = 0.0
-    y = (y + _apply(at.slope, known[:, n:]) + bend.between(box, known)) * _SLACK
+    y = (y + matrix_vector(at.slope, known[:, n:]) + bend.between(box, known)) * PROOF_SLACK
     # e ≤ y + Z e, in the block's weights
     w = system.variable_scale[:n]
     unit = np.zeros_like(d)
     unit[:, :n] = w
-    z = (_apply(at.defect, np.broadcast_to(w, y.shape)) + bend.between(box, unit)) * _SLACK
+    z = (
+        matrix_vector(at.defect, np.broadcast_to(w, y.shape)) + bend.between(box, unit)
+    ) * PROOF_SLACK
     room = 1.0 - (z / w).max(axis=1)
     if not (room > 0.0).all():
         return None
-    norm = (y / w).max(axis=1) / room * _SLACK
-    found: Array = (y + z * norm[:, None]) * _SLACK
+    norm = (y / w).max(axis=1) / room * PROOF_SLACK
+    found: Array = (y + z * norm[:, None]) * PROOF_SLACK
     return found if np.isfinite(found).all() else None
-
-
-def _apply(matrix: Array, vector: Array) -> Array:
-    product: Array = (matrix @ vector[:, :, None])[:, :, 0]
-    return product
 
 
 class _Bend:
@@ -193,10 +194,10 @@ class _Bend:
     def between(self, a: Array, b: Array) -> Array:
         """For a and b (B, N), neither negative."""
         turned, turning = a @ self.weights, b @ self.weights
-        rows = _apply(self.phase, turned * turning)
+        rows = matrix_vector(self.phase, turned * turning)
         if self.length.size:
             longer, slides = a[:, self.length], b[:, self.length]
             by = turned[:, self.group], turning[:, self.group]
             pairs = longer * by[1] + slides * by[0]
-            rows += _apply(self.slide, pairs)
+            rows += matrix_vector(self.slide, pairs)
         return rows

@@ -14,34 +14,20 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import Array
+from linkwork.numerics.system import SmallSystem
 
-__all__ = ["Bending", "Family", "Fold", "locate_fold"]
+__all__ = ["Bending", "Fold", "FoldFamily", "locate_fold"]
 
 
-class Bending(Protocol):
-    """Equations as in :class:`~linkwork.numerics.system.System` that also know D²F[a, b]."""
-
-    @property
-    def unknowns(self) -> int:
-        """n, the first variables."""
-
-    @property
-    def equation_scale(self) -> Array:
-        """(n,) what residuals are divided by."""
-
-    @property
-    def variable_scale(self) -> Array:
-        """(N,) weights of the variables."""
-
-    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
-        """F, (B, n), and dF/dv, (B, n, N)."""
+class Bending(SmallSystem, Protocol):
+    """Equations that also know mixed second derivatives."""
 
     def mixed(self, v: Array, a: Array, b: Array) -> Array:
         """D²F[a, b], (B, m)."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Family:
+class FoldFamily:
     """Systems with a parameter p and the same unknowns; ``inputs`` are their known variables.
 
     ``low``, ``high``: the systems at two values ``step`` apart, for derivatives by p; they need
@@ -80,19 +66,19 @@ _SOLVED = 1e-13
 class _At:
     """The scaled system and its parameter's derivatives at one (x, p)."""
 
-    def __init__(self, family: Family, x: Array, p: float) -> None:
+    def __init__(self, family: FoldFamily, x: Array, p: float) -> None:
         self.system, inputs = family.at(p), family.inputs
         n = self.n = self.system.unknowns
         self.weights = np.concatenate([self.system.variable_scale[:n], np.zeros(len(inputs))])
         self.scale = self.system.equation_scale
         self.v = np.concatenate([x, inputs])
-        self.f, self.j = self._scaled(self.system)
-        (f_low, j_low), (f_high, j_high) = map(self._scaled, (family.low, family.high))
+        self.f, self.j = self._scale(self.system)
+        (f_low, j_low), (f_high, j_high) = map(self._scale, (family.low, family.high))
         self.f_p, self.j_p = (f_high - f_low) / family.step, (j_high - j_low) / family.step
         left, _, right = np.linalg.svd(self.j)
         self.w, self.z = left[:, -1], right[-1]
 
-    def _scaled(self, system: Bending) -> tuple[Array, Array]:
+    def _scale(self, system: Bending) -> tuple[Array, Array]:
         f, j = system.residual_and_jacobian(self.v[None, :])
         return f[0] / self.scale, j[0, :, : self.n] * self.weights[: self.n] / self.scale[:, None]
 
@@ -123,7 +109,7 @@ class _At:
         return step
 
 
-def locate_fold(family: Family, x: Array, p: float) -> Fold | None:
+def locate_fold(family: FoldFamily, x: Array, p: float) -> Fold | None:
     """The value of p nearest to ``p``, to first order, at which solutions begin to exist.
 
     Parameters
@@ -149,13 +135,13 @@ def locate_fold(family: Family, x: Array, p: float) -> Fold | None:
             if abs(slope) < 1e-9:
                 return None
             p -= float(here.w @ here.f) / slope * family.size
-            found = _refined(family, x, p)
+            found = _refine_fold(family, x, p)
             return None if found is None else _opening(family, begin, *found)
         except (np.linalg.LinAlgError, ValueError):
             return None
 
 
-def _refined(family: Family, x: Array, p: float) -> tuple[Array, float] | None:
+def _refine_fold(family: FoldFamily, x: Array, p: float) -> tuple[Array, float] | None:
     for _ in range(_MOST_STEPS):
         here = _At(family, x, p)
         step = here.correction()
@@ -173,7 +159,7 @@ def _refined(family: Family, x: Array, p: float) -> tuple[Array, float] | None:
     return x, p
 
 
-def _opening(family: Family, begin: float, x: Array, p: float) -> Fold | None:
+def _opening(family: FoldFamily, begin: float, x: Array, p: float) -> Fold | None:
     """The fold with the side on which solutions exist, and one of them found there."""
     here = _At(family, x, p)
     if np.abs(here.f).max() > _CLOSED:

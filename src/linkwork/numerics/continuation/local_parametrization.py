@@ -9,13 +9,14 @@ import numpy as np
 
 from linkwork.foundation.angles import FULL_TURN, within_half_a_turn
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.rounding import EPSILON
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node, node_at
 from linkwork.numerics.proof.position_proof import prove, reach
 
 __all__ = [
-    "Leads",
-    "Led",
+    "Parametrization",
+    "Parametrizations",
     "apart",
     "coincide",
     "fastest_leader",
@@ -23,7 +24,6 @@ __all__ = [
     "whole_turns",
 ]
 
-_UNIT = np.finfo(float).eps
 _COINCIDE = 1e-6  # weighted: rounding of places that are ill-conditioned
 _NEAR = 1e-3  # weighted: positions further apart are not looked at
 _ON_VALUE = 1e-9  # of the parameter, weighted: positions at different values are different
@@ -31,7 +31,7 @@ _ROUNDINGS = 8.0  # times the unit and the condition: how far two solutions that
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Led:
+class Parametrization:
     """The equations with the variable ``lead`` known.
 
     ``order`` (N,): the variables of the whole in the solver's order, the leading one last.
@@ -50,7 +50,7 @@ class Led:
     @property
     def provable(self) -> bool:
         """Whether the equations have known bounds of their curvature."""
-        return all(block.system.bends_boundedly for block in self.solver.blocks)
+        return all(block.system.has_curvature_bound for block in self.solver.blocks)
 
     def node(self, v: Array) -> Node:
         """The node of a position (N,) given in the whole's order."""
@@ -67,14 +67,14 @@ class Led:
         return found
 
 
-class Leads(Protocol):
+class Parametrizations(Protocol):
     """Equations that can be solved with any variable in the lead."""
 
     parameter: int
     scale: Array
-    turns: BoolArray
+    is_angle: BoolArray
 
-    def by(self, lead: int) -> Led | None:
+    def with_parameter(self, lead: int) -> Parametrization | None:
         """The equations led by one variable; ``None`` if it does not determine the others."""
 
     def repeats_after(self, turns: Array) -> bool:
@@ -82,12 +82,16 @@ class Leads(Protocol):
 
 
 def fastest_leader(
-    leads: Leads, v: Array, speed: Array, avoid: int | None = None, first: int | None = None
-) -> tuple[Led, Node] | None:
+    leads: Parametrizations,
+    v: Array,
+    speed: Array,
+    avoid: int | None = None,
+    first: int | None = None,
+) -> tuple[Parametrization, Node] | None:
     """The fastest variable that determines all others at a position, and the node it gives."""
     by_speed = [int(k) for k in np.argsort(-speed, kind="stable")]
     for lead in by_speed if first is None else [first, *by_speed]:
-        led = leads.by(lead) if lead != avoid and speed[lead] > 0.0 else None
+        led = leads.with_parameter(lead) if lead != avoid and speed[lead] > 0.0 else None
         if led is not None:
             node = led.node(v)
             if np.isfinite(node.second).all():
@@ -95,22 +99,22 @@ def fastest_leader(
     return None
 
 
-def apart(leads: Leads, a: Array, b: Array) -> Array:
+def apart(leads: Parametrizations, a: Array, b: Array) -> Array:
     """b - a with angles reduced to half a turn, (..., N)."""
-    return within_half_a_turn(b - a, leads.turns)
+    return within_half_a_turn(b - a, leads.is_angle)
 
 
-def whole_turns(leads: Leads, a: Array, b: Array) -> Array:
+def whole_turns(leads: Parametrizations, a: Array, b: Array) -> Array:
     """How many whole turns (N,) angles have made on the way from a position to another."""
-    return np.where(leads.turns, np.round((b - a) / FULL_TURN), 0.0)
+    return np.where(leads.is_angle, np.round((b - a) / FULL_TURN), 0.0)
 
 
-def coincide(leads: Leads, a: Array, b: Array) -> bool:
+def coincide(leads: Parametrizations, a: Array, b: Array) -> bool:
     """Whether two places that are known to rounding, such as limits, agree, whole turns aside."""
     return bool(np.abs(apart(leads, a, b) / leads.scale).max() < _COINCIDE)
 
 
-def same_position(leads: Leads, a: Array, b: Array) -> bool:
+def same_position(leads: Parametrizations, a: Array, b: Array) -> bool:
     """Whether two positions at one value of the parameter are one, whole turns aside.
 
     Both are iterated down to rounding with the parameter in the lead. Then it is a matter of proof:
@@ -119,24 +123,27 @@ def same_position(leads: Leads, a: Array, b: Array) -> bool:
     turns, p = whole_turns(leads, a, b), leads.parameter
     near = np.stack([a, b - FULL_TURN * turns])
     gap = np.abs(near[1] - near[0]) / leads.scale
-    rounding = 8.0 * _UNIT * max(1.0, abs(float(a[p])), abs(float(b[p])))
-    own = leads.by(p)
+    rounding = 8.0 * EPSILON * max(1.0, abs(float(a[p])), abs(float(b[p])))
+    own = leads.with_parameter(p)
     if own is None or gap.max() > _NEAR or gap[p] > _ON_VALUE or not leads.repeats_after(turns):
         return False
     size = 1.0 + np.abs(near / leads.scale).max()
-    if gap.max() <= _ROUNDINGS * _UNIT * size:
+    if gap.max() <= _ROUNDINGS * EPSILON * size:
         return True
     near[:, p] = a[p]
-    sharp = replace(own.solver.options, equation_tolerance=_UNIT)
+    sharp = replace(own.solver.options, equation_tolerance=EPSILON)
     found = own.solver.solve(near[:, own.order], sharp).v
     off = np.abs(found[1] - found[0])
     if own.provable:
-        spread = np.full((1, 1), rounding)
-        first, second = reach(own.solver, found[:1], spread), prove(own.solver, found[1:], spread)
+        input_radius = np.full((1, 1), rounding)
+        first, second = (
+            reach(own.solver, found[:1], input_radius),
+            prove(own.solver, found[1:], input_radius),
+        )
         if first.holds[0] and second.holds[0]:
-            return bool((off[:-1] + second.each[0, :-1] < first.alone[0]).all())
+            return bool((off[:-1] + second.error_bound[0, :-1] < first.isolation_radius[0]).all())
     rates = own.solver.rates(found, own.path.rate)
-    allowed = min(_COINCIDE, _ROUNDINGS * _UNIT * float(rates.condition.max()) * size)
+    allowed = min(_COINCIDE, _ROUNDINGS * EPSILON * float(rates.condition.max()) * size)
     close = (off / own.solver.variable_scale).max() <= allowed
     # two roots that a dead point joins have opposite signs of det J
     return bool(close and np.array_equal(rates.orientation[0], rates.orientation[1]))

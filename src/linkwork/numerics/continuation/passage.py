@@ -17,8 +17,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.foundation.status import Status
-from linkwork.numerics.block_solver import Block, BlockSolver, linearised
+from linkwork.foundation.rounding import CLOSER_TANGENT
+from linkwork.foundation.status import CONVERGED
+from linkwork.numerics.block_solver import Block, BlockSolver, linearise_block
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node, follow, node_at
 from linkwork.numerics.continuation.change_point import (
     ChangePoint,
@@ -30,11 +31,9 @@ from linkwork.numerics.newton import newton
 
 __all__ = ["Passage", "pass_change_points"]
 
-_CONVERGED = Status.CONVERGED.code
 _HALVES = (1e-2, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6)  # of the path's size, to both sides, in this order
 _STEPS = 4  # in which a block that does not cross is followed
 _OFF = 1e-3  # weighted: how far such a step may end from its prediction
-_CLOSER = 0.1  # a position belongs to a tangent it is so many times nearer to than to the other
 _REGULAR = 3e6  # condition from which on branches are as good as crossing, as in tracks
 _BESIDE = 0.1  # of the way to the next kink: a crossing so near to a kink is taken together with it
 _DRIVEN = 2e-13  # relative: how well a crossing is located behind blocks that cross themselves
@@ -192,7 +191,7 @@ class _Walk:
     def run(self) -> Passage | None:
         """Block after block; ``None`` where one of them cannot be led."""
         for number, block in enumerate(self.solver.blocks):
-            pieces = self._led(number, block)
+            pieces = self._lead_block(number, block)
             if pieces is None:
                 return None
             self.motion.pieces.append((block.unknowns, pieces))
@@ -215,13 +214,13 @@ class _Walk:
             yield tuple(replace(point, v=whole) for point in same)
             waiting = [point for point in waiting if point not in same]
 
-    def _led(self, number: int, block: Block) -> list[_Piece] | None:
+    def _lead_block(self, number: int, block: Block) -> list[_Piece] | None:
         """The pieces of a block's motion from one kink of what drives it to the next."""
         x = self.start.v[block.unknowns]
         pieces: list[_Piece] = []
         kinks = list(self.kinks)
         while len(kinks) > 1:
-            steps = self._followed(block, kinks[0], kinks[1], x)
+            steps = self._follow(block, kinks[0], kinks[1], x)
             if steps is not None:
                 pairs = itertools.pairwise(steps)
                 pieces += [_through(a.t, a.jet, b.t, b.jet) for a, b in pairs]
@@ -247,10 +246,12 @@ class _Walk:
         v = np.concatenate([x, y])
         whole = np.zeros(self.solver.variables)
         whole[block.variables] = v
-        part = linearised(block, whole[None, :])
+        part = linearise_block(block, whole[None, :])
         slope, inverse = part.jacobian[0], part.inverse[0]
         first = -inverse @ (slope[:, n:] @ y1)
-        bend = system.second(v[None, :], np.concatenate([first, y1])[None, :])[0]
+        bend = system.second_directional_derivative(
+            v[None, :], np.concatenate([first, y1])[None, :]
+        )[0]
         second = -inverse @ (bend + slope[:, n:] @ y2)
         w, s = system.variable_scale[:n], system.equation_scale
         forward = np.abs(slope[:, :n] * w / s[:, None]).sum(axis=1).max(initial=0.0)
@@ -258,12 +259,12 @@ class _Walk:
         condition = float(forward * backward)
         return _Step(t=t, x=x, first=first, second=second), int(part.sign[0]), condition
 
-    def _solved(self, block: Block, t: float, guess: Array, towards: float) -> Array | None:
+    def _solve(self, block: Block, t: float, guess: Array, towards: float) -> Array | None:
         v = np.concatenate([guess, self._known(block, t, towards)[0]])
         done = newton(block.system, v[None, :], self.options)
-        return done.v[0, : len(guess)] if done.status[0] == _CONVERGED else None
+        return done.v[0, : len(guess)] if done.status[0] == CONVERGED else None
 
-    def _followed(self, block: Block, begin: float, end: float, x: Array) -> list[_Step] | None:
+    def _follow(self, block: Block, begin: float, end: float, x: Array) -> list[_Step] | None:
         """The block led from one value of t to another; ``None`` if it comes near a crossing."""
         weights = block.system.variable_scale[: len(x)]
         here, sign, condition = self._step(block, begin, x, end)
@@ -273,7 +274,7 @@ class _Walk:
         for t in np.linspace(begin, end, _STEPS + 1)[1:].tolist():
             h = t - here.t
             guess = here.x + h * here.first + 0.5 * h * h * here.second
-            x_new = self._solved(block, t, guess, begin)
+            x_new = self._solve(block, t, guess, begin)
             if x_new is None or not np.abs((x_new - guess) / weights).max() <= _OFF:
                 return None
             here, its_sign, condition = self._step(block, t, x_new, begin)
@@ -288,7 +289,7 @@ class _Walk:
         """The block led across the change point ahead: to the next kink, or the one behind it."""
         begin, end = kinks[0], kinks[1]
         before, _, condition = self._step(block, begin, x, end)
-        point = self._located(number, block, before) if condition < _REGULAR else None
+        point = self._locate(number, block, before) if condition < _REGULAR else None
         if point is None:
             return None
         ahead = self.side * (end - point.t)
@@ -331,7 +332,7 @@ class _Walk:
             _through(kink, (at, chosen), end, after.jet),
         ]
 
-    def _located(self, number: int, block: Block, before: _Step) -> ChangePoint | None:
+    def _locate(self, number: int, block: Block, before: _Step) -> ChangePoint | None:
         """The crossing of a block near the one that was met first."""
         known = KnownJet(lambda t: self._known(block, t, before.t))
         h = self.near - before.t
@@ -358,13 +359,13 @@ class _Walk:
             return None  # the branch keeps t
         h, weights = end - t, block.system.variable_scale[: len(at)]
         guess = at + h * chosen
-        x = self._solved(block, end, guess, t)
+        x = self._solve(block, end, guess, t)
         if x is None:
             return None
         apart = float(np.abs((chosen - left) / weights).max())
         gap = abs(h) * apart if np.isfinite(apart) else abs(h)
         after, _, condition = self._step(block, end, x, t)
-        close = bool(float(np.abs((x - guess) / weights).max()) <= _CLOSER * gap)
+        close = bool(float(np.abs((x - guess) / weights).max()) <= CLOSER_TANGENT * gap)
         return after if close and condition < _REGULAR else None
 
 

@@ -2,80 +2,81 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, CountArray, IndexArray
-from linkwork.foundation.status import Status
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.foundation.status import CONVERGED
+from linkwork.marching.loop import Attempt, StepBounds, march
 from linkwork.numerics.block_solver import BlockSolver, Rates
-from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Watch, node_at
+from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Watch, node_at, predict
 from linkwork.numerics.proof.kantorovich import Expansion
 from linkwork.numerics.proof.position_proof import (
     Proof,
     expansions,
-    links_hold,
     prove,
     reach,
     rounding_of_inputs,
+    steps_connected,
 )
 
-__all__ = ["Beads", "ProvenPath", "follow_with_proof", "prove_path"]
+__all__ = ["PathPoints", "ProvenPath", "follow_with_proof", "prove_path"]
 
-_CONVERGED = Status.CONVERGED.code
 _ROUNDS = 45  # halvings of one step before it counts as not proved
 _MOST = 30_000  # positions solved in between for the proof of one path
 _MOST_EACH = 8  # and so many more for each of its own positions
-_UNIT = np.finfo(float).eps / 2
 _PIECE = 1024  # positions proved together: arrays that fit the cache
 _LANES = 1024  # steps halved together
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Beads:
+class PathPoints:
     """Positions along a path with their derivatives by t: t (K,), the others (K, N).
 
-    ``spread`` (K, p): how far the inputs may be from those in v, in their own units.
+    ``input_radius`` (K, p): how far the inputs may be from those in v, in their own units.
     """
 
     t: Array
     v: Array
     first: Array
     second: Array
-    spread: Array
+    input_radius: Array
 
-    def take(self, index: IndexArray | slice) -> Beads:
+    def take(self, index: IndexArray | slice) -> PathPoints:
         """Some of them, in the order of ``index``."""
-        return Beads(
+        return PathPoints(
             t=self.t[index],
             v=self.v[index],
             first=self.first[index],
             second=self.second[index],
-            spread=self.spread[index],
+            input_radius=self.input_radius[index],
         )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProvenPath:
-    """``position``: the proofs of K positions. ``linked`` (K-1,): which steps are proved.
+    """``position``: the proofs of K positions. ``connected`` (K-1,): which steps are proved.
     ``pieces`` (K-1,): into how many steps each was divided for that. ``given_up`` (K-1,): which
     are not proved because that would have taken too many.
     """
 
     position: Proof
-    linked: BoolArray
+    connected: BoolArray
     pieces: CountArray
     given_up: BoolArray
 
     def connected_to(self, anchor: int) -> BoolArray:
         """The positions joined to one of them by proved steps and proved themselves, (K,)."""
-        return _outwards(self.linked, anchor) & self.position.holds
+        return _connected_outwards(self.connected, anchor) & self.position.holds
 
     def given_up_before(self, anchor: int) -> BoolArray:
         """The positions whose first step without a proof, on the way from one, was given up."""
-        joined = _outwards(self.linked, anchor)
-        as_if = _outwards(self.linked | self.given_up, anchor)
+        joined = _connected_outwards(self.connected, anchor)
+        as_if = _connected_outwards(self.connected | self.given_up, anchor)
         first_broken = as_if & ~joined
         # beyond a step that was given up others may be broken for other reasons
         right = np.logical_or.accumulate(first_broken[anchor:])
@@ -83,17 +84,17 @@ class ProvenPath:
         return np.concatenate([left[:-1], right])
 
 
-def _outwards(linked: BoolArray, anchor: int) -> BoolArray:
+def _connected_outwards(connected: BoolArray, anchor: int) -> BoolArray:
     """Which of K positions are joined to one of them, (K,)."""
-    right = np.logical_and.accumulate(linked[anchor:])
-    left = np.logical_and.accumulate(linked[:anchor][::-1])[::-1]
+    right = np.logical_and.accumulate(connected[anchor:])
+    left = np.logical_and.accumulate(connected[:anchor][::-1])[::-1]
     return np.concatenate([left, [True], right])
 
 
 def prove_path(
     solver: BlockSolver,
     path: InputPath,
-    beads: Beads,
+    points: PathPoints,
     *,
     anchor: int | None = None,
     most: int | None = None,
@@ -103,10 +104,10 @@ def prove_path(
 
     Parameters
     ----------
-    beads : Beads
+    points : PathPoints
         In the order of t.
     anchor : int, optional
-        The bead that the others have to be joined to: steps near it are proved first, and those
+        The point that the others have to be joined to: steps near it are proved first, and those
         beyond one that cannot be proved are left alone. Without it all steps count alike.
     most : int, optional
         How many positions in between may be solved for the proof of the whole path; by default a
@@ -119,14 +120,14 @@ def prove_path(
     A step that is not proved from its left end is tried from its right end, then halved at a
     position solved in between. Many open steps are worked on together.
     """
-    count = len(beads.t)
+    count = len(points.t)
     allowance = _Allowance(_MOST + _MOST_EACH * count if most is None else most)
     begins = list(range(0, max(count - 1, 1), _PIECE))
     if anchor is not None:
         begins.sort(key=lambda begin: abs(begin + _PIECE // 2 - anchor))
     found: dict[int, ProvenPath] = {}
     for k, begin in enumerate(begins, start=1):
-        part = beads.take(slice(begin, begin + _PIECE + 1))
+        part = points.take(slice(begin, begin + _PIECE + 1))
         inside = None if anchor is None else min(max(anchor - begin, 0), len(part.t) - 1)
         found[begin] = _piece(solver, path, part, inside, allowance)
         if progress is not None:
@@ -139,11 +140,11 @@ def prove_path(
     return ProvenPath(
         position=Proof(
             holds=np.concatenate([p.holds for p in proofs]),
-            exists=np.concatenate([p.exists for p in proofs]),
-            unique=np.concatenate([p.unique for p in proofs]),
-            each=np.concatenate([p.each for p in proofs]),
+            existence_radius=np.concatenate([p.existence_radius for p in proofs]),
+            uniqueness_radius=np.concatenate([p.uniqueness_radius for p in proofs]),
+            error_bound=np.concatenate([p.error_bound for p in proofs]),
         ),
-        linked=np.concatenate([piece.linked for piece in pieces]),
+        connected=np.concatenate([piece.connected for piece in pieces]),
         pieces=np.concatenate([piece.pieces for piece in pieces]),
         given_up=np.concatenate([piece.given_up for piece in pieces]),
     )
@@ -163,49 +164,60 @@ class _Allowance:
 
 
 def _behind_first(p: Proof) -> Proof:
-    return Proof(holds=p.holds[1:], exists=p.exists[1:], unique=p.unique[1:], each=p.each[1:])
+    return Proof(
+        holds=p.holds[1:],
+        existence_radius=p.existence_radius[1:],
+        uniqueness_radius=p.uniqueness_radius[1:],
+        error_bound=p.error_bound[1:],
+    )
 
 
 def _piece(
-    solver: BlockSolver, path: InputPath, beads: Beads, anchor: int | None, allowance: _Allowance
+    solver: BlockSolver,
+    path: InputPath,
+    points: PathPoints,
+    anchor: int | None,
+    allowance: _Allowance,
 ) -> ProvenPath:
-    places = expansions(solver, beads.v)
-    position = prove(solver, beads.v, beads.spread, places)
-    steps = len(beads.t) - 1
+    places = expansions(solver, points.v)
+    position = prove(solver, points.v, points.input_radius, places)
+    steps = len(points.t) - 1
     nothing = np.zeros(steps, dtype=bool)
     pieces = np.ones(steps, dtype=np.int64)
     if not steps:
-        return ProvenPath(position=position, linked=nothing, pieces=pieces, given_up=nothing)
-    left, right = beads.take(slice(None, -1)), beads.take(slice(1, None))
-    near = np.maximum(position.each[1:], position.each[:-1])
-    linked = _steps(solver, left, right, near, _cut(places, slice(None, -1)))
-    linked &= position.holds[1:] & position.holds[:-1]
-    open_ = np.flatnonzero(~linked & position.holds[1:] & position.holds[:-1])
+        return ProvenPath(position=position, connected=nothing, pieces=pieces, given_up=nothing)
+    left, right = points.take(slice(None, -1)), points.take(slice(1, None))
+    near = np.maximum(position.error_bound[1:], position.error_bound[:-1])
+    connected = _steps(solver, left, right, near, _take_expansions(places, slice(None, -1)))
+    connected &= position.holds[1:] & position.holds[:-1]
+    open_ = np.flatnonzero(~connected & position.holds[1:] & position.holds[:-1])
     if len(open_):
-        back = _cut(places, open_ + 1)
-        linked[open_] = _steps(solver, right.take(open_), left.take(open_), near[open_], back)
-        open_ = open_[~linked[open_]]
+        back = _take_expansions(places, open_ + 1)
+        connected[open_] = _steps(solver, right.take(open_), left.take(open_), near[open_], back)
+        open_ = open_[~connected[open_]]
     if not len(open_):
-        return ProvenPath(position=position, linked=linked, pieces=pieces, given_up=nothing)
+        return ProvenPath(position=position, connected=connected, pieces=pieces, given_up=nothing)
     work = _Halving(solver, path, steps, anchor, position.holds)
     work.run(
         _Open(left=left.take(open_), right=right.take(open_), near=near[open_], owner=open_),
         allowance,
     )
-    linked[open_] = work.proved[open_]
+    connected[open_] = work.proved[open_]
     return ProvenPath(
-        position=position, linked=linked, pieces=pieces + work.pieces, given_up=work.given_up
+        position=position, connected=connected, pieces=pieces + work.pieces, given_up=work.given_up
     )
 
 
-def _cut(places: Sequence[Expansion | None], index: IndexArray | slice) -> list[Expansion | None]:
+def _take_expansions(
+    places: Sequence[Expansion | None], index: IndexArray | slice
+) -> list[Expansion | None]:
     return [None if place is None else place.take(index) for place in places]
 
 
 def _steps(
     solver: BlockSolver,
-    start: Beads,
-    goal: Beads,
+    start: PathPoints,
+    goal: PathPoints,
     near: Array,
     places: Sequence[Expansion | None] | None = None,
 ) -> BoolArray:
@@ -213,9 +225,9 @@ def _steps(
 
     The inputs are taken from the positions: those of a row may differ from the path's by rounding.
     """
-    spread = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
-    spread += start.spread + goal.spread
-    return links_hold(start.v, goal.v, reach(solver, start.v, spread, places), near)
+    input_radius = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
+    input_radius += start.input_radius + goal.input_radius
+    return steps_connected(start.v, goal.v, reach(solver, start.v, input_radius, places), near)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -224,8 +236,8 @@ class _Open:
     and the number of the step of the path that they are a part of.
     """
 
-    left: Beads
-    right: Beads
+    left: PathPoints
+    right: PathPoints
     near: Array
     owner: IndexArray
 
@@ -239,8 +251,8 @@ class _Open:
 
     def with_(self, other: _Open) -> _Open:
         return _Open(
-            left=_joined(self.left, other.left),
-            right=_joined(self.right, other.right),
+            left=_concatenate_points(self.left, other.left),
+            right=_concatenate_points(self.right, other.right),
             near=np.concatenate([self.near, other.near]),
             owner=np.concatenate([self.owner, other.owner]),
         )
@@ -276,7 +288,7 @@ class _Halving:
                 self.proved[queue.owner] = False
                 self.given_up[queue.owner] = True
                 return
-            queue = self._halved(queue.take(slice(None, now))).with_(queue.take(slice(now, None)))
+            queue = self._halve(queue.take(slice(None, now))).with_(queue.take(slice(now, None)))
 
     def _of_use(self, queue: _Open) -> _Open:
         """What may still be proved, nearest to the anchor first."""
@@ -292,12 +304,12 @@ class _Halving:
         away = np.abs(queue.owner[keep] + 0.5 - self.anchor)
         return queue.take(keep[np.argsort(away, kind="stable")])
 
-    def _halved(self, lanes: _Open) -> _Open:
+    def _halve(self, lanes: _Open) -> _Open:
         """What is left to be proved of some steps after one more halving."""
         solver = self.solver
         np.add.at(self.pieces, lanes.owner, 1)
         middle, found, places = _between(solver, self.path, lanes.left, lanes.right)
-        proof = prove(solver, middle.v, middle.spread, places)
+        proof = prove(solver, middle.v, middle.input_radius, places)
         good = found & proof.holds
         good &= (lanes.left.t < middle.t) & (middle.t < lanes.right.t)
         good &= (lanes.right.t - lanes.left.t) > self.width[lanes.owner] * 2.0**-_ROUNDS
@@ -308,8 +320,8 @@ class _Halving:
         keep = np.flatnonzero(self.proved[lanes.owner])
         if not len(keep):
             return lanes.take(keep)
-        lanes, middle, places = lanes.take(keep), middle.take(keep), _cut(places, keep)
-        near = np.maximum(lanes.near, proof.each[keep])
+        lanes, middle, places = lanes.take(keep), middle.take(keep), _take_expansions(places, keep)
+        near = np.maximum(lanes.near, proof.error_bound[keep])
         halves = [
             _Open(left=lanes.left, right=middle, near=near, owner=lanes.owner),
             _Open(left=middle, right=lanes.right, near=near, owner=lanes.owner),
@@ -321,19 +333,19 @@ class _Halving:
         return halves[0].with_(halves[1])
 
 
-def _joined(a: Beads, b: Beads) -> Beads:
-    return Beads(
+def _concatenate_points(a: PathPoints, b: PathPoints) -> PathPoints:
+    return PathPoints(
         t=np.concatenate([a.t, b.t]),
         v=np.concatenate([a.v, b.v]),
         first=np.concatenate([a.first, b.first]),
         second=np.concatenate([a.second, b.second]),
-        spread=np.concatenate([a.spread, b.spread]),
+        input_radius=np.concatenate([a.input_radius, b.input_radius]),
     )
 
 
 def _between(
-    solver: BlockSolver, path: InputPath, left: Beads, right: Beads
-) -> tuple[Beads, BoolArray, list[Expansion | None]]:
+    solver: BlockSolver, path: InputPath, left: PathPoints, right: PathPoints
+) -> tuple[PathPoints, BoolArray, list[Expansion | None]]:
     """Positions halfway in t, started from the quintic through both ends; which were found; what
     proofs take from them.
     """
@@ -345,14 +357,14 @@ def _between(
     done = solver.solve(guess)
     linear = solver.linearise(done.v)
     rates: Rates = solver.rates(done.v, path.rate, linear)
-    spread = rounding_of_inputs(done.v, solver.unknowns)
-    beads = Beads(t=t, v=done.v, first=rates.first, second=rates.second, spread=spread)
-    return beads, done.status == _CONVERGED, expansions(solver, done.v, linear)
+    input_radius = rounding_of_inputs(done.v, solver.unknowns)
+    points = PathPoints(
+        t=t, v=done.v, first=rates.first, second=rates.second, input_radius=input_radius
+    )
+    return points, done.status == CONVERGED, expansions(solver, done.v, linear)
 
 
-_FIRST_STEP = 0.01  # of the path's natural size
-_LEAST_STEP = 1e-13
-_MOST_PROVED = 2000  # steps of a path whose every step is proved before the next
+_PROVED_GROWTH = 1.5  # of steps that are proved one by one
 
 
 def follow_with_proof(
@@ -363,30 +375,39 @@ def follow_with_proof(
     The step size is what the proof allows: many short steps near a crossing of branches, and none
     that could come onto the other one. Ends where ``watch`` has seen enough or nothing is proved.
     """
-    nodes: list[Node] = []
-    here = start
-    near = prove(solver, here.v[None, :], rounding_of_inputs(here.v[None, :], solver.unknowns))
-    sign, h = np.sign(goal - start.t), _FIRST_STEP * path.size
-    for _ in range(_MOST_PROVED):
-        t = goal if h >= abs(goal - here.t) else here.t + sign * h
-        step = t - here.t
-        guess = here.v + step * here.first + 0.5 * step * step * here.second
-        guess[solver.unknowns :] = path.at(t)
-        found = solver.solve(guess[None, :])
-        if found.status[0] == _CONVERGED:
-            known = rounding_of_inputs(found.v, solver.unknowns)
-            proof = prove(solver, found.v, known)
-            spread = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * _UNIT)
-            reached = reach(solver, here.v[None, :], spread + 2.0 * known)
-            both = np.maximum(proof.each, near.each)
-            if proof.holds[0] and links_hold(here.v[None, :], found.v, reached, both)[0]:
-                before, here, near = here, node_at(solver, path, t, found.v[0]), proof
-                nodes.append(here)
-                h *= 1.5
-                if t == goal or watch(before, here):
-                    break
-                continue
-        h = 0.5 * abs(step)
-        if h < _LEAST_STEP * max(path.size, abs(here.t)):
-            break
+    bounds = StepBounds(size=path.size, first=0.01, largest=math.inf, smallest=1e-13, attempts=2000)
+    nodes, _ = march(_ProvedTrial(solver, path, start), start, goal, bounds, watch)
     return nodes
+
+
+class _ProvedTrial:
+    """A step that is taken only if it is proved."""
+
+    def __init__(self, solver: BlockSolver, path: InputPath, start: Node) -> None:
+        self.solver, self.path = solver, path
+        self.here = self._proof(start.v[None, :])
+
+    def _proof(self, v: Array) -> Proof:
+        return prove(self.solver, v, rounding_of_inputs(v, self.solver.unknowns))
+
+    def room(self, here: Node, sign: float) -> float:
+        """The proof bounds the step, nothing else."""
+        return math.inf
+
+    def attempt(self, here: Node, t: float) -> Attempt[Node]:
+        """Predict, correct, prove the position and the step to it."""
+        solver = self.solver
+        guess = predict(here, t)
+        guess[solver.unknowns :] = self.path.at(t)
+        found = solver.solve(guess[None, :])
+        if found.status[0] != CONVERGED:
+            return Attempt(None)
+        known = rounding_of_inputs(found.v, solver.unknowns)
+        proof = self._proof(found.v)
+        input_radius = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
+        reached = reach(solver, here.v[None, :], input_radius + 2.0 * known)
+        both = np.maximum(proof.error_bound, self.here.error_bound)
+        if not (proof.holds[0] and steps_connected(here.v[None, :], found.v, reached, both)[0]):
+            return Attempt(None)
+        self.here = proof
+        return Attempt(node_at(solver, self.path, t, found.v[0]), _PROVED_GROWTH)

@@ -9,15 +9,14 @@ from dataclasses import replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.status import Status
+from linkwork.foundation.rounding import EPSILON
+from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.continuation.branch_tracking import Node, node_at
-from linkwork.numerics.continuation.local_parametrization import Led
+from linkwork.numerics.continuation.local_parametrization import Parametrization
 
-__all__ = ["divided", "node_between", "one_way", "share_at", "sign_change"]
+__all__ = ["divide_step", "node_between", "one_way", "share_at", "sign_change"]
 
-_CONVERGED = Status.CONVERGED.code
-_UNIT = np.finfo(float).eps
-_STILL = 8.0 * _UNIT  # relative: a variable that moves less over a step rests, to rounding
+_STILL = 8.0 * EPSILON  # relative: a variable that moves less over a step rests, to rounding
 _DIVISIONS = 24  # halvings of a step in which a variable turns back several times
 _SAFE = 4.0  # the error of a cubic is at most so many times that halfway
 _SEARCH = 80  # positions solved to find a sign change
@@ -25,7 +24,9 @@ _EDGE = 1e-3  # of a bracket: nearer to its ends nothing is tried
 _SHARES = np.linspace(0.0, 1.0, 65)
 
 
-def node_between(led: Led, low: Node, high: Node, s: float, sharp: bool = False) -> Node | None:
+def node_between(
+    led: Parametrization, low: Node, high: Node, s: float, sharp: bool = False
+) -> Node | None:
     """The node at the fraction s of a step; ``None`` if Newton-Raphson does not find it.
 
     ``sharp``: iterate down to rounding.
@@ -33,9 +34,9 @@ def node_between(led: Led, low: Node, high: Node, s: float, sharp: bool = False)
     h = high.t - low.t
     guess = _hermite(s, h, low.v, low.first, high.v, high.first)
     guess[-1] = low.t + s * h
-    options = replace(led.solver.options, equation_tolerance=_UNIT) if sharp else None
+    options = replace(led.solver.options, equation_tolerance=EPSILON) if sharp else None
     found = led.solver.solve(guess[None, :], options)
-    if found.status[0] != _CONVERGED:
+    if found.status[0] != CONVERGED:
         return None
     return node_at(led.solver, led.path, float(guess[-1]), found.v[0])
 
@@ -55,10 +56,10 @@ def share_at(place: int, low: Node, high: Node, value: float) -> float:
     return 0.5 * (s0 + s1)
 
 
-def one_way(led: Led, place: int, before: Node, after: Node) -> list[Node]:
+def one_way(led: Parametrization, place: int, before: Node, after: Node) -> list[Node]:
     """A step, divided where a variable turns back within it."""
     chain = [before]
-    for low, high in itertools.pairwise(divided(led, place, before, after)):
+    for low, high in itertools.pairwise(divide_step(led, place, before, after)):
         if low.first[place] * high.first[place] < 0.0:
             chain.append(sign_change(led, low, high, lambda node: float(node.first[place])))
         chain.append(high)
@@ -66,7 +67,7 @@ def one_way(led: Led, place: int, before: Node, after: Node) -> list[Node]:
 
 
 def sign_change(
-    led: Led, low: Node, high: Node, rate: Callable[[Node], float], sharp: bool = False
+    led: Parametrization, low: Node, high: Node, rate: Callable[[Node], float], sharp: bool = False
 ) -> Node:
     """The node between two at which a rate changes sign, to rounding.
 
@@ -79,7 +80,7 @@ def sign_change(
     before, kept = np.inf, 0  # the bracket's width three tries ago, the end that was kept last
     for number in range(_SEARCH):
         width = abs(high.t - low.t)
-        if least == 0.0 or width <= 4.0 * _UNIT * max(1.0, abs(low.t)):
+        if least == 0.0 or width <= 4.0 * EPSILON * max(1.0, abs(low.t)):
             break
         s = a / (a - b)
         if number % 3 == 0:
@@ -102,7 +103,9 @@ def sign_change(
     return best
 
 
-def divided(led: Led, place: int, a: Node, b: Node, depth: int = _DIVISIONS) -> list[Node]:
+def divide_step(
+    led: Parametrization, place: int, a: Node, b: Node, depth: int = _DIVISIONS
+) -> list[Node]:
     """A step, divided so finely that a variable turns back at most once in each piece.
 
     The cubic through the variable's rates and their derivatives at both ends is compared with the
@@ -118,10 +121,10 @@ def divided(led: Led, place: int, a: Node, b: Node, depth: int = _DIVISIONS) -> 
     if size * abs(h) <= _STILL * max(1.0, abs(float(a.v[place]))):
         return [a, b]
     off = abs(float(middle.first[place]) - float(_hermite(0.5, h, *ends)))
-    if _zero_once(_SAFE * off + 8.0 * _UNIT * size, h, *ends):
+    if _zero_once(_SAFE * off + 8.0 * EPSILON * size, h, *ends):
         return [a, b]
-    left = divided(led, place, a, middle, depth - 1)
-    return [*left, *divided(led, place, middle, b, depth - 1)[1:]]
+    left = divide_step(led, place, a, middle, depth - 1)
+    return [*left, *divide_step(led, place, middle, b, depth - 1)[1:]]
 
 
 def _zero_once(error: float, h: float, v0: float, d0: float, v1: float, d1: float) -> bool:

@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.status import Status
+from linkwork.foundation.rounding import EPSILON
+from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import (
     BOLD,
@@ -28,14 +29,16 @@ from linkwork.numerics.continuation.branch_tracking import (
 from linkwork.numerics.continuation.curve_proof import leg_is_proved
 from linkwork.numerics.continuation.curve_tracing import Curve, Leg
 from linkwork.numerics.continuation.dead_point_proof import FoldProof, prove_dead_point
-from linkwork.numerics.continuation.local_parametrization import Leads, Led, fastest_leader
+from linkwork.numerics.continuation.local_parametrization import (
+    Parametrization,
+    Parametrizations,
+    fastest_leader,
+)
 from linkwork.numerics.continuation.path_proof import follow_with_proof
-from linkwork.numerics.continuation.step_division import divided
+from linkwork.numerics.continuation.step_division import divide_step
 
 __all__ = ["TurnAhead", "TurningPoint", "turn_beyond", "turning_points"]
 
-_CONVERGED = Status.CONVERGED.code
-_UNIT = np.finfo(float).eps
 _MOST_STEPS = 400  # to a dead point ahead: it is near, unless it is none
 _RESTING = 1e-7  # weighted rate below which the parameter may not move at all,
 _LEVEL = 100.0  # nor does it if the rate's own rate is at most so many times that
@@ -66,7 +69,7 @@ class TurningPoint:
         return self.proof is not None
 
 
-def turning_points(leads: Leads, curve: Curve) -> Iterator[TurningPoint]:
+def turning_points(leads: Parametrizations, curve: Curve) -> Iterator[TurningPoint]:
     """The dead points on a curve, in its order.
 
     Where the parameter's rate by the leader changes sign, Newton-Raphson on that rate, kept inside
@@ -84,15 +87,17 @@ def turning_points(leads: Leads, curve: Curve) -> Iterator[TurningPoint]:
                 for node in (a, b)
             ):
                 continue
-            chain = divided(leg.led, place, a, b)
+            chain = divide_step(leg.led, place, a, b)
             for low, high in itertools.pairwise(chain):
                 if _rises(low, place) is not _rises(high, place):
                     yield _within(leads, leg.led, low, high, (number, k))
 
 
-def _within(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, int]) -> TurningPoint:
+def _within(
+    leads: Parametrizations, led: Parametrization, low: Node, high: Node, where: tuple[int, int]
+) -> TurningPoint:
     """The dead point between two nodes; where it is not proved at once, by proved steps to it."""
-    turn = _refined(leads, led, low, high, where)
+    turn = _refine_turn(leads, led, low, high, where)
     if turn.located or not led.provable:
         return turn
     ahead = _first_turn(leads, led, low, math.copysign(1.0, high.t - low.t), follow_with_proof)
@@ -122,7 +127,7 @@ class TurnAhead:
         return self.proved and self.turn.located
 
 
-def turn_beyond(leads: Leads, v: Array, rates: Array, side: float) -> TurnAhead | None:
+def turn_beyond(leads: Parametrizations, v: Array, rates: Array, side: float) -> TurnAhead | None:
     """The dead point ahead of a position at which a branch could not be followed further.
 
     Parameters
@@ -148,7 +153,7 @@ def turn_beyond(leads: Leads, v: Array, rates: Array, side: float) -> TurnAhead 
         return None
     led, node = leader
     sign = math.copysign(1.0, side * rates[led.lead])
-    ways = (_followed(BOLD), _followed(TrackOptions()), follow_with_proof)
+    ways = (_follow_to_turn(BOLD), _follow_to_turn(TrackOptions()), follow_with_proof)
     best: TurnAhead | None = None
     for follow_leg in ways if led.provable else ways[1:2]:
         found = _first_turn(leads, led, node, sign, follow_leg)
@@ -163,7 +168,7 @@ def turn_beyond(leads: Leads, v: Array, rates: Array, side: float) -> TurnAhead 
 _Following = Callable[[BlockSolver, InputPath, Node, float, Watch], list[Node]]
 
 
-def _followed(options: TrackOptions) -> _Following:
+def _follow_to_turn(options: TrackOptions) -> _Following:
     def follow_leg(
         solver: BlockSolver, path: InputPath, node: Node, goal: float, watch: Watch
     ) -> list[Node]:
@@ -174,14 +179,14 @@ def _followed(options: TrackOptions) -> _Following:
 
 
 def _first_turn(
-    leads: Leads, led: Led, node: Node, sign: float, follow_leg: _Following
+    leads: Parametrizations, led: Parametrization, node: Node, sign: float, follow_leg: _Following
 ) -> TurnAhead | None:
     """The first dead point on the way that the leader goes in a direction."""
     place = led.place(leads.parameter)
     turned: list[tuple[Node, Node]] = []
 
     def has_turned(before: Node, after: Node) -> bool:
-        chain = itertools.pairwise(divided(led, place, before, after))
+        chain = itertools.pairwise(divide_step(led, place, before, after))
         turned.extend(pair for pair in chain if _rises(pair[0], place) != _rises(pair[1], place))
         return bool(turned)
 
@@ -189,14 +194,16 @@ def _first_turn(
     nodes = follow_leg(led.solver, led.path, node, goal, has_turned)
     if not turned:
         return None
-    turn = _refined(leads, led, *turned[0], (0, len(nodes) - 1))
+    turn = _refine_turn(leads, led, *turned[0], (0, len(nodes) - 1))
     before = [node, *nodes[:-1]]
     chain = (*before, turn.node) if turn.node.t != before[-1].t else tuple(before)
     leg = Leg(led=led, nodes=chain)
     return TurnAhead(leg=leg, turn=turn, proved=led.provable and leg_is_proved(leg))
 
 
-def _refined(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, int]) -> TurningPoint:
+def _refine_turn(
+    leads: Parametrizations, led: Parametrization, low: Node, high: Node, where: tuple[int, int]
+) -> TurningPoint:
     """The place between two nodes at which the parameter's rate is zero, with its proof."""
     place, p = led.place(leads.parameter), leads.parameter
     edges = sorted((float(low.v[place]), float(high.v[place])))
@@ -207,7 +214,7 @@ def _refined(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, in
     if proof is None:
         bracket = (min(edges[0], t), max(edges[1], t))
     else:
-        off = float(proof.each[place])
+        off = float(proof.error_bound[place])
         bracket = (math.nextafter(t - off, -math.inf), math.nextafter(t + off, math.inf))
     return TurningPoint(
         t=t,
@@ -221,16 +228,16 @@ def _refined(leads: Leads, led: Led, low: Node, high: Node, where: tuple[int, in
     )
 
 
-def _level(led: Led, place: int, low: Node, high: Node) -> Node:
+def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
     """The node between two at which a variable's rate is nearest to zero.
 
     Newton-Raphson on the rate, kept inside the sign change.
     """
     best = here = low if abs(low.first[place]) < abs(high.first[place]) else high
-    sharp = replace(led.solver.options, equation_tolerance=_UNIT)
+    sharp = replace(led.solver.options, equation_tolerance=EPSILON)
     for _ in range(60):
         step = -here.first[place] / here.second[place] if here.second[place] else np.inf
-        if abs(step) <= 4.0 * _UNIT * max(1.0, abs(here.t)):
+        if abs(step) <= 4.0 * EPSILON * max(1.0, abs(here.t)):
             break
         s = here.t + step
         edges = sorted((low.t, high.t))
@@ -240,7 +247,7 @@ def _level(led: Led, place: int, low: Node, high: Node) -> Node:
         guess = here.v + step * here.first + 0.5 * step * step * here.second
         guess[-1] = s
         found = led.solver.solve(guess[None, :], sharp)
-        if found.status[0] != _CONVERGED:
+        if found.status[0] != CONVERGED:
             break
         here = node_at(led.solver, led.path, s, found.v[0])
         if here.first[place] * low.first[place] > 0.0:
@@ -251,10 +258,10 @@ def _level(led: Led, place: int, low: Node, high: Node) -> Node:
             best = here
         elif abs(step) < 1e-9:
             break  # to rounding
-    return _polished(led, best)
+    return _polish_node(led, best)
 
 
-def _polished(led: Led, here: Node) -> Node:
+def _polish_node(led: Parametrization, here: Node) -> Node:
     """The same node after one step of Newton-Raphson with residuals that are rounded once.
 
     Where branches nearly cross, a residual that counts as none still moves the dead point. What a

@@ -17,12 +17,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
-from linkwork.numerics.homotopy.polynomial_system import solved
+from linkwork.foundation.products import matrix_vector
+from linkwork.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
+from linkwork.numerics.homotopy.polynomial_system import solve_linear
+from linkwork.numerics.proof.kantorovich import radii
 
-__all__ = ["BilinearSystem", "ProvedRoots", "proved_roots"]
-
-_UNIT = np.finfo(float).eps / 2
-_SLACK = 1.0 + 1e-12
+__all__ = ["BilinearSystem", "ProvedRoots", "prove_roots"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -104,7 +104,7 @@ def _with_one(u: ComplexArray) -> ComplexArray:
     return padded
 
 
-def proved_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> ProvedRoots:
+def prove_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> ProvedRoots:
     """Newton-Kantorovich for complex roots, largest norm; for any coefficients within ``spread``.
 
     Parameters
@@ -115,19 +115,18 @@ def proved_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prov
 
     Notes
     -----
-    The constants are those of :mod:`linkwork.numerics.proof.kantorovich`; products have constant
-    second derivatives, so ω needs no radius. A root is real if the conjugate of its box meets
-    the ball in which it is the only one, and not real if the two boxes are apart.
+    Products have constant second derivatives, so that ω does not depend on ρ. A root is real if the
+    conjugate of its box meets the ball in which it is the only one, and not real if the two boxes
+    are apart.
     """
     count, m = len(x), system.size
     f, j = system.residual_and_jacobian(x)
-    a = solved(j, np.broadcast_to(np.eye(2 * m, dtype=complex), j.shape))
-    good: BoolArray = np.asarray(np.isfinite(a).all(axis=(1, 2)))
-    a = np.where(good[:, None, None], a, 0.0)
+    a = solve_linear(j, np.broadcast_to(np.eye(2 * m, dtype=complex), j.shape))
+    a = np.where(np.isfinite(a).all(axis=(1, 2), keepdims=True), a, 0.0)  # then Z0 ≥ 1
     size = np.abs(a)
     u, v = np.abs(_with_one(x[:, :m])), np.abs(_with_one(x[:, m:]))
     p, q, p1, q1 = system.rows
-    weight = 8.0 * (m + 6) * _UNIT
+    weight = 8.0 * (m + 6) * UNIT_ROUNDOFF
     slip = spread + weight * np.abs(system.left)
     slip_right = spread + weight * np.abs(system.right)
     products = u[:, p] * v[:, q] + u[:, p1] * v[:, q1]
@@ -135,31 +134,20 @@ def proved_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prov
     blur = np.zeros((2 * m, 2 * m))
     blur[: system.loops, :m] = slip[:, :m]
     blur[system.loops : m, m:] = slip_right[:, :m]
-    y = np.abs((a @ f[:, :, None])[:, :, 0]) + _apply(size, error + weight * np.abs(f))
+    y = np.abs(matrix_vector(a, f)) + matrix_vector(size, error + weight * np.abs(f))
     z = np.abs(np.eye(2 * m) - a @ j) + size @ (blur + weight * np.abs(j))
-    y_max, z_max = _SLACK * y.max(axis=1), _SLACK * z.sum(axis=2).max(axis=1)
-    omega = _SLACK * (size[:, :, m:] @ system._curvature).max(axis=1)
-    room = 1.0 - z_max
-    square = room**2 - 2.0 * omega * y_max * _SLACK
-    holds = good & (room > 0.0) & (square > 0.0)
-    with np.errstate(all="ignore"):
-        root = np.sqrt(square)
-        exists = np.where(holds, 2.0 * y_max / (room + root) * _SLACK, np.inf)
-        unique = np.where(holds, (room + root) / np.maximum(omega, 1e-300) / _SLACK, 0.0)
+    y_max, z_max = PROOF_SLACK * y.max(axis=1), PROOF_SLACK * z.sum(axis=2).max(axis=1)
+    omega = PROOF_SLACK * (size[:, :, m:] @ system._curvature).max(axis=1)
+    holds, exists, unique, _ = radii(y_max, z_max, omega, np.zeros_like(omega))
     mirrored = np.concatenate([x[:, m:], x[:, :m]], axis=1).conj()
     gap = np.abs(x - mirrored).max(axis=1, initial=0.0)
     apart = True
     for k in range(count - 1):
         away = np.abs(x[k + 1 :] - x[k]).max(axis=1)
-        apart &= bool((away > (exists[k + 1 :] + exists[k]) * _SLACK)[holds[k + 1 :]].all())
+        apart &= bool((away > (exists[k + 1 :] + exists[k]) * PROOF_SLACK)[holds[k + 1 :]].all())
     return ProvedRoots(
         holds=holds,
         real=holds & (gap + exists < unique),
-        unreal=holds & (gap > 2.0 * exists * _SLACK),
+        unreal=holds & (gap > 2.0 * exists * PROOF_SLACK),
         apart=apart,
     )
-
-
-def _apply(matrix: Array, vector: Array) -> Array:
-    product: Array = (matrix @ vector[:, :, None])[:, :, 0]
-    return product

@@ -19,9 +19,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.numerics.homotopy.bilinear import BilinearSystem
 
-__all__ = ["ParameterHomotopy", "StartHomotopy", "null_space"]
-
-_TOO_CLOSE = 1e8  # condition of the decomposition beyond which another start is drawn
+__all__ = ["ParameterHomotopy", "StartHomotopy", "normal_numbers", "null_space"]
 
 
 def null_space(closure: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
@@ -31,14 +29,15 @@ def null_space(closure: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     return rows[loops:].conj().T, rows[:loops].conj().T
 
 
-def _normal(rng: np.random.Generator, *shape: int) -> ComplexArray:
+def normal_numbers(rng: np.random.Generator, *shape: int) -> ComplexArray:
+    """Random complex numbers with normally distributed parts."""
     drawn: ComplexArray = rng.normal(size=shape) + 1j * rng.normal(size=shape)
     return drawn
 
 
 def _patch(rng: np.random.Generator, size: int) -> ComplexArray:
     """[a, Q]: a random unit vector and an orthonormal basis of its complement."""
-    q, _ = np.linalg.qr(_normal(rng, size, size))
+    q, _ = np.linalg.qr(normal_numbers(rng, size, size))
     return np.asarray(q, dtype=complex)
 
 
@@ -89,7 +88,7 @@ class StartHomotopy(_Patched):
         loops, m = system.loops, system.size
         patches = (_patch(rng, loops + 1), _patch(rng, loops + 1))
         spaces = (null_space(system.left)[0], null_space(system.right)[0])
-        forms = _normal(rng, 2, m, loops + 1) / np.sqrt(2.0 * loops)
+        forms = normal_numbers(rng, 2, m, loops + 1) / np.sqrt(2.0 * loops)
         angle = rng.uniform(0.0, 2.0 * np.pi)
         return cls(
             rows=system.rows,

@@ -14,6 +14,7 @@ from itertools import product
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 
 __all__ = [
     "Columns",
@@ -29,7 +30,7 @@ Columns = tuple[tuple[tuple[int, ...], ...], ...]
 
 _SAME_SUM = 1e-11  # relative: two sums of coefficients are the same by construction
 _LARGEST_FREE = 6  # coefficients of a column among which sums are looked for
-_ROUNDING = 64 * np.finfo(float).eps / 2  # of coefficients of a column, relative to the largest
+_ROUNDING = 64 * UNIT_ROUNDOFF  # of coefficients of a column, relative to the largest
 
 
 def columns_of(closures: ComplexArray) -> Columns:

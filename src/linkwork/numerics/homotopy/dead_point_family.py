@@ -1,4 +1,4 @@
-"""All dead points of a family of mechanisms: homotopies of :class:`LockingSystem`.
+"""All dead points of a family of mechanisms: homotopies of :class:`DeadPointSystem`.
 
 Unknowns are the homogeneous X = ((U, 1), (V, 1), ρ), each of the three on a random patch, or
 coordinates w in which X is linear. So all equations are at most quadratic, and their coefficients
@@ -13,18 +13,13 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.numerics.homotopy.bilinear_homotopy import null_space
+from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers, null_space
 from linkwork.numerics.homotopy.column_sums import Columns, columns_of, random_closures
-from linkwork.numerics.homotopy.dead_point_system import LockingSystem, Slot, most_dead_points
+from linkwork.numerics.homotopy.dead_point_system import DeadPointSystem, Slot, most_dead_points
 from linkwork.numerics.homotopy.isolated_roots import SEED, isolated_roots
 from linkwork.numerics.homotopy.polynomial_system import Roots
 
-__all__ = ["LockingFamily", "locking_roots"]
-
-
-def _normal(rng: np.random.Generator, *shape: int) -> ComplexArray:
-    drawn: ComplexArray = rng.normal(size=shape) + 1j * rng.normal(size=shape)
-    return drawn
+__all__ = ["DeadPointFamily", "dead_point_roots"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -35,7 +30,7 @@ class _Straight:
     parts of w of their own for each of the three projective spaces.
     """
 
-    goal: LockingSystem
+    goal: DeadPointSystem
     basis: ComplexArray
     parts: tuple[slice, ...]
     patches: ComplexArray
@@ -81,7 +76,7 @@ class _Straight:
 def _patches(rng: np.random.Generator, parts: tuple[slice, ...]) -> ComplexArray:
     patches = np.zeros((3, parts[-1].stop), dtype=complex)
     for k, part in enumerate(parts):
-        patches[k, part] = _normal(rng, part.stop - part.start)
+        patches[k, part] = normal_numbers(rng, part.stop - part.start)
     return patches
 
 
@@ -101,7 +96,7 @@ class _FromProducts(_Straight):
     forms: ComplexArray
 
     @classmethod
-    def to(cls, goal: LockingSystem, rng: np.random.Generator) -> _FromProducts:
+    def to(cls, goal: DeadPointSystem, rng: np.random.Generator) -> _FromProducts:
         """A random start."""
         own, count = goal.own, goal.size
         spaces = [null_space(goal.left)[0], null_space(goal.right)[0], np.eye(2 * own)]
@@ -115,7 +110,7 @@ class _FromProducts(_Straight):
         for k, pair in enumerate(kinds):
             for side, part in enumerate(pair):
                 width = part.stop - part.start
-                forms[side, k, part] = _normal(rng, width) / np.sqrt(width)
+                forms[side, k, part] = normal_numbers(rng, width) / np.sqrt(width)
         turn = np.exp(2j * np.pi * rng.uniform())
         product = turn * forms[0][:, :, None] * forms[1][:, None, :]
         start = product + product.transpose(0, 2, 1)
@@ -159,7 +154,7 @@ class _FromRelative(_Straight):
 
     @classmethod
     def between(
-        cls, start: LockingSystem, goal: LockingSystem, rng: np.random.Generator
+        cls, start: DeadPointSystem, goal: DeadPointSystem, rng: np.random.Generator
     ) -> _FromRelative:
         """With coefficients that run straight from one to the other."""
         return cls(
@@ -177,7 +172,7 @@ class _FromRelative(_Straight):
 
 
 @dataclass(frozen=True)
-class LockingFamily:
+class DeadPointFamily:
     """Systems with the same products and rates and the same sums within columns."""
 
     rows: tuple[tuple[int, ...], ...]
@@ -186,7 +181,7 @@ class LockingFamily:
     slots: tuple[Slot, ...]
 
     @classmethod
-    def of(cls, system: LockingSystem) -> LockingFamily:
+    def of(cls, system: DeadPointSystem) -> DeadPointFamily:
         """The family of a system."""
         return cls(
             rows=tuple(map(tuple, system.rows.tolist())),
@@ -199,10 +194,10 @@ class LockingFamily:
         """Whether so many solutions of a member are all, by Bézout's theorem."""
         return found == most_dead_points(self.own, len(self.rows[0]))
 
-    def random(self, rng: np.random.Generator) -> LockingSystem:
+    def random(self, rng: np.random.Generator) -> DeadPointSystem:
         """A member with random complex free coefficients."""
         left, right = (random_closures(self.columns, rng) for _ in range(2))
-        return LockingSystem(
+        return DeadPointSystem(
             left=left, right=right, rows=np.array(self.rows), own=self.own, slots=self.slots
         )
 
@@ -213,14 +208,14 @@ class LockingFamily:
         flat += [abs(round(w)) for slot in self.slots for w in slot]
         return np.random.default_rng([SEED, 1, purpose, *flat])
 
-    def from_products(self, goal: LockingSystem, rng: np.random.Generator) -> _FromProducts:
+    def from_products(self, goal: DeadPointSystem, rng: np.random.Generator) -> _FromProducts:
         """2 own C(2L + 1, L) paths to all isolated solutions of a member."""
         return _FromProducts.to(goal, rng)
 
     def between(
         self,
-        start: LockingSystem,
-        goal: LockingSystem,
+        start: DeadPointSystem,
+        goal: DeadPointSystem,
         rng: np.random.Generator,
         *,
         nearest: bool = False,
@@ -234,6 +229,6 @@ class LockingFamily:
         return _FromRelative.between(turned, goal, rng)
 
 
-def locking_roots(system: LockingSystem) -> Roots:
+def dead_point_roots(system: DeadPointSystem) -> Roots:
     """All isolated dead points, complex ones among them."""
-    return isolated_roots(system, LockingFamily.of(system))
+    return isolated_roots(system, DeadPointFamily.of(system))

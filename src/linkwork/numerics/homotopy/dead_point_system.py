@@ -27,7 +27,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import ComplexArray, IndexArray
 
-__all__ = ["LockingSystem", "Slot", "most_dead_points"]
+__all__ = ["DeadPointSystem", "Slot", "most_dead_points"]
 
 #: A term of the own loops' rates: column of the closures, factor in (U, 1), number in ρ, weights in
 #: the rows of U and of V.
@@ -40,7 +40,7 @@ def most_dead_points(own: int, size: int) -> int:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class LockingSystem:
+class DeadPointSystem:
     """One system over x = (U, V, ρ), n = 2M + 2 own; ρ is normed by a fixed linear form.
 
     Parameters

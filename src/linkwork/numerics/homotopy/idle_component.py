@@ -1,6 +1,6 @@
 """Curves of dead points: can the mechanism really move while its input stands still?
 
-Where equal links lie on each other, a :class:`LockingSystem` has curves of solutions besides the
+Where equal links lie on each other, a :class:`DeadPointSystem` has curves of solutions besides the
 isolated ones. A position is real if V = U* and its rates are those of real angles and lengths,
 ω = ω* and σ = -σ*. On a curve along which the input keeps a value that is not real, there is none.
 Elsewhere one is looked for by Gauss-Newton steps among points of this kind,
@@ -17,7 +17,7 @@ from collections.abc import Callable
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.numerics.homotopy.dead_point_system import LockingSystem
+from linkwork.numerics.homotopy.dead_point_system import DeadPointSystem
 
 __all__ = ["Lead", "RealPoints", "keeps_complex_input", "real_motion"]
 
@@ -33,7 +33,7 @@ _STRIDE = 1e-2  # of a motion with the input held,
 _MOVED = 0.1  # and how much of it has to remain
 
 
-def keeps_complex_input(system: LockingSystem, x: ComplexArray, lead: Lead) -> bool:
+def keeps_complex_input(system: DeadPointSystem, x: ComplexArray, lead: Lead) -> bool:
     """Whether the input has one value, and no real one, all along the curve through x (n,).
 
     It is constant on an irreducible curve if its slope vanishes at a regular point of the curve.
@@ -47,7 +47,7 @@ def keeps_complex_input(system: LockingSystem, x: ComplexArray, lead: Lead) -> b
 
 
 def real_motion(
-    system: LockingSystem, x: ComplexArray, lead: Lead
+    system: DeadPointSystem, x: ComplexArray, lead: Lead
 ) -> tuple[ComplexArray, ComplexArray] | None:
     """Two real positions, (n,) each, of a motion during which the input stands still.
 
@@ -63,16 +63,16 @@ def real_motion(
     """
     real = RealPoints(system, lead)
     with np.errstate(all="ignore"):
-        here = real.corrected(real.near(x), None)
+        here = real.correct(real.near(x), None)
         if here is None:
             return None
         held = real.value(here)
         _, jacobian = real.equations(here, held)
         size = 1.0 + float(np.abs(here).max())
         for way in _kernel(jacobian).T.real:
-            there = real.corrected(here + _STRIDE * size * way, held)
+            there = real.correct(here + _STRIDE * size * way, held)
             if there is not None and np.abs(there - here).max() > _MOVED * _STRIDE * size:
-                return real.placed(here), real.placed(there)
+                return real.place(here), real.place(there)
     return None
 
 
@@ -87,7 +87,7 @@ def _kernel(matrix: ComplexArray | Array) -> ComplexArray:
 class RealPoints:
     """The system in real coordinates y = (a, b, ω, s), (2M + 2 own,), with x = ``basis`` y."""
 
-    def __init__(self, system: LockingSystem, lead: Lead) -> None:
+    def __init__(self, system: DeadPointSystem, lead: Lead) -> None:
         m, rates = system.size, 2 * system.own
         self.system, self.lead = system, lead
         self.turning = np.ones(rates, dtype=bool)
@@ -113,18 +113,18 @@ class RealPoints:
         self.norm[2 * m :] = y[2 * m :] = rows[-1]
         return y
 
-    def placed(self, y: Array) -> ComplexArray:
+    def place(self, y: Array) -> ComplexArray:
         """x (n,) of a real point."""
         x: ComplexArray = self.basis @ y.astype(complex)
         return x
 
     def value(self, y: Array) -> ComplexArray:
         """The input as U and as V have it, (2,)."""
-        return self.lead(self.placed(y))[0]
+        return self.lead(self.place(y))[0]
 
     def equations(self, y: Array, held: ComplexArray | None) -> tuple[Array, Array]:
         """Real residuals and their derivative; with the input ``held`` at a value (2,)."""
-        x = self.placed(y)
+        x = self.place(y)
         f, jacobian = self.system.residual_and_jacobian(x[None])
         value, slope = f[0, :-1], jacobian[0, :-1] @ self.basis  # rates have a norm of their own
         if held is not None:
@@ -134,7 +134,7 @@ class RealPoints:
         residual = np.concatenate([value.real, value.imag, [self.norm @ y - 1.0]])
         return residual, np.concatenate([slope.real, slope.imag, self.norm[None]])
 
-    def corrected(self, y: Array, held: ComplexArray | None) -> Array | None:
+    def correct(self, y: Array, held: ComplexArray | None) -> Array | None:
         """The solution that Gauss-Newton steps of least length lead to; ``None`` if to none."""
         for _ in range(_STEPS):
             f, jacobian = self.equations(y, held)

@@ -24,17 +24,17 @@ from linkwork.numerics.homotopy.path_tracking import (
     LOST,
     SINGULAR,
     Homotopy,
+    PathOptions,
     Paths,
-    TrackOptions,
     track,
 )
-from linkwork.numerics.homotopy.polynomial_system import PolynomialSystem, Roots, polished
+from linkwork.numerics.homotopy.polynomial_system import PolynomialSystem, Roots, polish_roots
 
 __all__ = [
     "SEED",
-    "Family",
     "HomotopyFromProducts",
     "HomotopyFromRelative",
+    "RootFamily",
     "isolated_roots",
     "nearest_solution",
 ]
@@ -42,7 +42,7 @@ __all__ = [
 #: All random numbers follow from this one, so that every run gives the same answer.
 SEED = 20_210_501
 
-_SAME = 1e-6  # two solutions are the same one
+_SAME_ROOT = 1e-6  # two solutions are the same one
 _FINITE = 1e-8  # smallest homogenising coordinate, of vectors of length 1, of a finite solution
 _FADING = 0.5  # a singular path whose homogenising coordinate shrinks so much runs to infinity
 _FINITE_MULTIPLE = 1e-5  # the smallest one of a finite multiple solution, which is known roughly
@@ -74,7 +74,7 @@ class HomotopyFromRelative(_ToSystem, Protocol):
         """Solutions x (B, n) of the first member as points at σ = 1."""
 
 
-class Family(Hashable, Protocol[S]):
+class RootFamily(Hashable, Protocol[S]):
     """Systems that differ in free coefficients only."""
 
     def complete(self, found: int) -> bool:
@@ -127,10 +127,10 @@ class _Generic(Generic[S]):
     sure: bool = False
 
 
-_KNOWN: dict[Family[Any], _Generic[Any]] = {}
+_KNOWN: dict[RootFamily[Any], _Generic[Any]] = {}
 
 
-def isolated_roots(system: S, family: Family[S]) -> Roots:
+def isolated_roots(system: S, family: RootFamily[S]) -> Roots:
     """All isolated solutions of a member of a family.
 
     Paths that were lost, or that met, are followed again with more care and along other systems.
@@ -142,8 +142,8 @@ def isolated_roots(system: S, family: Family[S]) -> Roots:
     expected = len(generic.x)
     best: _Ends | None = None
     for attempt in range(_ATTEMPTS):
-        care = CAREFUL if attempt else BOLD if expected <= _FEW else TrackOptions()
-        ends = _followed(family, generic, system, rng, care, nearest=not attempt)
+        care = CAREFUL if attempt else BOLD if expected <= _FEW else PathOptions()
+        ends = _follow_paths(family, generic, system, rng, care, nearest=not attempt)
         if best is None or _quality(ends) >= _quality(best):
             agreed = best is not None and _agree(ends, best)
             best = ends
@@ -163,7 +163,7 @@ def _agree(a: _Ends, b: _Ends) -> bool:
     return len(x) == len(y) == len(_distinct(np.concatenate([x, y])))
 
 
-def _generic(family: Family[S]) -> _Generic[S]:
+def _generic(family: RootFamily[S]) -> _Generic[S]:
     """The stored random member; solved when it is first wanted."""
     if family not in _KNOWN:
         rng = family.generator(0)
@@ -172,7 +172,7 @@ def _generic(family: Family[S]) -> _Generic[S]:
         clean = 0
         for attempt in range(_ATTEMPTS):
             start = family.from_products(system, rng)
-            ends = _read(system, start, track(start, start.starts(), CAREFUL))
+            ends = _classify_ends(system, start, track(start, start.starts(), CAREFUL))
             found = ends.x[ends.regular]
             x = _distinct(np.concatenate([x, found])) if attempt else _distinct(found)
             clean += not (ends.failed | ends.singular | _meeting(ends)).any()
@@ -180,18 +180,20 @@ def _generic(family: Family[S]) -> _Generic[S]:
                 break
         # closed paths say nothing where nothing is: all paths have to run to infinity twice
         nothing = not len(x) and clean == _LOOPS
-        _KNOWN[family] = _closed(family, _Generic(system=system, x=x, sure=nothing), rng)
+        _KNOWN[family] = _close_paths(family, _Generic(system=system, x=x, sure=nothing), rng)
     return _KNOWN[family]
 
 
-def _closed(family: Family[S], known: _Generic[S], rng: np.random.Generator) -> _Generic[S]:
+def _close_paths(
+    family: RootFamily[S], known: _Generic[S], rng: np.random.Generator
+) -> _Generic[S]:
     """Solutions added until closed paths of systems lead to no new ones."""
     quiet = tries = 0
     while quiet < _LOOPS and tries < _TRIES and len(known.x) and not family.complete(len(known.x)):
         away = family.random(rng)
-        there = _followed(family, known, away, rng, CAREFUL)
+        there = _follow_paths(family, known, away, rng, CAREFUL)
         back = _Generic(system=away, x=_distinct(there.x[there.regular]))
-        ends = _followed(family, back, known.system, rng, CAREFUL)
+        ends = _follow_paths(family, back, known.system, rng, CAREFUL)
         x = _distinct(np.concatenate([known.x, ends.x[ends.regular]]))
         whole = len(x) == len(known.x) and there.regular.all() and ends.regular.all()
         quiet = quiet + 1 if whole else 0
@@ -201,12 +203,12 @@ def _closed(family: Family[S], known: _Generic[S], rng: np.random.Generator) -> 
     return replace(known, sure=sure)
 
 
-def _followed(
-    family: Family[S],
+def _follow_paths(
+    family: RootFamily[S],
     generic: _Generic[S],
     goal: S,
     rng: np.random.Generator,
-    options: TrackOptions,
+    options: PathOptions,
     *,
     nearest: bool = False,
 ) -> _Ends:
@@ -214,14 +216,14 @@ def _followed(
     homotopy = family.between(generic.system, goal, rng, nearest=nearest)
     start = homotopy.starts(generic.x)
     paths = track(homotopy, start, options)
-    ends = _read(goal, homotopy, paths)
+    ends = _classify_ends(goal, homotopy, paths)
     again = ends.failed | _meeting(ends)
     if again.any() and options is not CAREFUL:
         once_more = track(homotopy, start[again], CAREFUL)
         w, near, state = paths.w.copy(), paths.near.copy(), paths.state.copy()
         w[again], near[again], state[again] = once_more.w, once_more.near, once_more.state
         joined = Paths(w=w, near=near, state=state, steps=paths.steps + once_more.steps)
-        ends = _read(goal, homotopy, joined)
+        ends = _classify_ends(goal, homotopy, joined)
         again = ends.failed | _meeting(ends)
     if not again.any():
         return ends
@@ -234,7 +236,7 @@ def _followed(
     )
 
 
-def _read(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) -> _Ends:
+def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) -> _Ends:
     """Ends of paths in the system's unknowns, sorted by what they are."""
     (x, scale), (_, before) = homotopy.points(paths.w), homotopy.points(paths.near)
     singular = paths.state == SINGULAR
@@ -244,7 +246,7 @@ def _read(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) -> _Ends:
     regular = np.zeros(len(x), dtype=bool)
     if finite.any():
         with np.errstate(all="ignore"):
-            better, steps = polished(system, x[finite])
+            better, steps = polish_roots(system, x[finite])
         moved = np.abs(better - x[finite]).max(axis=1) < 1e-3 * (1 + np.abs(better).max(axis=1))
         regular[finite] = (steps > 0) & (steps <= 6) & moved
         x[np.flatnonzero(finite)[regular[finite]]] = better[regular[finite]]
@@ -285,13 +287,13 @@ def _near_another(x: ComplexArray) -> BoolArray:
         return np.zeros(len(x), dtype=bool)
     size = 1.0 + np.abs(x).max(axis=1)
     gap = np.abs(x[:, None, :] - x[None, :, :]).max(axis=2)
-    close = gap < _SAME * np.minimum(size[:, None], size[None, :])
+    close = gap < _SAME_ROOT * np.minimum(size[:, None], size[None, :])
     np.fill_diagonal(close, False)
     near: BoolArray = close.any(axis=1)
     return near
 
 
-def _distinct(x: ComplexArray, same: float = _SAME) -> ComplexArray:
+def _distinct(x: ComplexArray, same: float = _SAME_ROOT) -> ComplexArray:
     """The rows without repetitions, first ones kept."""
     kept: list[int] = []
     for k in range(len(x)):

@@ -179,7 +179,9 @@ class _Orders:
             row[next(k for k, (here, _) in enumerate(levels) if here & base)] -= 2
             rows.append(row)
         ground = next(k for k, (here, _) in enumerate(levels) if here & self.ground)
-        size, found = _solved([row[:ground] + row[ground + 1 :] for row in rows], self.exponents)
+        size, found = _solve_square(
+            [row[:ground] + row[ground + 1 :] for row in rows], self.exponents
+        )
         if not size:
             return 0
         found.insert(ground, Fraction(0))
@@ -208,7 +210,7 @@ def _subsets(whole: int) -> Iterator[int]:
         some = (some - 1) & whole
 
 
-def _solved(rows: list[list[int]], right: list[int]) -> tuple[int, list[Fraction]]:
+def _solve_square(rows: list[list[int]], right: list[int]) -> tuple[int, list[Fraction]]:
     """The size of the determinant of square rows and the solution; 0 if there is none.
 
     Raises

@@ -49,10 +49,10 @@ class MatroidPair:
         # both spaces are of the same kind, so x and y may change places
         key = (here, min(spans), max(spans))
         if key not in self._known:
-            self._known[key] = self._shared_out(here, forgotten, zero)
+            self._known[key] = self._share_out(here, forgotten, zero)
         return self._known[key]
 
-    def _shared_out(self, here: int, forgotten: int, zero: int) -> int:
+    def _share_out(self, here: int, forgotten: int, zero: int) -> int:
         """Over all ways to share out what is left without the coordinate ē."""
         pivot = here & -here
         rest = here ^ pivot

@@ -16,7 +16,7 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
-from linkwork.numerics.homotopy.polynomial_system import solved
+from linkwork.numerics.homotopy.polynomial_system import solve_linear
 
 __all__ = [
     "ARRIVED",
@@ -25,8 +25,8 @@ __all__ = [
     "LOST",
     "SINGULAR",
     "Homotopy",
+    "PathOptions",
     "Paths",
-    "TrackOptions",
     "track",
 ]
 
@@ -52,7 +52,7 @@ class Homotopy(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrackOptions:
+class PathOptions:
     """How carefully paths are followed.
 
     Parameters
@@ -67,8 +67,8 @@ class TrackOptions:
     contraction: float = 0.3
 
 
-BOLD = TrackOptions(error=1e-1)
-CAREFUL = TrackOptions(error=1e-4, contraction=0.05)
+BOLD = PathOptions(error=1e-1)
+CAREFUL = PathOptions(error=1e-4, contraction=0.05)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -85,16 +85,16 @@ class Paths:
     steps: int
 
 
-def track(homotopy: Homotopy, start: ComplexArray, options: TrackOptions | None = None) -> Paths:
+def track(homotopy: Homotopy, start: ComplexArray, options: PathOptions | None = None) -> Paths:
     """Follow every start (B, n), a solution at σ = 1, to σ = 0."""
     with np.errstate(all="ignore"):
-        return _Tracker(homotopy, start, options or TrackOptions()).run()
+        return _Tracker(homotopy, start, options or PathOptions()).run()
 
 
 class _Tracker:
     """The batch: lanes that are done leave."""
 
-    def __init__(self, homotopy: Homotopy, start: ComplexArray, options: TrackOptions) -> None:
+    def __init__(self, homotopy: Homotopy, start: ComplexArray, options: PathOptions) -> None:
         count = len(start)
         self.homotopy, self.options = homotopy, options
         self.w = start.copy()
@@ -104,7 +104,7 @@ class _Tracker:
         self.sigma = np.ones(count)
         self.step = np.full(count, _FIRST_STEP)
         _, jacobian, change = homotopy.evaluate(start, self.sigma)
-        slope = -solved(jacobian, change[:, :, None])[:, :, 0]
+        slope = -solve_linear(jacobian, change[:, :, None])[:, :, 0]
         # points and slopes: here, there, before, there
         self.path = np.stack([start, slope, start, slope])
         self.gone = np.zeros(count)  # length of the last step, 0 before the first
@@ -118,7 +118,7 @@ class _Tracker:
         self.w[self.lane] = self.path[0]
         return Paths(w=self.w, near=self.near, state=self.state, steps=rounds)
 
-    def _predicted(self, h: Array) -> ComplexArray:
+    def _predict(self, h: Array) -> ComplexArray:
         """The cubic through the last two points, extrapolated; a line before the first step."""
         here, slope, before, slope_before = self.path
         g = np.where(self.gone == 0.0, 1.0, self.gone)[:, None]
@@ -135,12 +135,12 @@ class _Tracker:
     def _advance(self) -> None:
         evaluate, h = self.homotopy.evaluate, np.minimum(self.step, self.sigma)
         goal = np.where(self.sigma <= self.step, 0.0, self.sigma - h)
-        guess = self._predicted(h)
+        guess = self._predict(h)
         f, jacobian, _ = evaluate(guess, goal)
-        first = solved(jacobian, f[:, :, None])[:, :, 0]
+        first = solve_linear(jacobian, f[:, :, None])[:, :, 0]
         w = guess - first
         f, jacobian, change = evaluate(w, goal)
-        both = solved(jacobian, np.stack([f, change], axis=2))
+        both = solve_linear(jacobian, np.stack([f, change], axis=2))
         second = both[:, :, 0]
         w -= second
         size = 1.0 + np.abs(w).max(axis=1)

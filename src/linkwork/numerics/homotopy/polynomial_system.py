@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import ComplexArray, CountArray
 
-__all__ = ["PolynomialSystem", "Roots", "polished", "solved"]
+__all__ = ["PolynomialSystem", "Roots", "polish_roots", "solve_linear"]
 
 _POLISH = 12  # steps of Newton's method at most
 
@@ -55,7 +55,7 @@ class Roots:
     curves: ComplexArray
 
 
-def polished(system: PolynomialSystem, x: ComplexArray) -> tuple[ComplexArray, CountArray]:
+def polish_roots(system: PolynomialSystem, x: ComplexArray) -> tuple[ComplexArray, CountArray]:
     """Newton's method from x (B, n) until nothing changes; the steps taken, -1 if it failed."""
     x = x.copy()
     steps = np.full(len(x), -1, dtype=np.int64)
@@ -63,7 +63,7 @@ def polished(system: PolynomialSystem, x: ComplexArray) -> tuple[ComplexArray, C
     last = np.full(len(x), np.inf)
     for k in range(_POLISH):
         f, j = system.residual_and_jacobian(x[live])
-        change = solved(j, f[:, :, None])[:, :, 0]
+        change = solve_linear(j, f[:, :, None])[:, :, 0]
         x[live] -= change
         size = np.abs(change).max(axis=1, initial=0.0)
         size /= 1.0 + np.abs(x[live]).max(axis=1, initial=0.0)
@@ -76,7 +76,7 @@ def polished(system: PolynomialSystem, x: ComplexArray) -> tuple[ComplexArray, C
     return x, steps
 
 
-def solved(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
+def solve_linear(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
     """Solutions per lane of (B, n, n) and (B, n, k); NaN where a matrix is singular."""
     try:
         return np.asarray(np.linalg.solve(matrix, right), dtype=complex)

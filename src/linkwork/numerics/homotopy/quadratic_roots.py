@@ -45,7 +45,7 @@ def quadratic_roots(system: BilinearSystem) -> Roots:
     finite = np.abs(ends[:, :, -1]).min(axis=1) > _FINITE
     if everywhere and not finite.any():
         curve = False
-    return _found(system, ends, finite, double, curve)
+    return _roots_of_forms(system, ends, finite, double, curve)
 
 
 def _forms(
@@ -83,7 +83,7 @@ def _zeros(quadratic: ComplexArray) -> tuple[list[ComplexArray], bool]:
     return [z / np.linalg.norm(z) for z in pair], len(pair) == 1
 
 
-def _found(
+def _roots_of_forms(
     system: BilinearSystem, ends: ComplexArray, finite: BoolArray, double: bool, curve: bool
 ) -> Roots:
     m = system.size

@@ -2,13 +2,20 @@
 
 For F(x) = 0, A ≈ J(x0)⁻¹ and the weighted norm ‖x‖ = max |x_i|/w_i let
 
-    Y  ≥ ‖A F(x0)‖,   Z0 ≥ ‖I - A J(x0)‖,   ω ≥ Lipschitz constant of A J within ρ of x0.
+    Y ≥ ‖A F(x0)‖,   Z0 ≥ ‖I - A J(x0)‖,   ω ≥ Lipschitz constant of A J within ρ of x0.       (1)
 
-If (1 - Z0)² > 2 ω Y, there is exactly one solution within min(r+, ρ) of x0, it lies within r-, and
-r± = [(1 - Z0) ± √((1 - Z0)² - 2 ω Y)] / ω (Kantorovich 1948; Rump 2010,
-doi:10.1017/S096249291000005X). All constants include the rounding of their own computation. Known
-quantities (inputs, unknowns of blocks solved before) may be uncertain: the proof then holds for
-every value in their intervals.
+There is exactly one solution within min(r+, ρ) of x0, and it lies within r-, if
+
+    (1 - Z0)² > 2 ω Y,                                                                       (2)
+    r± = [(1 - Z0) ± √((1 - Z0)² - 2 ω Y)] / ω                                               (3)
+
+(Kantorovich 1948; Rump 2010, doi:10.1017/S096249291000005X). With ω = ω0 + ω1 ρ, ρ is chosen so
+that the uniqueness radius just fits in:
+
+    ρ (ω0 + ω1 ρ) = 2 (1 - Z0).                                                              (4)
+
+All constants include the rounding of their own computation. Known quantities (inputs, unknowns of
+blocks solved before) may be uncertain: the proof then holds for every value in their intervals.
 """
 
 from __future__ import annotations
@@ -18,12 +25,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.products import matrix_vector
+from linkwork.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
 from linkwork.numerics.system import System
 
-__all__ = ["Bounds", "Expansion", "Majorant", "Radii", "bounds", "expansion", "radii"]
+__all__ = ["Bounds", "Expansion", "Majorant", "Radii", "expansion", "radii", "weighted_radii"]
 
-_UNIT = np.finfo(float).eps / 2
-_SLACK = 1.0 + 1e-12  # rounding of the bounds' own arithmetic, sums of positive numbers
 _FITTINGS = 4  # rounds in which weights are fitted
 _BENDING, _SHIFTING = 2.5, 3.0  # c and d of fitted weights: 2 ω Y < (1 - Z)² with some room
 _LEAST = 1e-12  # of the largest weight: an unknown that does not move has this one
@@ -46,17 +53,19 @@ class Bounds:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Radii:
-    """What was proved, (B,): ``holds``; a solution within ``exists``, no other within ``unique``.
+    """What was proved, (B,): ``holds``; a solution within ``existence_radius``, no other within
+    ``uniqueness_radius``.
 
-    ``each`` (B, n): a bound of every unknown's error in its own unit, never larger than ``exists``
-    times its weight. ``alone`` (B, n): ``unique`` in their own units.
+    ``error_bound`` (B, n): a bound of every unknown's error in its own unit, never larger than
+    ``existence_radius`` times its weight. ``isolation_radius`` (B, n): ``uniqueness_radius`` in
+    their own units.
     """
 
     holds: BoolArray
-    exists: Array
-    unique: Array
-    each: Array
-    alone: Array
+    existence_radius: Array
+    uniqueness_radius: Array
+    error_bound: Array
+    isolation_radius: Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -103,7 +112,7 @@ def expansion(
     Parameters
     ----------
     system : System
-        With n unknowns and p known variables behind; ``bends_boundedly`` must hold.
+        With n unknowns and p known variables behind; ``has_curvature_bound`` must hold.
     v : (B, N)
     jacobian : (B, n, N)
         dF/dv at v.
@@ -121,7 +130,8 @@ def expansion(
         f, rounding = (np.stack(part) for part in zip(*map(system.exact_residual, v), strict=True))
     lines = np.abs(matrix[:, :, rest] @ slope[:, rest])
     return Expansion(
-        residual=np.abs(_apply(matrix, f)) + _apply(size, rounding + (n + 2) * _UNIT * np.abs(f)),
+        residual=np.abs(matrix_vector(matrix, f))
+        + matrix_vector(size, rounding + (n + 2) * UNIT_ROUNDOFF * np.abs(f)),
         defect=np.abs(np.eye(n) - matrix @ jacobian[:, :, :n]) + loss[:, :, :n],
         slope=np.abs(matrix @ slope) + loss[:, :, n:],
         lines=lines + size[:, :, rest] @ bend.jacobian_rounding[:, rest, n:],
@@ -163,35 +173,35 @@ class Majorant:
         self.lengths = at.pair_length[mine]
         self.held, self.held_group = at.slide[:, :, given], at.pair_group[given]
         self.spread = known[:, at.pair_length[given] - n]
-        by_slope = _apply(at.slope, known) + 0.5 * _apply(at.phase, self.turned**2)
+        by_slope = matrix_vector(at.slope, known) + 0.5 * matrix_vector(at.phase, self.turned**2)
         # a law's phase is a second derivative, no bound of the change itself
         loops, bent = slice(None, at.loop_phases), slice(at.loop_phases, None)
-        as_a_whole = _apply(at.phase[:, :, loops], self.turned[:, loops])
-        as_a_whole += 0.5 * _apply(at.phase[:, :, bent], self.turned[:, bent] ** 2)
-        as_a_whole += _apply(at.lines, known)
+        as_a_whole = matrix_vector(at.phase[:, :, loops], self.turned[:, loops])
+        as_a_whole += 0.5 * matrix_vector(at.phase[:, :, bent], self.turned[:, bent] ** 2)
+        as_a_whole += matrix_vector(at.lines, known)
         if given.size:
-            by_slope += _apply(self.held, self.spread * self.turned[:, self.held_group])
-            as_a_whole += _apply(self.held, self.spread)
+            by_slope += matrix_vector(self.held, self.spread * self.turned[:, self.held_group])
+            as_a_whole += matrix_vector(self.held, self.spread)
         self.y = at.residual + np.minimum(by_slope, as_a_whole)
 
     def linear(self, x: Array) -> Array:
         """Z x, (B, n), for x (B or 1, n)."""
         own = x @ self.turning  # how far unknowns that move by x turn each phase
-        rows = _apply(self.defect, x) + _apply(self.phase, own * self.turned)
+        rows = matrix_vector(self.defect, x) + matrix_vector(self.phase, own * self.turned)
         if self.lengths.size:
-            rows += _apply(self.free, x[:, self.lengths] * self.turned[:, self.free_group])
+            rows += matrix_vector(self.free, x[:, self.lengths] * self.turned[:, self.free_group])
         if self.held_group.size:
-            rows += _apply(self.held, self.spread * own[:, self.held_group])
+            rows += matrix_vector(self.held, self.spread * own[:, self.held_group])
         return rows
 
     def quadratic(self, x: Array) -> Array:
         """M(x, x), (B, n), for x (B or 1, n)."""
         own = x @ self.turning
-        rows = _apply(self.phase, own**2)
+        rows = matrix_vector(self.phase, own**2)
         if self.lengths.size:
-            rows += _apply(self.free, 2.0 * x[:, self.lengths] * own[:, self.free_group])
+            rows += matrix_vector(self.free, 2.0 * x[:, self.lengths] * own[:, self.free_group])
         if self.held_group.size:
-            rows += _apply(self.held, self.spread * own[:, self.held_group] ** 2)
+            rows += matrix_vector(self.held, self.spread * own[:, self.held_group] ** 2)
         return rows
 
     def cubic(self, x: Array) -> Array:
@@ -199,19 +209,19 @@ class Majorant:
         if not self.lengths.size:
             return np.zeros_like(self.y)
         own = x @ self.turning
-        return _apply(self.free, x[:, self.lengths] * own[:, self.free_group] ** 2)
+        return matrix_vector(self.free, x[:, self.lengths] * own[:, self.free_group] ** 2)
 
     def bounds(self, weights: Array) -> Bounds:
         """The constants in weights (n,) or (B, n)."""
         w = np.atleast_2d(weights)
         return Bounds(
-            y=_SLACK * self.y / w,
-            z=_SLACK * self.linear(w) / w,
-            omega=_SLACK * self.quadratic(w) / w,
-            omega_slope=_SLACK * self.cubic(w) / w,
+            y=PROOF_SLACK * self.y / w,
+            z=PROOF_SLACK * self.linear(w) / w,
+            omega=PROOF_SLACK * self.quadratic(w) / w,
+            omega_slope=PROOF_SLACK * self.cubic(w) / w,
         )
 
-    def fitted(self, scale: Array) -> Array:
+    def fit_weights(self, scale: Array) -> Array:
         """Weights (B, n) in which the proof nearly always succeeds where there are any such.
 
         An unknown's weight is how far it may move: y, or what the others bring about. With
@@ -232,44 +242,37 @@ class Majorant:
         return w
 
 
-def bounds(system: System, v: Array, jacobian: Array, matrix: Array, known: Array) -> Bounds:
-    """Constants of the proof in the system's own weights.
-
-    See :func:`expansion` and :class:`Majorant` for the parameters.
-    """
-    majorant = Majorant(expansion(system, v, jacobian, matrix), known)
-    return majorant.bounds(system.variable_scale[: system.unknowns])
-
-
-def _apply(matrix: Array, vector: Array) -> Array:
-    product: Array = (matrix @ vector[:, :, None])[:, :, 0]
-    return product
-
-
-def radii(b: Bounds, weights: Array) -> Radii:
-    """Existence and uniqueness from the constants.
-
-    ρ is chosen so that the uniqueness radius just fits in: ρ (ω0 + ω1 ρ) = 2 (1 - Z0).
-    """
-    y, z = b.y.max(axis=1), b.z.max(axis=1)
-    omega, slope = b.omega.max(axis=1), b.omega_slope.max(axis=1)
+def radii(y: Array, z: Array, omega: Array, slope: Array) -> tuple[BoolArray, Array, Array, Array]:
+    """Whether the theorem holds, r-, the uniqueness radius and ρ, from Y, Z0, ω0 and ω1 (B,)."""
     room = 1.0 - z
     with np.errstate(all="ignore"):
-        rho = np.where(
+        rho = np.where(  # (4)
             slope > 0.0,
             4.0 * room / (omega + np.sqrt(omega**2 + 8.0 * slope * np.maximum(room, 0.0))),
             2.0 * room / omega,
         )
         whole = omega + np.where(slope > 0.0, rho * slope, 0.0)
-        square = room**2 - 2.0 * whole * y * _SLACK
-        holds = (room > 0.0) & (square > 0.0)
+        square = room**2 - 2.0 * whole * y * PROOF_SLACK
+        holds = (room > 0.0) & (square > 0.0)  # (2)
         root = np.sqrt(square)
-        # r- without cancellation; a system without curvature has r- = Y/(1 - Z0) and r+ = ∞
-        exists = np.where(holds, 2.0 * y / (room + root) * _SLACK, np.inf)
-        unique = np.where(holds, np.minimum((room + root) / whole, rho) / _SLACK, 0.0)
+        # (3): r- without cancellation; without curvature r- = Y/(1 - Z0) and r+ = ∞
+        existence = np.where(holds, 2.0 * y / (room + root) * PROOF_SLACK, np.inf)
+        uniqueness = np.where(holds, np.minimum((room + root) / whole, rho) / PROOF_SLACK, 0.0)
+    return holds, existence, uniqueness, rho
+
+
+def weighted_radii(b: Bounds, weights: Array) -> Radii:
+    """Existence and uniqueness from the constants, unknown by unknown."""
+    holds, existence, uniqueness, rho = radii(
+        b.y.max(axis=1), b.z.max(axis=1), b.omega.max(axis=1), b.omega_slope.max(axis=1)
+    )
     with np.errstate(all="ignore"):
         bent = b.omega + np.where(b.omega_slope > 0.0, rho[:, None] * b.omega_slope, 0.0)
-        each = b.y + b.z * exists[:, None] + 0.5 * bent * exists[:, None] ** 2
-    each = np.minimum(each * _SLACK, exists[:, None]) * weights
-    alone = unique[:, None] * weights / _SLACK
-    return Radii(holds=holds, exists=exists, unique=unique, each=each, alone=alone)
+        error_bound = b.y + b.z * existence[:, None] + 0.5 * bent * existence[:, None] ** 2
+    return Radii(
+        holds=holds,
+        existence_radius=existence,
+        uniqueness_radius=uniqueness,
+        error_bound=np.minimum(error_bound * PROOF_SLACK, existence[:, None]) * weights,
+        isolation_radius=uniqueness[:, None] * weights / PROOF_SLACK,
+    )

@@ -13,54 +13,59 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.numerics.block_solver import Block, BlockSolver, Linearised
-from linkwork.numerics.proof.kantorovich import Expansion, Majorant, Radii, expansion, radii
+from linkwork.numerics.proof.kantorovich import (
+    Expansion,
+    Majorant,
+    Radii,
+    expansion,
+    weighted_radii,
+)
 
 __all__ = [
     "Proof",
     "Reach",
     "expansions",
-    "links_hold",
     "prove",
     "prove_block",
     "reach",
     "rounding_of_inputs",
+    "steps_connected",
 ]
-
-_UNIT = np.finfo(float).eps / 2
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Proof:
     """What is proved at B positions with K blocks.
 
-    ``holds`` (B,): all blocks proved. ``exists``, ``unique`` (B, K): radii per block, weighted.
-    ``each`` (B, N): how far every variable may be from its value, in its own unit; for the inputs
-    what was given.
+    ``holds`` (B,): all blocks proved. ``existence_radius``, ``uniqueness_radius`` (B, K): radii per
+    block, weighted. ``error_bound`` (B, N): how far every variable may be from its value, in its
+    own unit; for the inputs what was given.
     """
 
     holds: BoolArray
-    exists: Array
-    unique: Array
-    each: Array
+    existence_radius: Array
+    uniqueness_radius: Array
+    error_bound: Array
 
     @property
     def radius(self) -> Array:
         """Within this a true position lies, (B,), weighted."""
-        radius: Array = self.exists.max(axis=1, initial=0.0)
+        radius: Array = self.existence_radius.max(axis=1, initial=0.0)
         return radius
 
     @property
-    def alone_within(self) -> Array:
+    def least_uniqueness_radius(self) -> Array:
         """Within this there is no other, (B,), weighted."""
-        alone: Array = self.unique.min(axis=1, initial=np.inf)
-        return alone
+        isolation_radius: Array = self.uniqueness_radius.min(axis=1, initial=np.inf)
+        return isolation_radius
 
 
 def rounding_of_inputs(v: Array, unknowns: int) -> Array:
     """How far an input may be from the value it stands for, (B, p): conversion of units."""
-    spread: Array = 2.0 * _UNIT * np.abs(v[:, unknowns:])
-    return spread
+    input_radius: Array = 2.0 * UNIT_ROUNDOFF * np.abs(v[:, unknowns:])
+    return input_radius
 
 
 def expansions(
@@ -80,7 +85,7 @@ def expansions(
     with np.errstate(all="ignore"):
         for block, part in zip(solver.blocks, parts, strict=True):
             here = v[:, block.variables]
-            bounded = block.system.bends_boundedly
+            bounded = block.system.has_curvature_bound
             found.append(
                 expansion(block.system, here, part.jacobian, part.inverse, exact=exact)
                 if bounded
@@ -92,15 +97,15 @@ def expansions(
 def prove(
     solver: BlockSolver,
     v: Array,
-    spread: Array,
+    input_radius: Array,
     places: Sequence[Expansion | None] | None = None,
 ) -> Proof:
-    """Prove positions for all inputs within ``spread`` of those in v.
+    """Prove positions for all inputs within ``input_radius`` of those in v.
 
     Parameters
     ----------
     v : (B, N)
-    spread : (B, p)
+    input_radius : (B, p)
         In each input's own unit.
     places : list of Expansion, optional
         ``expansions(solver, v)``, if they are there already.
@@ -110,99 +115,120 @@ def prove(
     A block without a curvature bound (function rows) proves nothing: ``holds`` is false.
     """
     count = len(v)
-    each = np.zeros((count, solver.variables))
-    each[:, solver.unknowns :] = spread
+    error_bound = np.zeros((count, solver.variables))
+    error_bound[:, solver.unknowns :] = input_radius
     holds = np.ones(count, dtype=bool)
-    exists = np.full((count, len(solver.blocks)), np.inf)
-    unique = np.zeros((count, len(solver.blocks)))
+    existence_radius = np.full((count, len(solver.blocks)), np.inf)
+    uniqueness_radius = np.zeros((count, len(solver.blocks)))
     places = expansions(solver, v) if places is None else places
     for k, (block, place) in enumerate(zip(solver.blocks, places, strict=True)):
         if place is None:
             holds[:] = False
             continue
-        found = _position(block, place, each)
+        found = _position(block, place, error_bound)
         holds &= found.holds
-        exists[:, k], unique[:, k] = found.exists, found.unique
-        each[:, block.unknowns] = found.each
-    return Proof(holds=holds, exists=exists, unique=unique, each=each)
+        existence_radius[:, k], uniqueness_radius[:, k] = (
+            found.existence_radius,
+            found.uniqueness_radius,
+        )
+        error_bound[:, block.unknowns] = found.error_bound
+    return Proof(
+        holds=holds,
+        existence_radius=existence_radius,
+        uniqueness_radius=uniqueness_radius,
+        error_bound=error_bound,
+    )
 
 
-def prove_block(block: Block, part: Linearised, v: Array, each: Array) -> Radii:
-    """Prove one block at v (B, N) for all values of what it takes as known within ``each`` (B, N).
+def prove_block(block: Block, part: Linearised, v: Array, error_bound: Array) -> Radii:
+    """Prove one block at v (B, N) for all values of what it takes as known.
 
     Parameters
     ----------
+    error_bound : (B, N)
+        How far these values may be from those in v.
     part : Linearised
         The block at v. Its system has to have a curvature bound.
     """
     with np.errstate(all="ignore"):
         place = expansion(block.system, v[:, block.variables], part.jacobian, part.inverse)
-    return _position(block, place, each)
+    return _position(block, place, error_bound)
 
 
-def _position(block: Block, place: Expansion, each: Array) -> Radii:
+def _position(block: Block, place: Expansion, error_bound: Array) -> Radii:
     """In the block's own weights; where they do not suffice, in fitted ones."""
-    found = _radii(block, place, each)
+    found = _radii(block, place, error_bound)
     open_ = np.flatnonzero(~found.holds)
     if not len(open_):
         return found
-    fitted = _radii(block, place.take(open_), each[open_], fitted=True)
+    fitted = _radii(block, place.take(open_), error_bound[open_], fitted=True)
     weights = block.system.variable_scale[: len(block.unknowns)]
-    found.holds[open_], found.each[open_] = fitted.holds, fitted.each
-    found.alone[open_] = fitted.alone
-    found.exists[open_] = (fitted.each / weights).max(axis=1)
-    found.unique[open_] = (fitted.alone / weights).min(axis=1)
+    found.holds[open_], found.error_bound[open_] = fitted.holds, fitted.error_bound
+    found.isolation_radius[open_] = fitted.isolation_radius
+    found.existence_radius[open_] = (fitted.error_bound / weights).max(axis=1)
+    found.uniqueness_radius[open_] = (fitted.isolation_radius / weights).min(axis=1)
     return found
 
 
-def _radii(block: Block, place: Expansion, each: Array, fitted: bool = False) -> Radii:
+def _radii(block: Block, place: Expansion, error_bound: Array, fitted: bool = False) -> Radii:
     """In the block's own weights or in fitted ones."""
     n = len(block.unknowns)
     weights = block.system.variable_scale[:n]
     with np.errstate(all="ignore"):
-        majorant = Majorant(place, each[:, block.variables[n:]])
+        majorant = Majorant(place, error_bound[:, block.variables[n:]])
         if fitted:
-            weights = majorant.fitted(weights)
-        return radii(majorant.bounds(weights), weights)
+            weights = majorant.fit_weights(weights)
+        return weighted_radii(majorant.bounds(weights), weights)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Reach:
     """Boxes around B positions with one solution for all inputs of a step.
 
-    ``holds`` (B,): proved for all blocks. ``each`` (B, n): how far the solution may be from the
-    position, unknown by unknown. ``alone`` (B, n): how far all others are, in one unknown at least.
+    ``holds`` (B,): proved for all blocks. ``error_bound`` (B, n): how far the solution may be from
+    the position, unknown by unknown. ``isolation_radius`` (B, n): how far all others are, in one
+    unknown at least.
     """
 
     holds: BoolArray
-    each: Array
-    alone: Array
+    error_bound: Array
+    isolation_radius: Array
 
 
 def reach(
-    solver: BlockSolver, v: Array, spread: Array, places: Sequence[Expansion | None] | None = None
+    solver: BlockSolver,
+    v: Array,
+    input_radius: Array,
+    places: Sequence[Expansion | None] | None = None,
 ) -> Reach:
-    """How far around positions v (B, N) there is one solution for all inputs within ``spread``.
+    """How far around positions v (B, N) one solution exists for all inputs in ``input_radius``.
 
     As :func:`prove`, in weights fitted to each step.
     """
     count = len(v)
-    each = np.zeros((count, solver.variables))
-    each[:, solver.unknowns :] = spread
+    error_bound = np.zeros((count, solver.variables))
+    error_bound[:, solver.unknowns :] = input_radius
     holds = np.ones(count, dtype=bool)
-    alone = np.zeros((count, solver.unknowns))
+    isolation_radius = np.zeros((count, solver.unknowns))
     places = expansions(solver, v) if places is None else places
     for block, place in zip(solver.blocks, places, strict=True):
         if place is None:
             holds[:] = False
             continue
-        found = _radii(block, place, each, fitted=True)
+        found = _radii(block, place, error_bound, fitted=True)
         holds &= found.holds
-        each[:, block.unknowns], alone[:, block.unknowns] = found.each, found.alone
-    return Reach(holds=holds, each=each[:, : solver.unknowns], alone=alone)
+        error_bound[:, block.unknowns], isolation_radius[:, block.unknowns] = (
+            found.error_bound,
+            found.isolation_radius,
+        )
+    return Reach(
+        holds=holds,
+        error_bound=error_bound[:, : solver.unknowns],
+        isolation_radius=isolation_radius,
+    )
 
 
-def links_hold(v: Array, following: Array, reached: Reach, near: Array) -> BoolArray:
+def steps_connected(v: Array, following: Array, reached: Reach, near: Array) -> BoolArray:
     """Whether each step from v to ``following`` is proved to stay on its branch, (B,).
 
     Parameters
@@ -213,7 +239,7 @@ def links_hold(v: Array, following: Array, reached: Reach, near: Array) -> BoolA
     near : (B, N)
         How far the true positions at both ends may be from ``v`` and ``following``.
     """
-    n = reached.alone.shape[1]
-    inside = np.abs(following - v)[:, :n] + near[:, :n] < reached.alone
+    n = reached.isolation_radius.shape[1]
+    inside = np.abs(following - v)[:, :n] + near[:, :n] < reached.isolation_radius
     held: BoolArray = reached.holds & inside.all(axis=1)
     return held

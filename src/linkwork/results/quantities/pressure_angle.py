@@ -16,8 +16,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from linkwork.expression.jets import Jet
-from linkwork.mechanism.contact_shapes import Follower
 from linkwork.mechanism.dyad import Dyad, dyads_of
+from linkwork.mechanism.part.cam import CamOutline, Follower
 from linkwork.results.quantities.definition import (
     UNKNOWN,
     MechanismNames,
@@ -35,7 +35,7 @@ _QUARTER = Jet.constant(np.pi / 2)
 
 def _followers(names: MechanismNames) -> dict[str, Follower]:
     """Followers that touch the cam at one point of their own, by the name of the cam."""
-    followers = names.skeleton.contacts.followers if names.lead else ()
+    followers = names.skeleton.of(Follower) if names.lead else ()
     return {f.name: f for f in followers if f.contact != "flat"}
 
 
@@ -73,8 +73,8 @@ def _line(names: MechanismNames, solved: Solved, guide: str) -> Jet:
 
 def _sliding(names: MechanismNames, solved: Solved, follower: Follower) -> Vector:
     """The velocity of the follower's point against the cam, by the input."""
-    contours = names.skeleton.contacts.contours
-    cam = next(contour for contour in contours if contour.name == follower.name)
+    outlines = names.skeleton.of(CamOutline)
+    cam = next(outline for outline in outlines if outline.name == follower.name)
     turning = solved.own(cam.link)
     arm = solved.place(follower.point) - solved.place(cam.center)
     rate = arm.d1 - 1j * turning.d1 * arm.v

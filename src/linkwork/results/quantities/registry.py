@@ -15,7 +15,7 @@ from linkwork.expression.jets import Jet
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import as_name, canonical, spelled
+from linkwork.foundation.names import as_name, canonical, find_spelling
 from linkwork.results.quantities.definition import (
     UNKNOWN,
     MechanismNames,
@@ -299,14 +299,14 @@ class Quantities:
     def _find(self, name: str) -> Asked:
         whole, rate = Rate.split(name)
         for table in (self.own, self.evidence):
-            own = spelled(whole, table)
+            own = find_spelling(whole, table)
             if own in table and not (rate and table[own].group is Group.EVIDENCE):
                 return _with_rate(table[own], rate)
-        point = spelled(whole, self.names.points)
+        point = find_spelling(whole, self.names.points)
         if rate is not None and point in self.names.points:
             place = Quantity(name=point, kind=Kind.LENGTH)
             return Asked(names=self.names, own=place, group=Group.POINT, rate=rate)
-        own = spelled(whole, self.derived)
+        own = find_spelling(whole, self.derived)
         if own in self.derived:
             return _with_rate(self.derived[own], rate)
         call = _CALL.fullmatch(name)
@@ -330,7 +330,7 @@ class Quantities:
         call = Call.read(text)
         quantity = call.quantity
         if quantity.of_point:
-            point = spelled(call.of, self.names.points)
+            point = find_spelling(call.of, self.names.points)
             if point not in self.names.points:
                 points = choices("points", self.names.points, call.of)
                 raise UnknownNameError(f'there is no point "{call.of}" {points}')

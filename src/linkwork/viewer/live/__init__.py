@@ -1,5 +1,5 @@
-"""The live page: a mechanism file edited in a browser, solved here, saved back with comments.
+"""The live page: edit a mechanism file in a browser; Linkwork solves it and keeps its comments.
 
-``messages`` is what page and program say to each other, ``workbench`` the file being edited,
-``server`` the only part that knows of a network.
+``messages`` translates requests and events, ``workbench`` holds the edited file, ``server`` is the
+only module that uses the network.
 """

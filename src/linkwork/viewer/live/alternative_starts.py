@@ -1,11 +1,12 @@
-"""Where else a sketch can begin: an input at which the mechanism closes, and the points there."""
+"""Alternative starts of a sketch: an input value at which the loops close, and the points there."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 from linkwork.foundation.errors import InputError
-from linkwork.mechanism.linkage import GROUND, Linkage
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.linkage import Linkage
 from linkwork.viewer.live.requests import MovePoint
 from linkwork.viewer.live.solvable import Solvable
 
@@ -44,7 +45,7 @@ def sketch_at(mechanism: Solvable, at: Mapping[str, float]) -> tuple[MovePoint, 
     """
     description = mechanism.description
     if not isinstance(description, Linkage):
-        raise InputError("only the points of a sketch can be put elsewhere")
+        raise InputError("only the points of a sketch can be moved")
     still = description.links[GROUND]
     return tuple(
         MovePoint(point=name, x=x, y=y)

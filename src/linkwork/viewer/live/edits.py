@@ -1,4 +1,4 @@
-"""Every change of a mechanism as a change of its text; the reader judges what comes out."""
+"""Edits of a mechanism as edits of its text; the file reader checks the result."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from functools import singledispatch
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import canonical, spelled
+from linkwork.foundation.names import GROUND, canonical, find_spelling
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import GROUND, PART_KINDS, Linkage
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.quantities import Quantity, quantity_named
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import requests as ask
@@ -53,9 +54,9 @@ def applied(edit: ask.Edit, text: TextEdits, before: Before) -> Followed:
     Raises
     ------
     InputError, UnknownNameError
-        For names that do not exist, or exist already; the text is then worth nothing.
+        For names that do not exist, or exist already; the text is then invalid.
     """
-    raise TypeError(f"{type(edit).__name__} is no change of a file")
+    raise TypeError(f"{type(edit).__name__} is not an edit of a file")
 
 
 @applied.register
@@ -71,8 +72,8 @@ def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
     written = quantity.written(description)
     if isinstance(written, str) and not isinstance(edit.value, str) and not edit.any_formula:
         raise InputError(
-            f'"{quantity.name}" is the formula {written}: change what stands in it, '
-            "or send another formula"
+            f'"{quantity.name}" is the formula {written}: change a dimension in '
+            "it, or send another formula"
         )
     if quantity.table == "lengths" and _move_pivot(quantity, edit.value, text, description):
         return Followed()
@@ -129,7 +130,7 @@ def _(edit: ask.MovePoint, text: TextEdits, before: Before) -> Followed:
     place = complex(edit.x, edit.y)
     if formulas := [c for c in linkage.points[point] if isinstance(c, str)]:
         raise InputError(
-            f'"{point}" stands at a formula, {formulas[0]}: change what stands in it instead'
+            f'"{point}" has the formula {formulas[0]}: change a dimension in it instead'
         )
     _put_place(text, point, place)
     measured = [m for m in linkage.shapes.measured if point in m.points]
@@ -168,7 +169,7 @@ def _put_place(text: TextEdits, point: str, place: complex) -> None:
 
 
 def _known_point(linkage: Linkage, name: str) -> str:
-    own = spelled(name, linkage.points)
+    own = find_spelling(name, linkage.points)
     if own not in linkage.points:
         raise UnknownNameError(
             f'there is no point "{name}" {choices("points", linkage.points, name)}'
@@ -183,7 +184,7 @@ def _(edit: ask.SetInput, text: TextEdits, before: Before) -> Followed:
         raise InputError(f"there is no input {edit.number + 1}: the mechanism has {count}")
     here: tuple[str | int, ...] = ("input", edit.number)
     if (edit.drive is None) != (edit.name is None):
-        raise InputError("what is driven has a kind and a name: send drive and name, or neither")
+        raise InputError("an input has a kind and a name: send drive and name, or neither")
     if edit.drive is not None:
         if edit.drive not in _DRIVES:
             raise UnknownNameError(
@@ -271,7 +272,7 @@ def _(edit: ask.AddPart, text: TextEdits, before: Before) -> Followed:
 @applied.register
 def _(edit: ask.RemovePart, text: TextEdits, before: Before) -> Followed:
     names: list[str] = []
-    for table in PART_KINDS:
+    for table in PARTS:
         for k, row in text.entries(table):
             name = part_name(row)
             if canonical(edit.name) == canonical(name):

@@ -1,4 +1,4 @@
-"""What the page is told: one frozen dataclass per event, ``kind`` is its name in snake case.
+"""Events for the page: one frozen dataclass per event, ``kind`` is its name in snake case.
 
 Numbers are in the file's units; what does not exist is ``None``, never NaN.
 """
@@ -25,6 +25,9 @@ __all__ = [
     "NewtonIterate",
     "NewtonShown",
     "OpenEnd",
+    "PaletteField",
+    "PalettePart",
+    "PaletteShown",
     "PointMoved",
     "PositionFound",
     "ProblemShown",
@@ -92,6 +95,40 @@ class Link:
 
 
 @dataclass(frozen=True, kw_only=True)
+class PaletteField:
+    """One thing to fill in: a key of a table, what it is for, and how it is entered.
+
+    ``entry``: ``text``, ``number``, ``flag``, ``choice`` of some ``words``; the name of a
+    ``point``, ``link`` or ``slider``; several ``points`` or ``links``; ``numbers`` in one line;
+    ``lines`` of numbers, or of words that are ``named`` in this order.
+    """
+
+    name: str
+    doc: str
+    entry: str
+    required: bool
+    words: tuple[str, ...] = ()
+    named: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class PalettePart:
+    """A kind of part: the table of the file where it belongs."""
+
+    table: str
+    title: str
+    doc: str
+    fields: tuple[PaletteField, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PaletteShown:
+    """Every kind of part that can be added, in the order of the tables of a file."""
+
+    parts: tuple[PalettePart, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
 class FileState:
     """The file as it is being edited.
 
@@ -145,7 +182,6 @@ class MotionFound:
     missing: int
     certified: int
     limits: tuple[LimitFound, ...]
-    worst_residual: float | None
     message: str
     page: PageData | None
 
@@ -300,7 +336,8 @@ class Saved:
 
 
 Event = (
-    FileState
+    PaletteShown
+    | FileState
     | MotionFound
     | PositionFound
     | CannotClose

@@ -1,8 +1,8 @@
-"""Who may talk to the live page, decided from the head of a request before anything is read.
+"""Access control of the live page, decided from the header of a request.
 
-The page listens on this machine only, but every web site that is open in a browser of this machine
-can send requests there. So the Host has to be ours (else a foreign name could have been pointed
-here), the Origin too, and the one connection that can do anything needs the token of the address.
+The server listens on this machine only, but every web site that is open in a browser of this
+machine can send requests to it. The Host must be this server's (otherwise a foreign name could
+resolve to this machine), so must the Origin, and the WebSocket needs the token of the address.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The texts that a file has been, one behind the other, to be taken back and done again."""
+"""The history of a file's text, for undo and redo."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ from dataclasses import dataclass
 
 __all__ = ["History"]
 
-_MOST_CHARACTERS = 20_000_000  # of all texts together; the oldest go first
+_MOST_CHARACTERS = 20_000_000  # of all texts together; the oldest texts are dropped first
 
 
 @dataclass(frozen=True)
 class _Step:
-    """A text, and what led to it: ``A B = 50``."""
+    """A text and the change that led to it: ``A B = 50``."""
 
     text: str
     what: str
 
 
 class History:
-    """A line of texts and a place in it.
+    """A sequence of texts and the current place in it.
 
     Parameters
     ----------
@@ -37,17 +37,17 @@ class History:
 
     @property
     def undo_what(self) -> str:
-        """What would be taken back, "" if there is nothing."""
+        """The change that undo takes back; "" if there is none."""
         return self._steps[self._here].what
 
     @property
     def redo_what(self) -> str:
-        """What would be done again, "" if there is nothing."""
+        """The change that redo repeats; "" if there is none."""
         ahead = self._steps[self._here + 1 : self._here + 2]
         return ahead[0].what if ahead else ""
 
     def add(self, text: str, what: str) -> None:
-        """A new text behind this place; what was ahead of it is forgotten."""
+        """Add a text after the current place; later texts are dropped."""
         if text == self.text:
             return
         self._steps[self._here + 1 :] = [_Step(text, what)]
@@ -57,14 +57,14 @@ class History:
             self._here -= 1
 
     def undone(self) -> str | None:
-        """The text before, and there the place is from now on; ``None`` at the first one."""
+        """Go to the previous text and return it; ``None`` at the first one."""
         if not self._here:
             return None
         self._here -= 1
         return self.text
 
     def redone(self) -> str | None:
-        """The text behind, likewise."""
+        """Go to the next text and return it; ``None`` at the last one."""
         if self._here + 1 == len(self._steps):
             return None
         self._here += 1

@@ -1,4 +1,4 @@
-"""The one file that a live page reads and writes, and what others do to it meanwhile."""
+"""The file that a live page reads and writes, and its changes by other programs."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class MechanismFile:
         self._known = self._reported = _digest(text.encode())
 
     def news(self) -> OnDisk | None:
-        """What another program did since this was asked last; ``None``: nothing.
+        """What another program did since the last call; ``None``: nothing.
 
         The content decides, not the date.
         """
@@ -85,7 +85,7 @@ class MechanismFile:
             return b"" if self._stamp_now() is None else b"unreadable"
 
     def write(self, text: str, *, overwrite: bool = False) -> None:
-        """Write the file, wholly or not at all.
+        """Write the file completely or not at all.
 
         Raises
         ------
@@ -106,7 +106,7 @@ class MechanismFile:
         self.accept(text)
 
     def keep_beside(self, text: str) -> Path:
-        """Write a text that was not saved beside the file, over nothing that is there.
+        """Write an unsaved text to a new file next to this one, without overwriting any file.
 
         Raises
         ------
@@ -124,7 +124,9 @@ class MechanismFile:
                 continue
             except OSError as error:
                 raise InputError(f'"{beside}" cannot be written: {error.strerror}') from None
-        raise InputError(f'"{beside}" and all before it exist already: remove some of them')
+        raise InputError(
+            f'"{beside}" and all earlier names exist already: remove some of these files'
+        )
 
     def _stamp_now(self) -> tuple[int, int, int] | None:
         try:

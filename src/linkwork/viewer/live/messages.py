@@ -1,8 +1,8 @@
 """Requests from JSON, strictly, and events to JSON.
 
 A message is an object with its ``kind``, an optional whole number ``id`` that the answers repeat,
-and the fields of its dataclass. Nothing is guessed: what is missing, unknown, of another type, not
-finite or too long is refused with its place in the message.
+and the fields of its dataclass. Nothing is guessed: a field that is missing, unknown, of another
+type, not finite or too long is rejected with its path in the message.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _no_number(text: str) -> NoReturn:
-    _refuse(f"{text} is no number of JSON: send a finite number or null")
+    _refuse(f"{text} is not a number in JSON: send a finite number or null")
 
 
 def _id(entry: Any) -> int | None:
@@ -203,7 +203,7 @@ def _plain(entry: Any, kind: Any, where: str, longest: int) -> Any:
     except OverflowError:
         number = math.inf
     if not math.isfinite(number):
-        _refuse(f"{where}: must be a finite number, got one beyond all numbers")
+        _refuse(f"{where}: must be a finite number, got one that is too large")
     return number
 
 
@@ -213,7 +213,7 @@ def _text(entry: Any, where: str, longest: int) -> str:
     if len(entry) > longest:
         _refuse(f"{where}: has {len(entry)} characters, at most {longest} are read")
     if any("\ud800" <= letter <= "\udfff" for letter in entry):
-        _refuse(f"{where}: has half a letter (a lone surrogate): send whole letters")
+        _refuse(f"{where}: contains a lone surrogate: send valid Unicode")
     return entry
 
 

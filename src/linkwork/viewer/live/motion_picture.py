@@ -1,4 +1,4 @@
-"""The cycle as the front end draws it, renewed quickly while something is dragged."""
+"""The cycle in the form that the front end draws, updated quickly during a drag."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parts that can be added from the page: what has to be filled in, and a part from what was.
+"""Parts that the page can add: the fields of their forms, and a part from a filled-in form.
 
 Tables and keys are those of mechanism files (:mod:`linkwork.textfile.keys`), so that whatever a
 file can hold can be added; the reader judges what comes out.
@@ -8,59 +8,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import NoReturn
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.mechanism.linkage import PART_KINDS
-from linkwork.textfile.keys import LINKAGE, Flag, Key, ListOf, Number, Tables, Text
+from linkwork.foundation.file_keys import Flag, Formula, Key, ListOf, Number, Tables, Text
+from linkwork.mechanism.part.index import PARTS
+from linkwork.viewer.live.events import PaletteField, PalettePart
 
-__all__ = ["PALETTE", "PaletteField", "PalettePart", "Typed", "part_name", "part_of"]
+__all__ = ["PALETTE", "Typed", "part_name", "part_of"]
 
 #: What was typed or chosen: one entry, or several; a row of numbers or of a table is one line,
 #: "10, 20".
 Typed = str | tuple[str, ...]
-
-_TITLES = {
-    "slots": "Pin in slot",
-    "sliders": "Slider",
-    "cylinders": "Cylinder",
-    "welds": "Weld",
-    "gears": "Gear pair",
-    "belts": "Belt or chain",
-    "racks": "Rack and pinion",
-    "rolling": "Rolling wheel",
-    "cams": "Cam",
-    "curves": "Curve",
-    "springs": "Spring",
-}
-
-
-@dataclass(frozen=True, kw_only=True)
-class PaletteField:
-    """One thing to fill in: a key of a table, what it is for, and how it is entered.
-
-    ``entry``: ``text``, ``number``, ``flag``, ``choice`` of some ``words``; the name of a
-    ``point``, ``link`` or ``slider``; several ``points`` or ``links``; ``numbers`` in one line;
-    ``lines`` of numbers, or of words that are ``named`` in this order.
-    """
-
-    name: str
-    doc: str
-    entry: str
-    required: bool
-    words: tuple[str, ...] = ()
-    named: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
-class PalettePart:
-    """A kind of part: the table of the file where it belongs."""
-
-    table: str
-    title: str
-    doc: str
-    fields: tuple[PaletteField, ...]
 
 
 def part_of(table: str, typed: Mapping[str, Typed]) -> dict[str, object]:
@@ -71,11 +30,9 @@ def part_of(table: str, typed: Mapping[str, Typed]) -> dict[str, object]:
     InputError, UnknownNameError
         For a table or key that does not exist, and entries that are not what a key wants.
     """
-    if table not in PART_KINDS:
-        raise UnknownNameError(
-            f'there are no parts "{table}" {choices("parts", PART_KINDS, table)}'
-        )
-    keys = {key.name: key for key in _keys(table)}
+    if table not in PARTS:
+        raise UnknownNameError(f'there are no parts "{table}" {choices("parts", PARTS, table)}')
+    keys = {key.name: key for key in PARTS[table].keys}
     for name in typed:
         if name not in keys:
             raise UnknownNameError(
@@ -92,12 +49,6 @@ def part_name(row: Mapping[str, object]) -> str:
     return str(row.get("name", ""))
 
 
-def _keys(table: str) -> tuple[Key, ...]:
-    kind = next(key.kind for key in LINKAGE.keys if key.name == table)
-    assert isinstance(kind, Tables)
-    return kind.keys
-
-
 def _field(key: Key) -> PaletteField:
     words: tuple[str, ...] = ()
     named: tuple[str, ...] = ()
@@ -106,6 +57,8 @@ def _field(key: Key) -> PaletteField:
             entry = "choice" if words else of or "text"
         case Number():
             entry = "number"
+        case Formula():
+            entry = "text"
         case Flag():
             entry = "flag"
         case ListOf(Text(), noun):
@@ -125,14 +78,8 @@ def _field(key: Key) -> PaletteField:
 
 #: Every kind of part, in the order of the tables of a file.
 PALETTE: tuple[PalettePart, ...] = tuple(
-    PalettePart(
-        table=key.name,
-        title=_TITLES[key.name],
-        doc=key.doc,
-        fields=tuple(map(_field, _keys(key.name))),
-    )
-    for key in LINKAGE.keys
-    if key.name in PART_KINDS
+    PalettePart(table=table, title=kind.title, doc=kind.doc, fields=tuple(map(_field, kind.keys)))
+    for table, kind in PARTS.items()
 )
 
 

@@ -1,4 +1,4 @@
-"""What the page asks: one frozen dataclass per request.
+"""Requests of the page: one frozen dataclass per request.
 
 The name of a class in snake case is the ``kind`` of its message. ``live`` marks changes on the way
 (a slider being dragged): they are shown, and become one step of the history when the last change
@@ -190,7 +190,7 @@ Edit = (
 
 @dataclass(frozen=True, kw_only=True)
 class Together:
-    """Several changes as one step: only what comes out of all of them has to be a mechanism."""
+    """Several changes applied together: only the result of all of them must be a mechanism."""
 
     edits: tuple[Edit, ...]
 
@@ -211,7 +211,7 @@ class SetText:
 
 @dataclass(frozen=True, kw_only=True)
 class SolveAt:
-    """One position at input values in everyday units; none: where the guess stands."""
+    """One position at input values in file units; without values, at the input of the guess."""
 
     at: dict[str, float]
     configuration: str | None = None
@@ -219,14 +219,14 @@ class SolveAt:
 
 @dataclass(frozen=True, kw_only=True)
 class ListConfigurations:
-    """Every way to put the mechanism together at input values; none: the guess's own."""
+    """All configurations at input values; without values, at the input of the guess."""
 
     at: dict[str, float]
 
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonSteps:
-    """Newton-Raphson from a guess of some or all unknowns, everyday units, step by step.
+    """Newton-Raphson from a guess of some or all unknowns, in file units, step by step.
 
     ``full_steps``: the textbook's bare method, whose steps may turn a link as far as they like.
     ``pull``: a point by which the guess is dragged before: one unknown changes so that it comes as
@@ -244,12 +244,12 @@ class NewtonSteps:
 
 @dataclass(frozen=True, kw_only=True)
 class Undo:
-    """The last change back."""
+    """Undo the last change."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Redo:
-    """The last change that was taken back again."""
+    """Redo the last undone change."""
 
 
 @dataclass(frozen=True, kw_only=True)

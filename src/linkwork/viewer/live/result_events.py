@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from linkwork.equations.notation import PlainText
 from linkwork.equations.writing import EquationSheet
 from linkwork.foundation.errors import MechanismError, key_text
-from linkwork.mechanism.contacts import Weld
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import GROUND, PART_KINDS, Linkage
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
 from linkwork.mechanism.quantities import Quantity, quantities
 from linkwork.results.configurations import Configurations
@@ -61,7 +61,6 @@ def motion_found(
             )
             for limit in motion.limits
         ),
-        worst_residual=_number(motion.worst),
         message=message or motion.message,
         page=page,
     )
@@ -209,7 +208,7 @@ def _unit(description: Description, quantity: Quantity, kinds: Mapping[str, str]
 
 
 def unknowns_of(sheet: EquationSheet, description: Description) -> tuple[tell.Unknown, ...]:
-    """The unknowns with their guess, everyday units."""
+    """The unknowns with their guess, in file units."""
     units = {"angle": description.angle.value, "length": description.length}
     scale = {"angle": description.angle.radians}
     equations = sheet.equations
@@ -262,17 +261,14 @@ def parts_of(description: Description) -> tuple[str, ...]:
     """What a linkage is made of besides points and links, by name."""
     if not isinstance(description, Linkage):
         return ()
-    parts = [part for table in PART_KINDS for part in getattr(description, table)]
-    return tuple(" ".join(p.links) if isinstance(p, Weld) else str(p.name) for p in parts)
+    return tuple(part.label for part in description.parts)
 
 
 def drives_of(sheet: EquationSheet, description: Description) -> tuple[tell.Drive, ...]:
     """What could be driven: links, displacements and lengths of a linkage, else any variable."""
     if isinstance(description, Linkage):
         named = [("link", name) for name in description.links if name != GROUND]
-        named += [("slider", slider.name) for slider in description.sliders]
-        named += [("slider", slot.name) for slot in description.slots]
-        named += [("cylinder", part.name) for part in description.cylinders]
+        named += [(part.drive, part.label) for part in description.parts if part.drive]
     else:
         named = [("variable", variable.name) for variable in sheet.equations.variables]
     return tuple(tell.Drive(kind=kind, name=name) for kind, name in named)

@@ -1,4 +1,4 @@
-"""What the live page is made of: fixed files, the same for every mechanism."""
+"""The fixed files of the live page, the same for every mechanism."""
 
 from __future__ import annotations
 

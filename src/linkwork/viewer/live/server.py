@@ -1,4 +1,4 @@
-"""The live page on this machine's own address: one file, one page, one connection."""
+"""The server of the live page, on this machine only: one file, one page, one connection."""
 
 from __future__ import annotations
 
@@ -196,8 +196,8 @@ class LiveServer:
 
 
 _OCCUPIED_MESSAGE = (
-    "another page shows this file already, and two could not edit it together: "
-    "close that one, then load this one again"
+    "another page shows this file already, and only one page can edit it: "
+    "close that page, then reload this page"
 )
 
 
@@ -211,7 +211,7 @@ def _listening(port: int) -> socket.socket:
         found.close()
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(
-            f"port {port} cannot be used: {reason}; leave --port out to take one that is free"
+            f"port {port} cannot be used: {reason}; leave out --port to use a free port"
         ) from None
     return found
 

@@ -1,4 +1,4 @@
-"""The thread in which a workbench works, one request after the other, away from the network."""
+"""The thread that runs a workbench, one request after the other, separate from the network."""
 
 from __future__ import annotations
 
@@ -109,9 +109,7 @@ class Desk:
             _log.exception("a request failed")
             mistake = f"{type(error).__name__}: {error}"
             number = None if request is None else number
-            events = [
-                Refused(message=f"this is a mistake in Linkwork, please report it: {mistake}")
-            ]
+            events = [Refused(message=f"this is an error in Linkwork, please report it: {mistake}")]
         if events or number is not None:
             self._tell(events, number)
 

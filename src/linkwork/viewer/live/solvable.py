@@ -1,4 +1,4 @@
-"""What the live page needs of a mechanism; it is given from outside, for showing never solves."""
+"""The interface of a mechanism that the live page needs; its caller supplies the mechanism."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Solvable(Protocol):
     ) -> Motion:
         """The whole cycle with proofs; ``progress`` may raise to give it up."""
 
-    def sweep_beside(self, neighbour: Motion | None = None) -> Motion:
+    def approximate_sweep(self, neighbour: Motion | None = None) -> Motion:
         """The cycle near that of a neighbouring design, fast and without proofs."""
 
     def configurations(self, at: At = None) -> Configurations:

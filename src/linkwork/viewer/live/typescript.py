@@ -1,4 +1,4 @@
-"""The messages of the live page as TypeScript types: said once, in Python."""
+"""The messages of the live page as TypeScript types, generated from the Python dataclasses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A mechanism file being edited: every change is read, solved and told, nothing is ever lost."""
+"""A mechanism file under edit: every change is read, solved, reported and kept in the history."""
 
 from __future__ import annotations
 
@@ -14,15 +14,14 @@ from linkwork.foundation.status import Status
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Motion
 from linkwork.textfile.text_edits import TextEdits
-from linkwork.viewer.live import events as tell
-from linkwork.viewer.live import requests as ask
-from linkwork.viewer.live import result_events as telling
+from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
 from linkwork.viewer.live.alternative_starts import closing_input, sketch_at
 from linkwork.viewer.live.edits import Before, Followed, applied
 from linkwork.viewer.live.history import History
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
 from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.motion_picture import MotionPicture
+from linkwork.viewer.live.palette import PALETTE
 from linkwork.viewer.live.solvable import Read, Solvable
 
 __all__ = ["GivenUpError", "Workbench"]
@@ -97,12 +96,10 @@ class Workbench:
 
     def opened(self) -> Events:
         """Everything that a page needs to begin."""
-        self._end_drag()
-        conflict = [] if self._conflict is None else [self._conflict]
-        return [self._state(), *self._solved(), *conflict]
+        return [tell.PaletteShown(parts=PALETTE), *self._everything()]
 
     def handle(self, request: ask.Request) -> Events:
-        """Do what is asked and tell what came of it; wrong requests are answered, never raised."""
+        """Carry out a request and send its events; wrong requests are answered, not raised."""
         try:
             if not _goes_on(request, self._drag):
                 self._end_drag()
@@ -122,9 +119,9 @@ class Workbench:
         name = self._file.name
         if news is OnDisk.SAME:
             self._conflict = None
-            return [self._changed(f'"{name}" is again as it was when it was read here')]
+            return [self._changed(f'"{name}" again has the content that was read here')]
         if news is OnDisk.MISSING:
-            message = f'"{name}" has been removed: save it to write it again'
+            message = f'"{name}" has been deleted: save to write it again'
             self._conflict = self._changed(message, missing=True)
             return [self._conflict]
         if self.unsaved:
@@ -152,7 +149,7 @@ class Workbench:
     def _handle(self, request: ask.Request) -> Events:
         if isinstance(request, ask.EDITS):
             return self._edited(request)  # type: ignore[arg-type]
-        raise TypeError(f"{type(request).__name__} is no request")
+        raise TypeError(f"{type(request).__name__} is not a request")
 
     def _edited(self, edit: ask.Edit) -> Events:
         """One change, on the way or final."""
@@ -178,7 +175,7 @@ class Workbench:
         if drag is None or getattr(request, "live", False):
             return []
         self._end_drag()
-        return [] if drag.latest is None else self.opened()
+        return [] if drag.latest is None else self._everything()
 
     @_handle.register
     def _(self, request: ask.Together) -> Events:
@@ -198,13 +195,13 @@ class Workbench:
     @_handle.register
     def _(self, request: ask.Undo) -> Events:
         if self._history.undone() is None:
-            raise InputError("there is nothing to take back")
+            raise InputError("there is nothing to undo")
         return self._went()
 
     @_handle.register
     def _(self, request: ask.Redo) -> Events:
         if self._history.redone() is None:
-            raise InputError("there is nothing to do again")
+            raise InputError("there is nothing to redo")
         return self._went()
 
     @_handle.register
@@ -246,6 +243,12 @@ class Workbench:
         return [telling.newton_shown(shown, guess, mechanism.guessed_points())]
 
     # The text and what is solved from it
+
+    def _everything(self) -> Events:
+        """The file and its motion."""
+        self._end_drag()
+        conflict = [] if self._conflict is None else [self._conflict]
+        return [self._state(), *self._solved(), *conflict]
 
     def _before(self) -> Before:
         """The mechanism as it is, with its points where the start closes."""
@@ -325,7 +328,7 @@ class Workbench:
     def _swept(self, live: bool) -> tuple[Motion, str]:
         mechanism = self._mechanism
         if live:
-            return mechanism.sweep_beside(self._motion), ""
+            return mechanism.approximate_sweep(self._motion), ""
         description = mechanism.description
         rows = [description.rows(which) for which in description.inputs]
         count = max(map(len, rows))

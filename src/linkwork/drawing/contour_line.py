@@ -1,0 +1,35 @@
+"""The line of a contour as it is drawn, and the spoke that shows how its link is turned."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwork.drawing.measures import Measures
+from linkwork.drawing.pose import Pose
+from linkwork.drawing.scene import Polyline, Role, xy
+from linkwork.foundation.arrays import ComplexArray
+from linkwork.mechanism.figures import Contour
+
+__all__ = ["contour_line", "contour_mark"]
+
+_MOST = 400  # points of an outline that are drawn, about: a hundredth of its size apart
+
+
+def contour_line(pose: Pose, contour: Contour) -> ComplexArray:
+    """The points of an outline or curve that are drawn, where they are now."""
+    points = pose.placed(contour)
+    last = len(points) - 1
+    shown = np.unique([*range(0, last, max(1, round(last / _MOST))), last])
+    # A closed outline may end with the point that it began with.
+    again = contour.closed and abs(points[last] - points[0]) <= 1e-9 * float(np.ptp(points.real))
+    found: ComplexArray = points[shown[:-1] if again else shown]
+    return found
+
+
+def contour_mark(pose: Pose, contour: Contour, tone: int, measures: Measures) -> Polyline:
+    """A spoke, so that a body is seen to turn also where its outline is round."""
+    way = np.exp(1j * pose.angle(contour.link))
+    centre = pose.points[contour.center]
+    reach = 0.7 * float(np.abs(np.array(contour.points)).min())
+    ends = (xy(centre + min(measures.pin, 0.5 * reach) * way), xy(centre + reach * way))
+    return Polyline(role=Role.MARK, of=contour.link, tone=tone, points=ends)

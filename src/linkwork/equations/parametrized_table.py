@@ -1,0 +1,127 @@
+"""The same equations driven by another variable.
+
+Near a dead point the input can no longer lead the motion, but a link that moves fast there can. The
+equations stay what they are; the input becomes an unknown and the leading variable becomes known,
+and the block-triangular form follows anew.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.kernels.loop_table import LinearRows, LoopTable, TableSplitter
+from linkwork.numerics.block_solver import Block, BlockSolver
+from linkwork.numerics.continuation.branch_tracking import InputPath
+from linkwork.numerics.continuation.local_parametrization import Parametrization
+from linkwork.numerics.decomposition import block_form
+
+__all__ = ["ParametrizedTable"]
+
+
+class ParametrizedTable:
+    """A table along a path of inputs, solvable with any variable in the lead.
+
+    Parameters
+    ----------
+    table : LoopTable
+        n unknowns and p inputs.
+    path : InputPath
+        How the inputs move in lock-step.
+    parameter : int
+        Number of the input that the path is measured by (0 … p-1).
+    """
+
+    def __init__(self, table: LoopTable, path: InputPath, parameter: int) -> None:
+        self.parameter = table.unknowns + parameter
+        self.table = _lock_inputs(table, path, parameter)
+        self.scale = self.table.variable_scale
+        self.is_angle = self.table.is_angle
+        self.repeats_after = self.table.repeats_after
+        self._splitter = TableSplitter(self.table)
+        self._pattern = self.table.pattern()
+        self._leads: dict[int, Parametrization | None] = {}
+
+    def with_parameter(self, lead: int) -> Parametrization | None:
+        """The equations with one variable known; ``None`` if it does not determine the others."""
+        if lead not in self._leads:
+            self._leads[lead] = self._parametrize(lead)
+        return self._leads[lead]
+
+    def _parametrize(self, lead: int) -> Parametrization | None:
+        table = self.table
+        others = [k for k in range(table.variables) if k != lead]
+        place = {old: new for new, old in enumerate([*others, lead])}
+        loops = table.loops.rows
+        pattern = [[place[k] for k in used if k != lead] for used in self._pattern]
+        rows = [2] * loops + [1] * (len(pattern) - loops)
+        form = block_form(pattern, rows, len(others))
+        if not form.square:
+            return None
+        blocks = []
+        for members, unknowns in form.blocks:
+            mine = [others[k] for k in unknowns]
+            part, known = self._splitter.part(list(members), mine)
+            variables = [place[k] for k in (*mine, *known)]
+            blocks.append(
+                Block(
+                    system=part,
+                    equations=members,
+                    unknowns=np.array(unknowns, dtype=np.intp),
+                    variables=np.array(variables, dtype=np.intp),
+                )
+            )
+        order: IndexArray = np.array([*others, lead], dtype=np.intp)
+        solver = BlockSolver(blocks, len(others), table.variables, table.variable_scale[order])
+        return Parametrization(lead=lead, solver=solver, order=order)
+
+    def jacobian(self, v: Array) -> Array:
+        """The scaled Jacobian by all variables but the path's parameter, (B, m, m)."""
+        table = self.table
+        slope = table.jacobian(v) * table.variable_scale / table.equation_scale[:, None]
+        return np.delete(slope, self.parameter, axis=2)
+
+    def weakening(self, v: Array, rates: Array) -> float:
+        """The rate of the smallest singular value σ of the scaled Jacobian at a position v (N,).
+
+        dσ = uᵀ dJ w with the singular vectors u and w (Golub & Van Loan, Matrix Computations, 8.6),
+        and dJ w is the mixed second derivative of the equations by w and by ``rates`` (N,).
+        """
+        table = self.table
+        left, _, right = np.linalg.svd(self.jacobian(v[None, :])[0])
+        w = np.insert(right[-1], self.parameter, 0.0) * table.variable_scale
+        both = np.stack([rates + w, rates - w])
+        change = 0.25 * np.subtract(*table.second_directional_derivative(np.stack([v, v]), both))
+        return float(left[:, -1] @ (change / table.equation_scale))
+
+
+def _lock_inputs(table: LoopTable, path: InputPath, parameter: int) -> LoopTable:
+    """The table with a linear row for every other input: u_j = origin_j + rate_j t."""
+    n = table.unknowns
+    others = [j for j in range(len(path.rate)) if j != parameter]
+    if not others:
+        return table
+    lines, old = table.linear, len(table.linear.constant)
+    ratio = path.rate / path.rate[parameter]
+    offset = path.origin - ratio * path.origin[parameter]
+    entries = [
+        entry
+        for row, j in enumerate(others)
+        for entry in ((old + row, n + j, 1.0), (old + row, n + parameter, -ratio[j]))
+        if entry[2] != 0.0
+    ]
+    at = 2 * table.loops.rows + old
+    return replace(
+        table,
+        linear=LinearRows(
+            constant=np.concatenate([lines.constant, [-offset[j] for j in others]]),
+            row=np.concatenate([lines.row, [row for row, _, _ in entries]]).astype(np.intp),
+            variable=np.concatenate([lines.variable, [k for _, k, _ in entries]]).astype(np.intp),
+            weight=np.concatenate([lines.weight, [w for _, _, w in entries]]),
+        ),
+        equation_scale=np.insert(
+            table.equation_scale, at, table.variable_scale[[n + j for j in others]]
+        ),
+    )

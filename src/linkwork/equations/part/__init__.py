@@ -1,0 +1,1 @@
+"""Equations of parts: one module for each, named as its part in ``mechanism.part``."""

@@ -1,0 +1,5 @@
+"""A belt ties the angles of its wheels."""
+
+from linkwork.equations.part.wheel_pair import write
+
+__all__ = ["write"]

@@ -1,0 +1,24 @@
+"""The equations of a part are written by the module that has its part's name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+
+from linkwork.equations.frames import Frames
+from linkwork.equations.part_rows import PartRows
+from linkwork.mechanism.description import Key, Problems
+from linkwork.mechanism.part.index import room_of
+from linkwork.mechanism.part.part import Part
+
+__all__ = ["rows_of_parts"]
+
+
+def rows_of_parts(frames: Frames, problems: Problems) -> PartRows:
+    """The rows of all parts of a linkage; ``frames`` gets the places and rods that they add."""
+    rows = PartRows(frames, problems)
+    for key, part in frames.linkage.keyed_parts():
+        module = import_module(f"linkwork.equations.part.{room_of(type(part))}")
+        write: Callable[[Part, Key, PartRows], None] = module.write
+        write(part, key, rows)
+    return rows

@@ -1,0 +1,247 @@
+"""Non-circular gears tie the angles of their wheels by a law ψ(φ) = k φ + g(φ), g periodic."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from fractions import Fraction
+
+import numpy as np
+
+from linkwork.equations.model import LawEquation
+from linkwork.equations.outline import Outline, spline
+from linkwork.equations.part_rows import PartRows
+from linkwork.expression.grammar import parse
+from linkwork.expression.jets import Jet, evaluate
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.lanes import uniform_value
+from linkwork.foundation.names import canonical
+from linkwork.kernels.piecewise import Piecewise
+from linkwork.mechanism.bodies import Bodies
+from linkwork.mechanism.description import Key
+from linkwork.mechanism.part.noncircular_gear import NoncircularGear
+
+__all__ = ["write"]
+
+_PIECES = 360  # of a law that is a formula or a pitch curve, each a polynomial of degree five
+_DRAWN = 720  # points of a pitch curve
+_MOST_LOBES = 12
+_CLOSED = 1e-7  # relative; how well a law closes after one turn of each wheel
+_NEARLY = 1e-4  # the same of a pitch curve by its points
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
+
+
+class _Misfit(Exception):
+    """A law that no pair of closed pitch curves has: the key, and why."""
+
+
+def write(gear: NoncircularGear, key: Key, rows: PartRows) -> None:
+    """q (θ2 - θa) - p (θ1 - θa) - q g(θ1 - θa - start) = constant, k = p/q."""
+    frames, linkage = rows.frames, rows.frames.linkage
+    radians = linkage.angle.radians
+    first, second = gear.wheels
+    inner, at = frames.angles_of([(first, 1.0), (gear.arm, -1.0)])
+    if not inner:
+        rows.held(first, gear.arm, (*key, "wheels"))
+        return
+    try:
+        ratio, rest = _law(gear, linkage)
+        _check_closed(gear, ratio, rest)
+    except _Misfit as misfit:
+        rows.problems.add((*key, misfit.args[0]), misfit.args[1])
+        return
+    p, q = float(ratio.numerator), float(ratio.denominator)
+    weights, held = frames.angles_of([(second, q), (first, -p), (gear.arm, p - q)])
+    offset = at - linkage.numbers(gear.start) * radians
+    law = rest.times(q)
+    if gear.phase is not None:
+        begin = uniform_value(offset - at)  # the law's argument where the first wheel's angle is 0
+        constant = held - q * linkage.numbers(gear.phase) * radians + _at(law, begin)
+    else:
+        angle = sum(weight * frames.start[name] for name, weight in inner.items()) + offset
+        now = sum(weight * frames.start[name] for name, weight in weights.items())
+        constant = _at(law, uniform_value(angle)) - now
+    rows.laws.append(
+        LawEquation(
+            label=gear.name,
+            terms=tuple((canonical(name), weight) for name, weight in weights.items()),
+            constant=uniform_value(constant),
+            law=law,
+            shown=canonical(gear.name),
+            inner=tuple((canonical(name), weight) for name, weight in inner.items()),
+            offset=uniform_value(offset),
+            meaning=f"{gear.name} is what the second wheel is ahead of a uniform turn",
+            kind="angle",
+        )
+    )
+    _draw(gear, ratio, rest, uniform_value(held - constant) / q, rows)
+
+
+def _at(law: Piecewise, x: float) -> float:
+    return float(law(np.array([x]))[0])
+
+
+def _law(gear: NoncircularGear, linkage: Bodies) -> tuple[Fraction, Piecewise]:
+    """The mean ratio k and the periodic rest g of ψ over one turn of φ."""
+    if gear.table:
+        radians = linkage.angle.radians
+        table = np.array([[uniform_value(linkage.numbers(n)) for n in row] for row in gear.table])
+        phi, psi = table.T * radians
+        phi = phi - phi[0]
+        phi[-1] = math.tau
+        ratio = _ratio(psi[-1] - psi[0], "table")
+        rest = psi - psi[0] - float(ratio) * phi
+        rest[-1] = rest[0]
+        begin = float(table[0, 0]) * radians
+        return ratio, _shifted(spline(phi, rest, True), begin)
+    phi = np.linspace(0.0, math.tau, _PIECES + 1)
+    jet = _formula(gear.law, phi, linkage) if gear.law else _rolled(gear, phi, linkage)
+    if not np.all(np.isfinite(jet.v)) or jet.d1.max() >= 0.0:
+        field = "law" if gear.law else "pitch_curve"
+        raise _Misfit(field, "does not fall everywhere: external gears turn against each other")
+    over = float(jet.v[-1] - jet.v[0])
+    if gear.law:
+        ratio = _ratio(over, "law")
+    else:  # points of a curve close only nearly: the rest is spread over the turn
+        ratio = _ratio(over, "pitch_curve", _NEARLY)
+        jet = jet * Jet.constant(float(ratio) * math.tau / over)
+    return ratio, _through(phi, jet, float(ratio))
+
+
+def _ratio(over: float, field: str, within: float = _CLOSED) -> Fraction:
+    """Turns of the second wheel per turn of the first."""
+    turns = over / math.tau
+    found = Fraction(turns).limit_denominator(_MOST_LOBES)
+    if abs(turns - found) > within or not found or abs(found.numerator) > _MOST_LOBES:
+        raise _Misfit(
+            field,
+            f"turns the second wheel by {turns:.8g} of a turn while the first one turns once: that "
+            f"is no ratio of whole numbers up to {_MOST_LOBES}, so the pitch curves do not close",
+        )
+    return found
+
+
+def _formula(law: str | None, phi: Array, linkage: Bodies) -> Jet:
+    """ψ [rad] of a formula with its derivatives by φ [rad]."""
+    radians = linkage.angle.radians
+    names = {
+        name: Jet.constant(uniform_value(number)) for name, number in linkage.numbers.known.items()
+    }
+    one, none = np.full_like(phi, 1.0 / radians), np.zeros_like(phi)
+    names["phi"] = Jet(phi / radians, one, none)
+    with np.errstate(all="ignore"):
+        found = evaluate(parse(str(law)), names, linkage.angle)
+    v, d1, d2 = (
+        np.broadcast_to(part * radians, phi.shape) for part in (found.v, found.d1, found.d2)
+    )
+    return Jet(v, d1, d2)
+
+
+def _rolled(gear: NoncircularGear, phi: Array, linkage: Bodies) -> Jet:
+    """ψ by rolling the pitch curve r(α): ψ' = -r/(d - r) at α = β - φ, β the line of centres."""
+    numbers = linkage.numbers
+    points = [
+        complex(uniform_value(numbers(x)), uniform_value(numbers(y))) for x, y in gear.pitch_curve
+    ]
+    outline = Outline.through(points, closed=True)
+    way = _line_of_centres(gear, linkage)
+    distance, line = abs(way), cmath.phase(way)
+    u = outline.samples(64 * len(points) + 1)
+    z = outline.at(u)
+    around = np.unwrap(np.angle(z))
+    if np.abs(z).min() <= 0.0 or np.diff(around).min() <= 0.0:
+        raise _Misfit("pitch_curve", "is not seen in one direction only once from its centre")
+    if np.abs(z).max() >= distance:
+        raise _Misfit("pitch_curve", f"reaches beyond the other centre, {distance:.6g} away")
+
+    def speeds(angle: Array) -> tuple[Array, Array]:
+        """ψ' and ψ'' at φ."""
+        alpha = around[0] + np.mod(line - angle - around[0], math.tau)
+        place = np.interp(alpha, around, u)
+        for _ in range(4):  # Newton: arg z(u) = α
+            x, y = outline.x.jet(place), outline.y.jet(place)
+            z, z1 = x[0] + 1j * y[0], x[1] + 1j * y[1]
+            place = place - np.angle(z * np.exp(-1j * alpha)) / (z1 / z).imag
+        x, y = outline.x.jet(place), outline.y.jet(place)
+        z, z1 = x[0] + 1j * y[0], x[1] + 1j * y[1]
+        r, r1 = np.abs(z), np.abs(z) * (z1 / z).real / (z1 / z).imag
+        return -r / (distance - r), r1 * distance / (distance - r) ** 2
+
+    half = np.diff(phi) / 2.0
+    middle = (phi[1:] + phi[:-1]) / 2.0
+    inside = speeds((middle[:, None] + half[:, None] * _NODES).ravel())[0].reshape(len(half), -1)
+    psi = np.concatenate([[0.0], np.cumsum(half * (inside @ _WEIGHTS))])
+    return Jet(psi, *speeds(phi))
+
+
+def _line_of_centres(gear: NoncircularGear, linkage: Bodies) -> complex:
+    """From the first centre to the second one in the arm."""
+    a, b = (linkage.shapes.local[gear.arm][center] for center in gear.centers)
+    return complex(uniform_value((b - a).real), uniform_value((b - a).imag))
+
+
+def _through(phi: Array, jet: Jet, ratio: float) -> Piecewise:
+    """Pieces of degree five with the values and two derivatives of ψ - k φ at their ends."""
+    g, g1, g2 = jet.v - jet.v[0] - ratio * phi, jet.d1 - ratio, np.array(jet.d2)
+    g[-1], g1, g2[-1] = g[0], np.array(g1), g2[0]
+    g1[-1] = g1[0]
+    h = np.diff(phi)
+    rise = g[1:] - g[:-1] - h * g1[:-1] - h**2 / 2.0 * g2[:-1]
+    slope = (g1[1:] - g1[:-1] - h * g2[:-1]) * h
+    bend = (g2[1:] - g2[:-1]) * h**2
+    powers = np.stack(
+        [
+            g[:-1],
+            g1[:-1],
+            g2[:-1] / 2.0,
+            (10.0 * rise - 4.0 * slope + bend / 2.0) / h**3,
+            (-15.0 * rise + 7.0 * slope - bend) / h**4,
+            (6.0 * rise - 3.0 * slope + bend / 2.0) / h**5,
+        ],
+        axis=1,
+    )
+    return Piecewise(breaks=phi, powers=powers, sines=np.zeros((len(h), 3)))
+
+
+def _shifted(law: Piecewise, by: float) -> Piecewise:
+    """The function of x - by."""
+    return Piecewise(breaks=law.breaks + by, powers=law.powers, sines=law.sines)
+
+
+def _check_closed(gear: NoncircularGear, ratio: Fraction, rest: Piecewise) -> None:
+    """The second pitch curve closes where g repeats itself with each of its turns."""
+    field = next(f for f in ("law", "table", "pitch_curve") if getattr(gear, f))
+    phi = np.linspace(0.0, math.tau, _DRAWN)
+    if (float(ratio) + rest.jet(phi)[1]).max() >= 0.0:
+        raise _Misfit(field, "does not fall everywhere: external gears turn against each other")
+    turns = abs(ratio.numerator)
+    gap = np.abs(rest(phi) - rest(phi + math.tau / turns)).max()
+    if gap > 1e3 * _CLOSED:
+        raise _Misfit(
+            field,
+            f"turns the second wheel {turns} times while the first one turns "
+            f"{ratio.denominator} times, but not alike: its pitch curve does not close",
+        )
+
+
+def _draw(
+    gear: NoncircularGear, ratio: Fraction, rest: Piecewise, shift: float, rows: PartRows
+) -> None:
+    """Both pitch curves: r1 = -ψ' d/(1 - ψ') and r2 = d - r1 along the line of centres.
+
+    ψ = k φ + g(φ - start) + ``shift`` [rad].
+    """
+    linkage = rows.frames.linkage
+    way, radians = _line_of_centres(gear, linkage), linkage.angle.radians
+    start = uniform_value(linkage.numbers(gear.start)) * radians
+    spans = (1.0, abs(1.0 / ratio))
+    for k, (suffix, span) in enumerate(zip(gear.curves, spans, strict=True)):
+        phi = np.linspace(0.0, math.tau * float(span), _DRAWN)
+        value, slope, _ = rest.jet(phi)
+        steep = float(ratio) + slope
+        radius = (-steep if k == 0 else 1.0) / (1.0 - steep)
+        angle = phi + start
+        if k == 1:
+            angle = float(ratio) * angle + value + shift
+        points = (way if k == 0 else -way) * radius * np.exp(-1j * angle)
+        rows.outlines[f"{gear.name}{suffix}"] = (gear.wheels[k], gear.centers[k], points)

@@ -1,0 +1,20 @@
+"""The pitch line of a rack moves with the circumference of its pinion."""
+
+from __future__ import annotations
+
+from linkwork.equations.part_rows import PartRows
+from linkwork.mechanism.description import Key
+from linkwork.mechanism.part.rack import Rack
+
+__all__ = ["write"]
+
+
+def write(rack: Rack, key: Key, rows: PartRows) -> None:
+    """The rack's pitch line moves with the pinion's circumference."""
+    linkage = rows.frames.linkage
+    slider = rack.guide(linkage)
+    assert slider is not None
+    side = rows.side(slider.on, slider.line, rack.center, (*key, "center"))
+    r = side * linkage.numbers(rack.radius)
+    turns = [(rack.pinion, -r), (slider.on, r)]
+    rows.tie(rack.name, turns, length=(rack.slider, 1.0))

@@ -1,0 +1,43 @@
+"""A wheel that rolls ties its angle to its way on a line, or to the angle of a circle."""
+
+from __future__ import annotations
+
+from linkwork.equations.part.wheel_pair import ratio
+from linkwork.equations.part_rows import PartRows
+from linkwork.mechanism.description import Key
+from linkwork.mechanism.part.rolling import Rolling
+
+__all__ = ["write"]
+
+
+def write(rolling: Rolling, key: Key, rows: PartRows) -> None:
+    """Rolling on a line or on a circle."""
+    if rolling.line is not None:
+        _roll_on_line(rolling, key, rows)
+    else:
+        _roll_on_circle(rolling, rows)
+
+
+def _roll_on_line(rolling: Rolling, key: Key, rows: PartRows) -> None:
+    assert rolling.line is not None
+    frames, linkage = rows.frames, rows.frames.linkage
+    side = rows.side(rolling.on, rolling.line, rolling.center, (*key, "center"))
+    radius = linkage.numbers(rolling.radius)
+    name = f"{rolling.name}_radius"
+    frames.add_guide((rolling.name, rolling.on, rolling.line), rolling.center, side * radius, name)
+    turns = [(rolling.wheel, side * radius), (rolling.on, -side * radius)]
+    rows.tie(rolling.name, turns, length=(rolling.name, 1.0))
+
+
+def _roll_on_circle(rolling: Rolling, rows: PartRows) -> None:
+    """A rod joins the centres; wheel and circle mesh as gears on it."""
+    assert rolling.circle is not None
+    assert rolling.circle_radius is not None
+    frames, numbers = rows.frames, rows.frames.linkage.numbers
+    small, large = numbers(rolling.radius), numbers(rolling.circle_radius)
+    length = abs(large - small) if rolling.inside else large + small
+    a, b = rolling.circle, rolling.center
+    frames.add_rod(rolling.name, (a, b), length)
+    p, q = ratio(large, small)
+    p = -p if rolling.inside else p
+    rows.tie(rolling.name, [(rolling.wheel, q), (rolling.on, p), (rolling.name, -p - q)])

@@ -1,0 +1,14 @@
+"""A slot leads its point along a line."""
+
+from __future__ import annotations
+
+from linkwork.equations.part_rows import PartRows
+from linkwork.mechanism.description import Key
+from linkwork.mechanism.part.slot import Slot
+
+__all__ = ["write"]
+
+
+def write(slot: Slot, key: Key, rows: PartRows) -> None:
+    """The displacement is a length in the frame of the link with the line."""
+    rows.frames.add_guide((slot.name, slot.on, slot.line), slot.point)

@@ -1,0 +1,51 @@
+"""Two wheels that roll on each other, or that a belt joins, tie their angles linearly."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+from linkwork.equations.part_rows import PartRows
+from linkwork.foundation.lanes import choose, is_batched, leader_value, uniform_value
+from linkwork.mechanism.description import Key
+from linkwork.mechanism.part.wheel_pair import WheelPair
+
+__all__ = ["ratio", "write"]
+
+
+_RATIO = 1e-13  # relative: two sizes this near to a ratio of small whole numbers have that ratio
+_LARGEST = 10_000  # of those whole numbers
+
+
+def write(pair: WheelPair, key: Key, rows: PartRows) -> None:
+    """q (θ2 - θa) ± p (θ1 - θa) = constant, p : q = r1 : r2."""
+    numbers = rows.frames.linkage.numbers
+    sizes = pair.radii if pair.radii is not None else pair.teeth
+    assert sizes is not None
+    p, q = ratio(*map(numbers, sizes), whole=pair.teeth is not None)
+    p = -p if pair.together else p
+    phase = None
+    if pair.phase is not None:
+        phase = q * numbers(pair.phase) * rows.frames.linkage.angle.radians
+    first, second = pair.wheels
+    rows.tie(pair.name, [(second, q), (first, p), (pair.arm, -p - q)], total=phase)
+
+
+def ratio(first: float, second: float, *, whole: bool = False) -> tuple[float, float]:
+    """Two sizes as the smallest whole numbers in their ratio, if there are such; else as they are.
+
+    With whole numbers a whole number of turns of one wheel is exactly one of the other.
+    """
+    if is_batched(first) or is_batched(second):
+        p, q = ratio(leader_value(first), leader_value(second), whole=whole)
+        if q == 1.0 and not whole:
+            return uniform_value(first / second), q
+        same = abs(q * first - p * second) <= _RATIO * abs(q * first)
+        return uniform_value(choose(same, p, math.nan)), q
+    if whole:
+        fraction = Fraction(int(first), int(second))
+    else:
+        fraction = Fraction(first / second).limit_denominator(_LARGEST)
+    if fraction > 0 and abs(float(fraction) * second - first) <= _RATIO * first:
+        return float(fraction.numerator), float(fraction.denominator)
+    return first / second, 1.0

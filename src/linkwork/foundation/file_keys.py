@@ -1,0 +1,132 @@
+"""The kinds of keys that tables of files have: what may be written there, said once.
+
+Checks of files and their JSON Schemas are both generated from such keys.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = [
+    "Constant", "Flag", "Formula", "Key", "Kind", "ListOf", "Named", "Number", "PlainNumber",
+    "Several", "Speed", "Table", "Tables", "Text", "Whole",
+]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Constant:
+    """The one whole number allowed."""
+
+    number: int
+
+
+@dataclass(frozen=True)
+class Text:
+    """Text, or one of a few words; ``of`` is what it names: a point, link or slider."""
+
+    words: tuple[str, ...] = ()
+    of: str = ""
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number, or a formula of the named dimensions."""
+
+
+@dataclass(frozen=True)
+class PlainNumber:
+    """A number; no formula."""
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A whole number within bounds."""
+
+    least: int
+    most: int = 2**53
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A formula in quotes; with ``equation`` it has an equals sign."""
+
+    equation: bool = False
+
+
+@dataclass(frozen=True)
+class Speed:
+    """A number, or text with a unit: ``"300 rpm"``."""
+
+
+@dataclass(frozen=True)
+class Flag:
+    """true or false."""
+
+
+@dataclass(frozen=True)
+class ListOf:
+    """A list; ``noun`` is what one entry is called in messages."""
+
+    of: Kind
+    noun: str
+    least: int = 0
+    most: int | None = None
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table whose keys are known."""
+
+    keys: tuple[Key, ...]
+
+
+@dataclass(frozen=True)
+class Tables:
+    """A list of tables, ``[[slots]]``; with ``single`` one plain ``[input]`` will do."""
+
+    keys: tuple[Key, ...]
+    single: bool = False
+
+
+@dataclass(frozen=True)
+class Named:
+    """A table whose keys the author chooses; each key has ``words`` words."""
+
+    of: Kind
+    words: int = 1
+
+
+@dataclass(frozen=True)
+class Several:
+    """One number, a list of numbers, or a table; ``wanted`` says so in a message."""
+
+    many: ListOf
+    table: Table
+    wanted: str
+
+
+Kind = (
+    Constant
+    | Text
+    | Number
+    | PlainNumber
+    | Whole
+    | Formula
+    | Speed
+    | Flag
+    | ListOf
+    | Table
+    | Tables
+    | Named
+    | Several
+)
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key: its name, what may stand there, and one line for people."""
+
+    name: str
+    kind: Kind
+    doc: str
+    required: bool = False

@@ -1,0 +1,38 @@
+"""The rounding of floating-point numbers, and tolerances that several modules share."""
+
+from __future__ import annotations
+
+import numpy as np
+
+__all__ = [
+    "ALMOST_DOUBLE",
+    "ALMOST_REAL",
+    "CLOSER_TANGENT",
+    "EPSILON",
+    "LARGEST_POLISH",
+    "PROOF_SLACK",
+    "RANK_TOLERANCE",
+    "REGULAR_CONDITION",
+    "UNIT_ROUNDOFF",
+]
+
+#: The distance from 1 to the next larger number, 2⁻⁵²: twice the unit roundoff.
+EPSILON = float(np.finfo(float).eps)
+#: The largest relative error of one rounded operation, 2⁻⁵³.
+UNIT_ROUNDOFF = EPSILON / 2.0
+#: A factor that covers the rounding of a proof's own bounds, which are sums of positive numbers.
+PROOF_SLACK = 1.0 + 1e-12
+
+#: Smaller singular values, relative to the largest one of a scaled Jacobian, count as none.
+RANK_TOLERANCE = 1e-9
+#: The condition number up to which a position has rates, and can begin a curve.
+REGULAR_CONDITION = 1e5
+#: Weighted: the furthest that a position moves when its input is made exact.
+LARGEST_POLISH = 1e-6
+#: A position belongs to a tangent of a crossing if its distance from that is at most this part of
+#: its distance from the other one.
+CLOSER_TANGENT = 0.1
+#: A complex solution this near to its mirror image may be a real one.
+ALMOST_REAL = 1e-6
+#: The same of a multiple solution, whose path ends less precisely.
+ALMOST_DOUBLE = 1e-3

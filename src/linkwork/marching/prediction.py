@@ -1,0 +1,49 @@
+"""Predictions of a march: the polynomial through the last nodes and their derivatives."""
+
+from __future__ import annotations
+
+from linkwork.foundation.arrays import Array
+
+__all__ = ["SAME", "hermite_weights", "is_same_spacing", "keep_spacing", "trusted_nodes"]
+
+SAME = 1e-9  # relative: steps so nearly equal share the weights of their prediction
+_FAR = 2.5  # times the step before: further ahead fewer nodes are trusted
+
+
+def trusted_nodes(t: float, times: Array, known: int) -> int:
+    """How many of the ``known`` last nodes, at ``times`` (K,), predict well at t."""
+    step, used = abs(t - times[0]), min(known, len(times))
+    for k in range(len(times) - 1, 0, -1):
+        if used > k and step > _FAR * abs(times[k - 1] - times[k]):
+            used = k
+    return used
+
+
+def hermite_weights(t: float, times: Array, i: int, count: int) -> tuple[float, float]:
+    """Weights at t of the i-th of ``count`` nodes' value and derivative in Hermite's polynomial.
+
+    With the Lagrange basis L_i these are (1 - 2 (t - t_i) L_i'(t_i)) L_i² and (t - t_i) L_i².
+    """
+    basis, slope = 1.0, 0.0
+    for j in range(len(times)):
+        if j < count and j != i:
+            basis *= (t - times[j]) / (times[i] - times[j])
+            slope += 1.0 / (times[i] - times[j])
+    square = basis * basis
+    return (1.0 - 2.0 * slope * (t - times[i])) * square, (t - times[i]) * square
+
+
+def is_same_spacing(step: float, times: Array, spacing: Array) -> bool:
+    """Whether nodes at ``times`` (K,) and the step from the last one have the ``spacing`` (K,)."""
+    near = SAME * abs(step)
+    other = int(not abs(step - spacing[0]) <= near)
+    for k in range(1, len(times)):
+        other += not abs(times[k - 1] - times[k] - spacing[k]) <= near
+    return other == 0
+
+
+def keep_spacing(step: float, times: Array, spacing: Array) -> None:
+    """Note in ``spacing`` (K,) the step and the distances of nodes at ``times`` (K,)."""
+    spacing[0] = step
+    for k in range(1, len(times)):
+        spacing[k] = times[k - 1] - times[k]

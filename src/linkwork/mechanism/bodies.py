@@ -1,0 +1,82 @@
+"""Points, the rigid links that carry them, and the shapes of links: what parts are joined to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.lanes import phase, vector
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.description import Description
+from linkwork.mechanism.dimensions import Number
+
+__all__ = ["Bodies", "Measured", "Shapes"]
+
+
+P = TypeVar("P")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measured:
+    """A dimension that was not given and was measured between sketched points."""
+
+    link: str
+    points: tuple[str, str]
+    length: float
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """Local coordinates of every link's points; real axis from the first to the second point.
+
+    ``local[link][point]`` is complex, in the mechanism's length unit; ground is in absolute
+    coordinates.
+    """
+
+    local: Mapping[str, Mapping[str, complex]] = field(default_factory=dict)
+    measured: tuple[Measured, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bodies(Description):
+    """The rigid links of a mechanism; parts join them.
+
+    Fields as of :class:`~linkwork.mechanism.linkage.Linkage`.
+    """
+
+    points: Mapping[str, tuple[Number, ...]] = FrozenDict()
+    links: Mapping[str, tuple[str, ...]] = FrozenDict()
+    lengths: Mapping[str, Number] = FrozenDict()
+    angles: Mapping[str, Number] = FrozenDict()
+    sketch: bool = False
+    #: The exact shape of every link, as local coordinates, and what was measured.
+    shapes: Shapes = field(init=False, repr=False, compare=False)
+
+    @property
+    def parts(self) -> tuple[object, ...]:
+        """Every part, in the order of the tables of a file."""
+        return ()
+
+    def of(self, kind: type[P]) -> tuple[P, ...]:
+        """The parts of one kind."""
+        return tuple(part for part in self.parts if isinstance(part, kind))
+
+    def sketched(self, point: str) -> complex:
+        """The point's coordinates in ``points`` as x + iy."""
+        x, y = self.points[point]
+        return vector(self.numbers(x), self.numbers(y))
+
+    def bodies_at(self, point: str) -> Iterator[str]:
+        """The links that carry a point, in the file's order."""
+        for link, points in self.links.items():
+            if point in points:
+                yield link
+
+    def sketched_angle(self, link: str) -> float:
+        """The direction of a link in the sketch [rad]; 0 for ground and wheels of one point."""
+        if link == GROUND or len(self.links[link]) < 2:
+            return 0.0
+        first, second = self.links[link][:2]
+        return phase(self.sketched(second) - self.sketched(first))

@@ -1,0 +1,72 @@
+"""An input of a mechanism: what is driven, and over which values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from linkwork.mechanism.dimensions import Number
+
+__all__ = ["Input"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Input:
+    """An input: the driven quantity, its range and its speed.
+
+    Exactly one of ``link``, ``joint``, ``slider``, ``cylinder`` and ``variable`` is given.
+
+    Parameters
+    ----------
+    link : str, optional
+        The link whose angle is driven.
+    joint : str, optional
+        The pin between two links whose relative angle is driven.
+    slider, cylinder : str, optional
+        The slider or slot whose displacement, or the cylinder whose length, is driven.
+    variable : str, optional
+        The driven variable of loop equations.
+    relative_to : str, optional
+        With ``link``: the link from which the angle is measured; by default ground.
+    start, stop, step : number or formula, optional
+        The input values in file units (``from``, ``to``, ``step`` in a file). An angle without them
+        makes one turn in steps of one degree.
+    speed : str or number, optional
+        ``"300 rpm"``, ``"25 rad/s"``, ``"90 deg/s"``, for lengths ``"50 mm/s"``; a number is in
+        file units per second.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Input(link="crank", start=0, stop=90, step=30, speed="300 rpm").column
+    'crank'
+    >>> lw.Input(link="stick", relative_to="boom").column
+    'stick-boom'
+    """
+
+    link: str | None = None
+    joint: str | None = None
+    slider: str | None = None
+    cylinder: str | None = None
+    variable: str | None = None
+    relative_to: str | None = None
+    start: Number | None = None
+    stop: Number | None = None
+    step: Number | None = None
+    speed: Number | None = None
+
+    @property
+    def drives(self) -> tuple[str, str]:
+        """``(kind, name)`` of what is driven; ``("", "")`` if nothing is named."""
+        for kind in ("link", "joint", "slider", "cylinder", "variable"):
+            name: str | None = getattr(self, kind)
+            if name is not None:
+                return kind, name
+        return "", ""
+
+    @property
+    def column(self) -> str:
+        """The name of the input in results: ``crank``, ``stick-boom``, ``s16``."""
+        kind, name = self.drives
+        if kind == "link" and self.relative_to not in (None, "ground"):
+            return f"{name}-{self.relative_to}"
+        return name

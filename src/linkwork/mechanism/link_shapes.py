@@ -1,0 +1,111 @@
+"""The exact shape of every link from its lengths and angles; the sketch decides sides.
+
+A link of n points has 2n - 3 dimensions. Those not given are measured between the sketched points
+and reported; more than 2n - 3 must agree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from linkwork.foundation.lanes import is_batched
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.bodies import Bodies, Measured, Shapes
+from linkwork.mechanism.description import Problems
+from linkwork.mechanism.link_shape import Distance, LinkShape, ShapeError, VertexAngle, place
+
+__all__ = ["link_shapes"]
+
+_AGREE = 1e-9  # relative; given dimensions that say the same thing must agree to this
+
+
+def link_shapes(linkage: Bodies, problems: Problems) -> Shapes:
+    """Shapes of all links; what contradicts itself is added to ``problems``."""
+    local: dict[str, Mapping[str, complex]] = {}
+    measured: list[Measured] = []
+    lengths = {tuple(key.split()): number for key, number in linkage.lengths.items()}
+    angles = {tuple(key.split()): number for key, number in linkage.angles.items()}
+    lengths_at = _by_point(lengths)
+    angles_at = _by_point(angles)
+    for link, points in linkage.links.items():
+        sketch = {point: linkage.sketched(point) for point in points}
+        distances = [
+            Distance(pair[0], pair[1], linkage.numbers(lengths[pair]))
+            for pair in _inside(lengths_at, points)
+        ]
+        vertices = [
+            VertexAngle(a, v, b, linkage.numbers(angles[a, v, b]) * linkage.angle.radians)
+            for a, v, b in _inside(angles_at, points)
+        ]
+        try:
+            if link == GROUND:
+                _check_ground(sketch, distances, vertices)
+                local[link] = sketch
+                continue
+            shape = place(tuple(points), sketch, distances, vertices)
+        except ShapeError as error:
+            problems.add(_key_of(error, link), error.message)
+            continue
+        local[link] = shape.local
+        measured += _measured(link, shape, linkage, problems)
+    return Shapes(local, tuple(measured))
+
+
+def _by_point(table: Mapping[tuple[str, ...], object]) -> dict[str, list[tuple[str, ...]]]:
+    found: dict[str, list[tuple[str, ...]]] = {}
+    for key in table:
+        found.setdefault(key[0], []).append(key)
+    return found
+
+
+def _inside(
+    by_point: Mapping[str, list[tuple[str, ...]]], points: tuple[str, ...]
+) -> list[tuple[str, ...]]:
+    """The keys whose points all lie on one link, in the order of its points."""
+    own = set(points)
+    return [key for point in points for key in by_point.get(point, ()) if own.issuperset(key)]
+
+
+def _key_of(error: ShapeError, link: str) -> tuple[str, ...]:
+    return (error.table, error.key) if error.key else ("links", link)
+
+
+def _check_ground(
+    sketch: Mapping[str, complex], distances: list[Distance], vertices: list[VertexAngle]
+) -> None:
+    """Ground coordinates are exact: a dimension that disagrees is an error."""
+    named: dict[complex, str] = {}
+    varying: list[str] = []
+    for point, place_ in sketch.items():
+        if is_batched(place_):
+            varying.append(point)
+        elif (other := named.setdefault(place_, point)) != point:
+            raise _same_point(other, point)
+    for k, point in enumerate(varying):
+        for other in (*named.values(), *varying[:k]):
+            if sketch[other] == sketch[point]:
+                raise _same_point(*sorted((other, point), key=list(sketch).index))
+    dimensions: list[Distance | VertexAngle] = [*distances, *vertices]
+    for given in dimensions:
+        if not given.agrees(sketch, _AGREE):
+            raise ShapeError(
+                f"ground coordinates are exact and give {given.shown(sketch)}, "
+                f"not {given.amount_text}: change [points] or leave this out",
+                given.table,
+                given.key,
+            )
+
+
+def _same_point(first: str, second: str) -> ShapeError:
+    return ShapeError(f"{first} and {second} of ground are the same point: give it one name")
+
+
+def _measured(link: str, shape: LinkShape, linkage: Bodies, problems: Problems) -> list[Measured]:
+    found = [Measured(link=link, points=(d.a, d.b), length=d.length) for d in shape.measured]
+    if linkage.sketch and found:
+        wanted = ", ".join(f'"{m.points[0]} {m.points[1]}"' for m in found)
+        problems.add(
+            ("links", link),
+            f"needs {wanted} in [lengths]: with sketch = true nothing is measured from [points]",
+        )
+    return found

@@ -1,0 +1,71 @@
+"""The index of parts: every table of parts of a file, in its order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import get_args, get_type_hints
+
+from linkwork.mechanism.bodies import Bodies
+from linkwork.mechanism.description import Key
+from linkwork.mechanism.part.belt import Belt
+from linkwork.mechanism.part.cam import Cam
+from linkwork.mechanism.part.curve import Curve
+from linkwork.mechanism.part.cylinder import Cylinder
+from linkwork.mechanism.part.gear import Gear
+from linkwork.mechanism.part.noncircular_gear import NoncircularGear
+from linkwork.mechanism.part.part import Part
+from linkwork.mechanism.part.rack import Rack
+from linkwork.mechanism.part.rolling import Rolling
+from linkwork.mechanism.part.slider import Slider
+from linkwork.mechanism.part.slot import Slot
+from linkwork.mechanism.part.spring import Spring
+from linkwork.mechanism.part.weld import Weld
+
+__all__ = ["PARTS", "JoinedBodies", "room_of"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Tables:
+    """One field for every table of parts."""
+
+    slots: tuple[Slot, ...] = ()
+    sliders: tuple[Slider, ...] = ()
+    cylinders: tuple[Cylinder, ...] = ()
+    welds: tuple[Weld, ...] = ()
+    gears: tuple[Gear, ...] = ()
+    noncircular_gears: tuple[NoncircularGear, ...] = ()
+    belts: tuple[Belt, ...] = ()
+    racks: tuple[Rack, ...] = ()
+    rolling: tuple[Rolling, ...] = ()
+    cams: tuple[Cam, ...] = ()
+    curves: tuple[Curve, ...] = ()
+    springs: tuple[Spring, ...] = ()
+
+
+#: The kind of part of every table.
+PARTS: Mapping[str, type[Part]] = {
+    table: get_args(kind)[0] for table, kind in get_type_hints(_Tables).items()
+}
+
+
+def room_of(kind: type) -> str:
+    """The module name that a part has in every package: its figures and equations are there too."""
+    return kind.__module__.rpartition(".")[2]
+
+
+@dataclass(frozen=True, kw_only=True)
+class JoinedBodies(_Tables, Bodies):
+    """Rigid links and the parts that join them."""
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        """Every part, in the order of the tables of a file."""
+        return tuple(part for _, part in self.keyed_parts())
+
+    def keyed_parts(self) -> Iterator[tuple[Key, Part]]:
+        """Every part with its key path in a file."""
+        for table in PARTS:
+            for k, part in enumerate(getattr(self, table)):
+                yield (table, k), part

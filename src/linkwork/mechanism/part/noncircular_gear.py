@@ -1,0 +1,146 @@
+"""Non-circular gears: a pair that rolls by its law of angles, such as elliptical gears."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import ClassVar, Self
+
+from linkwork.expression.grammar import parse
+from linkwork.expression.values import value
+from linkwork.foundation.errors import ExpressionError
+from linkwork.foundation.file_keys import Formula, Key, ListOf, Number as NumberKey, Text
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.bodies import Bodies
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.figures import Contour, Figure, Outlines
+from linkwork.mechanism.joint import JointKind
+from linkwork.mechanism.part.curve import COORDINATES, turned_back
+from linkwork.mechanism.part.part import AGREE, Inversion, PartChecks
+from linkwork.mechanism.part.wheel_pair import ARM_KEYS, PHASE_KEY, ArmPair
+
+__all__ = ["NoncircularGear", "PitchCurve"]
+
+_LAWS = ("law", "table", "pitch_curve")
+_PAIRS = ListOf(ListOf(NumberKey(), "angle", 2, 2), "pair", 5)
+
+
+class PitchCurve(Contour):
+    """The pitch curve of one of the wheels."""
+
+    @property
+    def laid_by(self) -> tuple[str, ...]:
+        """The centre is a pin."""
+        return ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class NoncircularGear(ArmPair):
+    """Two external gears that roll on each other by a law of angles ψ(φ).
+
+    φ and ψ are the angles of the first and of the second wheel against the arm; the pitch curve of
+    the first has the radius -ψ'/(1 - ψ') times the distance of the centres where it rolls.
+
+    Parameters
+    ----------
+    wheels, centers, arm, phase
+        As of :class:`~linkwork.mechanism.part.gear.Gear`.
+    law : str, optional
+        ψ as a formula of phi and of dimensions; it falls.
+    table : tuple of (φ, ψ), optional
+        Else pairs of angles over one turn of the first wheel, the first and the last included.
+    pitch_curve : tuple of (x, y), optional
+        Else points of the first wheel's pitch curve, closed, in its own frame about its centre.
+    start : number
+        φ where the formula or the table has its angle 0.
+
+    References
+    ----------
+    F. L. Litvin, A. Fuentes-Aznar, I. Gonzalez-Perez, K. Hayasaka, Noncircular Gears (2009).
+    """
+
+    title = "Non-circular gears"
+    doc = "Two non-circular gears, such as ellipses, by the law of their angles"
+    keys = (
+        Key("name", Text(), "Name of the gear pair", required=True),
+        *ARM_KEYS,
+        Key("law", Formula(), "Angle of the second wheel as a formula of phi, the first one's"),
+        Key("table", _PAIRS, "Or pairs of both angles over one turn of the first wheel"),
+        Key("pitch_curve", COORDINATES, "Or the first wheel's pitch curve about its centre"),
+        Key("start", NumberKey(), "Angle of the first wheel where the law has its 0"),
+        PHASE_KEY,
+    )
+    kind = JointKind("G", 2, "non-circular gear pair")
+    curves: ClassVar[tuple[str, str]] = ("_first", "_second")
+
+    law: str | None = None
+    table: tuple[tuple[Number, Number], ...] = ()
+    pitch_curve: tuple[tuple[Number, Number], ...] = ()
+    start: Number = 0
+
+    def check(self, checks: PartChecks) -> None:
+        """Two wheels on an arm and one law."""
+        super().check(checks)
+        given = [field for field in _LAWS if getattr(self, field)]
+        if len(given) != 1:
+            what = " and ".join(given) or "none of them"
+            checks.add(f"needs one of law, table and pitch_curve, it has {what}")
+            return
+        checks.number(self.start, "start")
+        if self.law is not None:
+            self._check_law(self.law, checks)
+        elif self.table:
+            self._check_table(checks)
+        else:
+            checks.outline(self.pitch_curve, "pitch_curve", closed=True)
+            if self.start != 0:
+                checks.add("is used with law and table only", "start")
+
+    def _check_law(self, law: str, checks: PartChecks) -> None:
+        known = checks.linkage.numbers.known
+        if "phi" in known:
+            checks.add("phi is the angle of the first wheel here: rename the dimension", "law")
+            return
+        try:
+            value(parse(law), {**known, "phi": 0.0}, checks.linkage.angle, law)
+        except ExpressionError as error:
+            if not checks.linkage.numbers.wrong:
+                checks.add(str(error), "law")
+
+    def _check_table(self, checks: PartChecks) -> None:
+        if any(len(pair) != 2 for pair in self.table) or len(self.table) < 5:
+            checks.add("needs at least five pairs of angles", "table")
+            return
+        pairs = [
+            tuple(checks.number(number, "table", k) for number in pair)
+            for k, pair in enumerate(self.table)
+        ]
+        for k, (before, after) in enumerate(pairwise(pairs), 1):
+            if after[0] <= before[0] or after[1] >= before[1]:
+                checks.add("the first angle must rise, the second must fall", "table", k)
+        turn, over = checks.linkage.angle.turn, pairs[-1][0] - pairs[0][0]
+        if abs(over - turn) > AGREE * turn:
+            checks.add(f"covers {over:.10g}: one turn of the first wheel is {turn:g}", "table")
+
+    def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:
+        for suffix in self.curves:
+            name = f"{self.name}{suffix}"
+            if name in outlines:
+                link, center, points = outlines[name]
+                yield PitchCurve(
+                    name=name, link=link, center=center, points=tuple(map(complex, points))
+                )
+
+    def size_of(self, link: str, linkage: Bodies) -> float | None:
+        """Half of the distance of the centres."""
+        return self.distance(linkage) / 2.0 if link in self.wheels else None
+
+    def inverted(self, inversion: Inversion) -> Self:
+        """Angles of the old ground count from the direction of the line that it has now."""
+        same, turn = super().inverted(inversion), inversion.turn
+        if self.pitch_curve:
+            own = turned_back(self.pitch_curve, turn) if self.wheels[0] == GROUND else None
+            return same if own is None else replace(same, pitch_curve=own)
+        shift = turn * ((self.wheels[0] == GROUND) - (self.arm == GROUND))
+        return replace(same, start=inversion.shifted(self.start, shift)) if shift else same

@@ -1,0 +1,123 @@
+"""Rack and pinion: a slider's displacement is rolled off by a pinion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from linkwork.foundation.errors import choices
+from linkwork.foundation.file_keys import Key, Number as NumberKey, Text
+from linkwork.mechanism.bodies import Bodies
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.figures import Disc, Figure, Outlines
+from linkwork.mechanism.joint import JointKind
+from linkwork.mechanism.part.part import LINK, POINT, SLIDER, NamedPart, PartChecks
+from linkwork.mechanism.part.slider import Slider
+
+__all__ = ["Rack", "RackBar"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RackBar(Figure):
+    """The rack that the slider of this name is, and the pinion that meshes with it."""
+
+    slider: str
+    link: str
+    center: str
+    radius: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rack(NamedPart):
+    """A rack and pinion: the displacement of a slider is the rolled arc of the pinion.
+
+    The sketch decides on which side of the rack the pinion is.
+
+    Parameters
+    ----------
+    name : str
+        The name of the rack and pinion.
+    pinion : str
+        The link that turns.
+    center : str
+        The point about which it turns, on the link along which the rack slides.
+    slider : str
+        The name of the slider of the rack.
+    radius : number
+        Pitch radius of the pinion [length].
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Rack(name="mesh", pinion="pinion", center="G", slider="s", radius=20).slider
+    's'
+    >>> motion = lw.example("rack-and-pinion").sweep(start=90, stop=180, step=90)
+    >>> turn = motion["pinion"][0] - motion["pinion"][1]
+    >>> stroke = motion["s"][0] - motion["s"][1]
+    >>> round(float(abs(stroke / turn)) * 180 / 3.141592653589793, 6)
+    20.0
+    """
+
+    title = "Rack and pinion"
+    doc = "A rack that slides and the pinion that drives it"
+    keys = (
+        Key("name", Text(), "Name of the rack and pinion", required=True),
+        Key("pinion", LINK, "The link that turns", required=True),
+        Key("center", POINT, "The point at which it turns", required=True),
+        Key("slider", SLIDER, "The slider of the rack", required=True),
+        Key("radius", NumberKey(), "Pitch radius of the pinion", required=True),
+    )
+    kind = JointKind("G", 2, "rack and pinion")
+
+    pinion: str
+    center: str
+    slider: str
+    radius: Number
+
+    @property
+    def turning(self) -> tuple[str, ...]:
+        return (self.pinion,)
+
+    def guide(self, linkage: Bodies) -> Slider | None:
+        """The slider of the rack."""
+        return next((s for s in linkage.of(Slider) if s.name == self.slider), None)
+
+    def joined(self, linkage: Bodies) -> tuple[str, ...]:
+        slider = self.guide(linkage)
+        assert slider is not None
+        return self.pinion, slider.link
+
+    def check(self, checks: PartChecks) -> None:
+        """A pinion on the link along which the rack slides."""
+        linkage = checks.linkage
+        known = checks.link(self.pinion, "pinion")
+        slider = self.guide(linkage)
+        if slider is None:
+            names = [s.name for s in linkage.of(Slider)]
+            checks.add(
+                f'slider "{self.slider}" is not defined {choices("sliders", names)}', "slider"
+            )
+        checks.positive(self.radius, "radius", "radius")
+        if not known or slider is None:
+            return
+        checks.on(self.center, self.pinion, "center")
+        if self.pinion in (slider.on, slider.link):
+            checks.add(f'"{self.pinion}" cannot be a part of the rack itself', "pinion")
+        elif self.center in linkage.points and self.center not in linkage.links.get(slider.on, ()):
+            checks.add(
+                f'"{slider.on}", along which the rack slides, does not carry {self.center}: a '
+                "pinion that moves against the rack's guide rolls ([[rolling]])",
+                "center",
+            )
+
+    def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:
+        slider, radius = self.guide(linkage), linkage.numbers(self.radius)
+        assert slider is not None
+        yield Disc(name=self.name, link=self.pinion, center=self.center, radius=radius, kind="gear")
+        yield RackBar(
+            name=self.name,
+            slider=self.slider,
+            link=slider.link,
+            center=self.center,
+            radius=radius,
+        )

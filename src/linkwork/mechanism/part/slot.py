@@ -1,0 +1,75 @@
+"""Pin in slot: a point moves along a line of another link."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from linkwork.foundation.file_keys import Key, Text
+from linkwork.mechanism.bodies import Bodies
+from linkwork.mechanism.figures import Figure, Guide, Outlines
+from linkwork.mechanism.joint import Joint, JointKind
+from linkwork.mechanism.part.guide import GuidePart
+from linkwork.mechanism.part.part import LINK, POINT, POINT_PAIR, PartChecks, pinned
+
+__all__ = ["Slot"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slot(GuidePart):
+    """A pin in a slot: a point of one link moves along a line of another link.
+
+    Parameters
+    ----------
+    name : str
+        The displacement, zero at the first point of ``line``, positive towards the second [length].
+    point : str
+        The pin.
+    on : str
+        The link with the slot.
+    line : (str, str)
+        Two points of that link.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Slot(name="s", point="A", on="lever", line=("O4", "Q")).name
+    's'
+    >>> round(lw.example("crank-shaper").solve(at=90)["s"], 6)
+    210.0
+    """
+
+    title = "Pin in slot"
+    doc = "Pin in slot: a point moves along a line of another link"
+    keys = (
+        Key("name", Text(), "Name of the displacement, zero at the first point of the line", True),
+        Key("point", POINT, "The pin: a point of another link", required=True),
+        Key("on", LINK, "The link with the slot", required=True),
+        Key("line", POINT_PAIR, "Two points of that link; positive from first to second", True),
+    )
+    kind = JointKind.PIN_IN_SLOT
+
+    point: str
+
+    @property
+    def point_on_line(self) -> str:
+        return self.point
+
+    @property
+    def guided(self) -> tuple[str, str, str]:
+        return "point", self.point, self.on
+
+    def joint(self, linkage: Bodies) -> Joint:
+        links = (pinned(linkage, self.point), self.on)
+        return Joint(kind=self.kind, name=self.name, links=links, point=self.point)
+
+    def check(self, checks: PartChecks) -> None:
+        checks.line(self.on, self.line)
+        fixed = self.point in checks.linkage.links.get(self.on, ())
+        if checks.defined(self.point, "point") and fixed:
+            checks.add(
+                f'point "{self.point}" is fixed on "{self.on}" and cannot move in its slot', "point"
+            )
+
+    def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:
+        yield Guide(name=self.name, point=self.point, on=self.on, line=self.line)

@@ -1,0 +1,103 @@
+"""Weld: two links that share a point and turn together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
+
+from linkwork.foundation.file_keys import Key, ListOf, Number as NumberKey, Text
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.bodies import Bodies
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.figures import Figure, Outlines
+from linkwork.mechanism.part.part import Inversion, Part, PartChecks, turning_links
+
+__all__ = ["RigidJoint", "Weld"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RigidJoint(Figure):
+    """Two links that are welded together at a point that both carry."""
+
+    over: ClassVar[bool] = True
+
+    links: tuple[str, str]
+    point: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Weld(Part):
+    """A weld: two links share a point and turn together.
+
+    Parameters
+    ----------
+    links : (str, str)
+        The two links.
+    angle : number, optional
+        Angle from the direction of the first link to that of the second [file's angle unit]; by
+        default measured in the sketch.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Weld(links=["pulley", "crank"], angle=0).links
+    ('pulley', 'crank')
+    """
+
+    title = "Weld"
+    doc = "Two links that share a point and turn together"
+    keys = (
+        Key("links", ListOf(Text(), "link", 2, 2), "Two links that share a point", required=True),
+        Key("angle", NumberKey(), "From the first link's direction to the second's"),
+    )
+
+    links: tuple[str, str]
+    angle: Number | None = None
+
+    @property
+    def label(self) -> str:
+        return " ".join(self.links)
+
+    @property
+    def mobility(self) -> int:
+        """The pin of its two links has lost its freedom."""
+        return -1
+
+    def kept_angle(self, linkage: Bodies) -> tuple[str, str, float]:
+        first, second = self.links
+        if self.angle is not None:
+            return second, first, linkage.numbers(self.angle) * linkage.angle.radians
+        return second, first, linkage.sketched_angle(second) - linkage.sketched_angle(first)
+
+    def check(self, checks: PartChecks) -> None:
+        if not checks.two(self.links, "link", "links"):
+            return
+        known = [checks.link(name, "links") for name in self.links]
+        if not all(known):
+            return
+        first, second = (checks.linkage.links[name] for name in self.links)
+        if not set(first) & set(second):
+            checks.add(
+                f"{' and '.join(self.links)} share no point: let both carry the point at which "
+                "they are welded",
+                "links",
+            )
+        directed = {GROUND, *turning_links(checks.linkage)}
+        for name, points in zip(self.links, (first, second), strict=True):
+            if len(points) < 2 and name not in directed:
+                checks.add(
+                    f'"{name}" has only the point {points[0]}, so its direction is not known: '
+                    "make one link of both",
+                    "links",
+                )
+        if self.angle is not None:
+            checks.number(self.angle, "angle")
+
+    def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:
+        first, second = (linkage.links[name] for name in self.links)
+        shared = next(point for point in first if point in second)
+        yield RigidJoint(name=self.label, links=self.links, point=shared)
+
+    def inverted(self, inversion: Inversion) -> Self:
+        return replace(super().inverted(inversion), angle=None)

@@ -1,0 +1,303 @@
+"""All circuits of a mechanism, seeded from its configurations between dead points."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.certification import Certification
+from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.names import canonical
+from linkwork.foundation.rounding import REGULAR_CONDITION
+from linkwork.foundation.short_number import short_number
+from linkwork.foundation.status import Status
+from linkwork.motion import failure as why
+from linkwork.motion.circuit.arcs import Arc, Explorer, positions_near
+from linkwork.motion.circuit.seeding import Seeding
+from linkwork.motion.circuit.weakest import weakest_place
+from linkwork.motion.curve_branches import CurveBranch
+from linkwork.motion.drive import Drive
+from linkwork.motion.limits import change_point_limit, dead_point_limit
+from linkwork.motion.lock_step import lock_step
+from linkwork.motion.model import Model
+from linkwork.motion.motion_of_rows import motion_of_rows
+from linkwork.motion.redundancy import FITS, misfit
+from linkwork.motion.rows import SolvedRows
+from linkwork.numerics.continuation.change_point import Crossing
+from linkwork.numerics.continuation.local_parametrization import same_position
+from linkwork.results.circuits import Branch, Circuit, Circuits
+from linkwork.results.failure import Failure
+from linkwork.results.motion import Motion
+
+__all__ = ["branch_start", "circuits", "is_branch_name"]
+
+_FINE = 8  # positions kept per step of a curve
+
+
+def circuits(
+    model: Model,
+    *,
+    certify: bool = True,
+    progress: Callable[[float], None] | None = None,
+) -> Circuits:
+    """Every circuit as a proved curve, with its branches.
+
+    All configurations at the guess's own input and between any two neighbouring dead points are
+    listed; through each that lies on no circuit yet the curve of positions is followed in both
+    directions, through dead points, and at change points into every branch. Where dead points may
+    be missing from their list, further inputs are looked at.
+
+    Raises
+    ------
+    InputError
+        If the mechanism has no input.
+    """
+    work = _Circuits(model, certify)
+    work.seeding.look(progress)
+    return work.result()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Group:
+    """Arcs that change points join."""
+
+    arcs: tuple[Arc, ...]
+    crossings: tuple[Crossing, ...]
+
+
+class _Circuits:
+    def __init__(self, model: Model, certify: bool) -> None:
+        lead, rate = lock_step(model.rows)
+        self.model, self.certify = model, certify
+        self.drive = Drive.through(model, model.start_inputs, rate, lead)
+        self.leads = self.drive.leads
+        self.explorer = Explorer(self.leads, certify, _FINE)
+        self.seeding = Seeding(self.drive, self.explorer)
+
+    def result(self) -> Circuits:
+        """Circuits in the order found: that of the guess first."""
+        found = [
+            self._circuit(f"circuit {number}", group)
+            for number, group in enumerate(self._groups(), start=1)
+        ]
+        name = self.model.equations.inputs[self.drive.lead].name
+        grade, message = self.seeding.completeness()
+        return Circuits(
+            mechanism=self.model.description.name,
+            circuits=tuple(found),
+            completeness=grade,
+            message=message,
+            input=name,
+            input_unit=self.model.input_units[name],
+            seeded=self.seeding.seeded,
+            failure=None if found else self._failure(),
+        )
+
+    def _failure(self) -> Failure | None:
+        """Why no circuit could be found, as far as the guess's own position tells."""
+        start = self.seeding.start
+        if start is None or not start.status.ok:
+            return None if start is None else start.failure
+        return why.without_circuit(self.model, start.v)
+
+    def _groups(self) -> list[_Group]:
+        """Arcs joined by the change points they share, in the order found."""
+        arcs, crossings = [a for a in self.explorer.arcs if self._fits(a)], self.explorer.crossings
+        owner = list(range(len(arcs)))
+
+        def root(k: int) -> int:
+            while owner[k] != k:
+                k = owner[k]
+            return k
+
+        first: dict[int, int] = {}
+        for k, arc in enumerate(arcs):
+            for crossing in arc.crossings:
+                other = first.setdefault(crossing, k)
+                a, b = sorted((root(k), root(other)))
+                owner[b] = a
+        groups: dict[int, list[int]] = {}
+        for k in range(len(arcs)):
+            groups.setdefault(root(k), []).append(k)
+        return [
+            _Group(
+                arcs=tuple(arcs[k] for k in members),
+                crossings=tuple(
+                    crossings[c] for c in sorted({c for k in members for c in arcs[k].crossings})
+                ),
+            )
+            for members in groups.values()
+        ]
+
+    def _fits(self, arc: Arc) -> bool:
+        """Whether redundant links fit all along an arc."""
+        equations = self.model.equations
+        return all((misfit(equations, branch.v) <= FITS).all() for branch in arc.branches)
+
+    def _circuit(self, name: str, group: _Group) -> Circuit:
+        p, scale = self.leads.parameter, self.drive.unit
+        pieces = [(arc, branch) for arc in group.arcs for branch in arc.branches]
+        branches = [branch for _, branch in pieces]
+        named = tuple(
+            self._branch(f"{name} branch {number}", arc, branch)
+            for number, (arc, branch) in enumerate(pieces, start=1)
+        )
+        ranges = np.array([branch.range(p) for branch in branches]) / scale
+        turns = [turn for arc in group.arcs for walk in arc.walks for turn in walk.turns]
+        end = _end_of(group)
+        motion = self._motion(branches, named)
+        limits = [limit.v for limit in turns] + [limit.v for limit in group.crossings]
+        singular, weakest = (0.0, limits[0]) if limits else weakest_place(self.leads, branches)
+        around = self._around(group) if end.closed else None
+        return Circuit(
+            name=name,
+            end=end,
+            certified=all(arc.certified for arc in group.arcs),
+            input_range=(
+                short_number(float(ranges[:, 0].min())),
+                short_number(float(ranges[:, 1].max())),
+            ),
+            turns=self._turns(around),
+            turning={} if around is None else self._turning(around),
+            branches=named,
+            dead_points=tuple(dead_point_limit(self.drive, turn) for turn in turns),
+            change_points=tuple(
+                change_point_limit(self.drive, crossing) for crossing in group.crossings
+            ),
+            smallest_singular_value=singular,
+            weakest=float(weakest[p] / scale),
+            motion=motion,
+        )
+
+    def _branch(self, name: str, arc: Arc, branch: CurveBranch) -> Branch:
+        low, high = branch.range(self.leads.parameter)
+        scale = self.drive.unit
+        return Branch(
+            name=name,
+            input_range=(short_number(low / scale), short_number(high / scale)),
+            configuration=self._configuration_on(branch),
+            certified=arc.certified,
+            end=arc.end,
+        )
+
+    def _configuration_on(self, branch: CurveBranch) -> str:
+        """The first of the configurations at the guess's input that lies on a branch."""
+        value = float(self.model.start_inputs[self.drive.lead])
+        for here in self._solve_branch(branch, value):
+            for v, name in self.seeding.names:
+                if same_position(self.leads, here, v):
+                    return name
+        return ""
+
+    def _solve_branch(self, branch: CurveBranch, value: float) -> list[Array]:
+        """The positions of a branch at a value of the parameter, whole turns aside."""
+        own = self.leads.with_parameter(self.leads.parameter)
+        found = []
+        for guess in positions_near(self.leads, branch, value):
+            if own is not None:
+                done = own.solver.solve(guess[own.order][None, :])
+                if done.status[0] == Status.CONVERGED.code:
+                    found.append(own.whole(done.v[0]))
+        return found
+
+    def _around(self, group: _Group) -> Array:
+        legs = group.arcs[0].up.curve.legs
+        change: Array = legs[-1].v[-1] - legs[0].v[0]
+        return change
+
+    def _turns(self, around: Array | None) -> int | None:
+        p = self.leads.parameter
+        if around is None or not self.leads.is_angle[p]:
+            return None
+        return abs(round(float(around[p]) / FULL_TURN))
+
+    def _turning(self, around: Array) -> dict[str, int]:
+        """Whole turns of the links, for one turn of the input in its positive direction."""
+        equations = self.model.equations
+        sign = -1.0 if around[self.leads.parameter] < 0.0 else 1.0
+        number = {v.symbol: k for k, v in enumerate(equations.variables)}
+        angles = {v.name: k for k, v in enumerate(equations.variables) if v.kind == "angle"}
+        links = {
+            link: number[angle.variable]
+            for link, angle in equations.links.items()
+            if angle.variable is not None
+        }
+        return {
+            name: round(sign * float(around[k]) / FULL_TURN)
+            for name, k in (links or angles).items()
+        }
+
+    def _motion(self, pieces: Sequence[CurveBranch], names: Sequence[Branch]) -> Motion:
+        model, solver = self.model, self.model.compiled.solver
+        v = np.concatenate([branch.v for branch in pieces])
+        inputs = v[:, solver.unknowns :] / model.input_scale
+        rows = SolvedRows.blank(inputs, solver.variables, Status.CONVERGED)
+        rates = solver.rates(v, self.drive.path.rate)
+        rows.v[:] = v
+        regular = rates.nearness < REGULAR_CONDITION
+        rows.first[regular], rows.second[regular] = rates.first[regular], rates.second[regular]
+        rows.residual[:], rows.condition[:] = solver.residual(v), rates.condition
+        begin = 0
+        for branch, named in zip(pieces, names, strict=True):
+            here = slice(begin, begin + len(branch.v))
+            begin += len(branch.v)
+            rows.branch[here], rows.limit[here] = named.name, branch.limits
+            code = Certification.CERTIFIED if named.certified else Certification.MOTION_NOT_PROVED
+            rows.certification[here] = (code if self.certify else Certification.NOT_ASKED).code
+        return motion_of_rows(model, rows, "", np.zeros(len(v), dtype=bool))
+
+
+def _end_of(group: _Group) -> CircuitEnd:
+    """Of all arcs that which leaves most open; change points where arcs only meet others."""
+    ends = [arc.end for arc in group.arcs]
+    if group.crossings and all(
+        end in (CircuitEnd.CLOSED, CircuitEnd.CHANGE_POINT, CircuitEnd.INPUT_CONSTANT)
+        for end in ends
+    ):
+        return CircuitEnd.CHANGE_POINT
+    return max(ends, key=list(CircuitEnd).index)
+
+
+def is_branch_name(name: str) -> bool:
+    """Whether a name is one of a circuit or of a branch."""
+    return re.fullmatch(r"circuit \d+( branch \d+)?", canonical(name)) is not None
+
+
+def branch_start(model: Model, name: str) -> Model:
+    """The model with a position on a named circuit or branch as its guess.
+
+    At the guess's own input value if the branch comes by there, else where the input leads best.
+
+    Raises
+    ------
+    UnknownNameError
+        With the names that exist.
+    """
+    work = _Circuits(model, False)
+    work.seeding.look(None)
+    known: dict[str, CurveBranch] = {}
+    for number, group in enumerate(work._groups(), start=1):
+        pieces = [branch for arc in group.arcs for branch in arc.branches]
+        known[f"circuit {number}"] = pieces[0]
+        for k, branch in enumerate(pieces, start=1):
+            known[f"circuit {number} branch {k}"] = branch
+    if name not in known:
+        names = [key for key in known if "branch" in key]
+        raise UnknownNameError(
+            f'there is no "{name}" of {model.description.name} {choices("branches", names, name)}'
+        )
+    branch = known[name]
+    here = work._solve_branch(branch, float(model.start_inputs[work.drive.lead]))
+    if not here and branch.ratio == 0.0:
+        raise InputError(f'the input is at rest on "{name}", so no motion can start there')
+    start = here[0] if here else branch.anchor
+    equations = replace(model.equations, start=start)
+    return replace(
+        model, equations=equations, branch=name if "branch" in name else f"{name} branch 1"
+    )

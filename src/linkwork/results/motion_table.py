@@ -1,0 +1,66 @@
+"""The table of a motion: a column for each quantity, a row for each input value."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwork.results.motion import Motion, Series
+from linkwork.results.quantity import Rate
+from linkwork.results.table import Column, Table
+
+__all__ = ["table_of"]
+
+
+def table_of(motion: Motion, *names: str) -> Table:
+    """Columns of a motion: inputs, unknowns, points, outputs, derivatives, rates, evidence.
+
+    ``<name>.d1`` and ``.d2`` are derivatives by the (first) input with angles in radians;
+    ``.velocity`` and ``.acceleration`` appear when the input has a speed.
+
+    Parameters
+    ----------
+    names : str
+        Only these quantities and rates, behind the inputs and before the status.
+
+    Raises
+    ------
+    UnknownNameError
+        With the nearest names.
+    """
+    units = motion.units
+    columns: dict[str, Column] = {}
+    unit_of: dict[str, str] = {}
+
+    def add(name: str, values: Column, unit: str) -> None:
+        columns[name], unit_of[name] = values, unit
+
+    for name, values in motion.inputs.items():
+        add(name, values, motion.input_units[name])
+    if names:
+        for quantity in map(motion.quantity, names):
+            add(quantity.name, motion[quantity.name], quantity.unit)
+        add("status", np.array([status.name for status in motion.status]), "")
+        return Table(columns=columns, units=unit_of, index=next(iter(motion.inputs)))
+    everything: dict[str, Series] = dict(motion.unknowns)
+    everything |= {link: motion.links[link] for link in motion.riding}
+    for x, y in motion.points.values():
+        everything[x.quantity.name], everything[y.quantity.name] = x, y
+    everything |= motion.outputs
+    for name, series in everything.items():
+        add(name, series.value, units.of(series.quantity.kind))
+    asked = [rate for rate in Rate if not (rate.by_time and motion.speed is None)]
+    for pair in (asked[:2], asked[2:]):
+        for name, series in everything.items():
+            kind = series.quantity.kind
+            for rate in pair:
+                values = rate.of(series.first, series.second, motion.speed)
+                unit = rate.unit(kind, units, motion.derivative_unit)
+                add(f"{name}.{rate.value}", values, unit)
+    add("status", np.array([status.name for status in motion.status]), "")
+    add("residual", motion.residual, "")
+    add("iterations", motion.iterations, "")
+    add("condition", motion.condition, "")
+    add("certified", motion.certified, "")
+    add("branch", np.array(motion.branch, dtype=str), "")
+    add("limit", np.array(motion.limit, dtype=str), "")
+    return Table(columns=columns, units=unit_of, index=next(iter(motion.inputs)))
