@@ -205,8 +205,10 @@ class Position:
         """
         asked = self.quantities.find(name)
         asked.check_rate(self.speed)
-        if asked.group is Group.INPUT and asked.rate is None:
-            return self.input[asked.name]
+        if asked.rate is None and asked.row is None:
+            for table in (self.input, self.unknowns, self.links, self.sliders, self.outputs):
+                if asked.name in table:
+                    return table[asked.name]
         if asked.group is Group.EVIDENCE:
             holder = self.certificate if hasattr(self.certificate, asked.name) else self
             number: float | None = getattr(holder, asked.name)

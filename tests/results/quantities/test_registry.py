@@ -20,7 +20,7 @@ from linkwork.foundation.errors import InputError, MechanismError, UnknownNameEr
 from linkwork.results.quantities.index import MOTION_QUANTITIES, ROW_QUANTITIES
 from linkwork.results.quantities.registry import EVIDENCE
 from linkwork.viewer import motion_page
-from linkwork.viewer.packing import unpacked
+from tests.viewer.unpacking import unpacked
 
 ROWS = ["B.transmission", "rocker.mechanical_advantage", "B.curvature", "B.centre.x", "B.centre.y"]
 NUMBERS = [
