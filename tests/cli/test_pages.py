@@ -83,7 +83,7 @@ crank from 0 to 360 deg by 10: 37 positions, 2 more at limits and 35 on further
 branches
   found            70
   out of circuit   4 at 0 to 10, 350 to 360 deg: this circuit does not reach the
-                   input value on any of its branches: the motion turns back at
+                   input value on any of its branches: the motion reverses at
                    the limits reported, ask for values between them
   dead point       crank = 18.1948723388 deg, where loop "O2 A B O4" locks
                    (coupler and rocker in line)
@@ -445,8 +445,8 @@ def test_check_says_what_a_textbook_says(run: Run, folder: Path, name: str, line
 
 def test_check_of_a_loop_that_cannot_close_has_no_grashof_type(run: Run) -> None:
     assert (
-        "  type        no closed loop: crank is 100 mm longer than the sum of the\n"
-        "              other three\n"
+        "  type        no closed loop: crank is 100 mm longer than the sum of the other\n"
+        "              three\n"
     ) in run("check", "open.toml").stdout
 
 

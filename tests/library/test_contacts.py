@@ -77,6 +77,20 @@ def test_elliptical_gears_roll_on_each_other_about_their_foci() -> None:
         same(min(sums, key=lambda s: float(np.ptp(s))), 100, 100, 1e-11)
 
 
+@law("oval-gears")
+def test_oval_gears_turn_by_the_law_of_their_pitch_curves() -> None:
+    """tan(ψ - 90°) = -(1 + e)/(1 - e) tan φ; both are r = p/(1 - e cos 2α), to 1e-4."""
+    motion, e = motion_of("oval-gears"), 0.25
+    first, second = degrees(motion, "first"), degrees(motion, "second")
+    share = (1 + e) / (1 - e)
+    law = np.arctan2(share * np.sin(first), np.cos(first))
+    same(np.exp(1j * second), 1j * np.exp(-1j * law), 1, 1e-4)
+    for curve in motion.skeleton.of(PitchCurve):
+        points = np.array(curve.points)
+        expected = 30 * (1 - e**2) / (1 - e * np.cos(2 * np.angle(points)))
+        same(np.abs(points), expected, 30, 2e-4)
+
+
 @law("geared-five-bar")
 def test_geared_five_bar_closes_over_cranks_of_ratio_two() -> None:
     """right = 30° - 2·left; C is the left one of the points 130 from A and 120 from B."""

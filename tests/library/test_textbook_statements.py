@@ -86,6 +86,7 @@ TEXTBOOK = {
     ),
     "double-wishbone": (1, 1, "four-bar chain", "triple-rocker (RRR2): not Grashof", 2),
     "eccentric-cam": (1, 1, "three-link chain with 1 cam", "", None),
+    "elliptical-gears": (1, 1, "three-link chain with 1 non-circular gear pair", "", None),
     "evans": (1, 1, "four-bar chain", "triple-rocker (RRR1): not Grashof", 2),
     "excavator": (
         3, 3, "12-link chain with 3 degrees of freedom, 3 prismatic joints, 1 multiple pin",
@@ -107,6 +108,7 @@ TEXTBOOK = {
         1, 1, "slider-crank chain (RRRP)",
         "oscillating cylinder: the driven link turns fully", 2,
     ),
+    "oval-gears": (1, 1, "three-link chain with 1 non-circular gear pair", "", None),
     "pantograph": (
         1, 1, "eight-link chain, 1 multiple pin",
         "its loop ground, crank, coupler, rocker: crank-rocker (GCRR): Grashof", 2,

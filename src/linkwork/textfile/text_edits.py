@@ -54,10 +54,8 @@ class TextEdits:
         UnknownNameError
             If there is nothing.
         """
-        place = self._found(path)
-        if place is None:
-            raise UnknownNameError(f"{key_text(path)} is not in the file")
-        entry = place[0][place[1]]
+        holder, key = self._existing(path)
+        entry = holder[key]
         return entry.unwrap() if hasattr(entry, "unwrap") else entry
 
     def keys(self, path: KeyPath) -> list[str]:
@@ -118,13 +116,16 @@ class TextEdits:
         UnknownNameError
             If there is nothing.
         """
-        place = self._found(path)
-        if place is None:
-            raise UnknownNameError(f"{key_text(path)} is not in the file")
-        holder, key = place
+        holder, key = self._existing(path)
         del holder[key]
         if len(path) > 1 and not len(holder) and holder is not self._document:
             self.remove(path[:-1])
+
+    def _existing(self, path: KeyPath) -> tuple[Any, Any]:
+        found = self._found(path)
+        if found is None:
+            raise UnknownNameError(f"{key_text(path)} is not in the file")
+        return found
 
     def _found(self, path: Sequence[str | int]) -> tuple[Any, Any] | None:
         """The holder of what stands at a path and its own key there."""

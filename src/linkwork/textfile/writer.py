@@ -163,16 +163,16 @@ def _add(document: TOMLDocument, name: str, table: dict[str, Any] | list[dict[st
 def _filled(entries: Mapping[str, Any]) -> Any:
     import tomlkit
 
-    table = tomlkit.table()
-    for key, entry in entries.items():
-        table.add(key, _plain(entry))
-    return table
+    return _with_entries(tomlkit.table(), entries)
 
 
 def _inline(entries: Mapping[str, Any]) -> Any:
     import tomlkit
 
-    table = tomlkit.inline_table()
+    return _with_entries(tomlkit.inline_table(), entries)
+
+
+def _with_entries(table: Any, entries: Mapping[str, Any]) -> Any:
     for key, entry in entries.items():
         table.add(key, _plain(entry))
     return table

@@ -94,7 +94,7 @@ def test_a_measured_length_becomes_a_given_one(bench: Workbench) -> None:
 def test_a_number_that_is_a_formula_is_not_written_over(bench: Workbench) -> None:
     refused = only(bench.handle(ask.SetNumber(name="O2 A", value=50)), tell.Refused)
     assert refused.message == (
-        '"O2 A" is the formula a: change what stands in it, or send another formula'
+        '"O2 A" is the formula a: change a dimension in it, or send another formula'
     )
     state = only(bench.handle(ask.SetNumber(name="O2 A", value="a + 1")), tell.FileState)
     assert '"O2 A" = "a + 1"' in state.text

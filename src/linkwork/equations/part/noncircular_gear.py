@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
@@ -13,8 +14,9 @@ from linkwork.equations.outline import Outline, spline
 from linkwork.equations.part_rows import PartRows
 from linkwork.expression.grammar import parse
 from linkwork.expression.jets import Jet, evaluate
+from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.lanes import uniform_value
+from linkwork.foundation.lanes import leader_value, uniform_value
 from linkwork.foundation.names import canonical
 from linkwork.kernels.piecewise import Piecewise
 from linkwork.mechanism.bodies import Bodies
@@ -124,13 +126,13 @@ def _ratio(over: float, field: str, within: float = _CLOSED) -> Fraction:
 def _formula(law: str | None, phi: Array, linkage: Bodies) -> Jet:
     """ψ [rad] of a formula with its derivatives by φ [rad]."""
     radians = linkage.angle.radians
-    names = {
-        name: Jet.constant(uniform_value(number)) for name, number in linkage.numbers.known.items()
-    }
+    tree, known = parse(str(law)), linkage.numbers.known
+    used = {node.name for node in names_in(tree)} & known.keys()
+    names = {name: Jet.constant(uniform_value(known[name])) for name in used}
     one, none = np.full_like(phi, 1.0 / radians), np.zeros_like(phi)
     names["phi"] = Jet(phi / radians, one, none)
     with np.errstate(all="ignore"):
-        found = evaluate(parse(str(law)), names, linkage.angle)
+        found = evaluate(tree, names, linkage.angle)
     v, d1, d2 = (
         np.broadcast_to(part * radians, phi.shape) for part in (found.v, found.d1, found.d2)
     )
@@ -144,7 +146,7 @@ def _rolled(gear: NoncircularGear, phi: Array, linkage: Bodies) -> Jet:
         complex(uniform_value(numbers(x)), uniform_value(numbers(y))) for x, y in gear.pitch_curve
     ]
     outline = Outline.through(points, closed=True)
-    way = _line_of_centres(gear, linkage)
+    way = _line_of_centres(gear, linkage, uniform_value)
     distance, line = abs(way), cmath.phase(way)
     u = outline.samples(64 * len(points) + 1)
     z = outline.at(u)
@@ -174,10 +176,12 @@ def _rolled(gear: NoncircularGear, phi: Array, linkage: Bodies) -> Jet:
     return Jet(psi, *speeds(phi))
 
 
-def _line_of_centres(gear: NoncircularGear, linkage: Bodies) -> complex:
+def _line_of_centres(
+    gear: NoncircularGear, linkage: Bodies, one: Callable[[float], float]
+) -> complex:
     """From the first centre to the second one in the arm."""
     a, b = (linkage.shapes.local[gear.arm][center] for center in gear.centers)
-    return complex(uniform_value((b - a).real), uniform_value((b - a).imag))
+    return complex(one((b - a).real), one((b - a).imag))
 
 
 def _through(phi: Array, jet: Jet, ratio: float) -> Piecewise:
@@ -232,7 +236,8 @@ def _draw(
     ψ = k φ + g(φ - start) + ``shift`` [rad].
     """
     linkage = rows.frames.linkage
-    way, radians = _line_of_centres(gear, linkage), linkage.angle.radians
+    # families draw nothing: any of their designs will do
+    way, radians = _line_of_centres(gear, linkage, leader_value), linkage.angle.radians
     start = uniform_value(linkage.numbers(gear.start)) * radians
     spans = (1.0, abs(1.0 / ratio))
     for k, (suffix, span) in enumerate(zip(gear.curves, spans, strict=True)):

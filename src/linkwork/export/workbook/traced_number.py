@@ -61,7 +61,7 @@ class Trace(Consensus):
         """A real number with its formula."""
         return cast(float, TracedNumber(np.array([value]), self, form, LinearForm()))
 
-    def picked(self, values: AnyArray) -> Any:
+    def pick(self, values: AnyArray) -> Any:
         """One of two plain numbers."""
         return self.number(values[0], LinearForm(float(values[0])))
 
@@ -96,7 +96,7 @@ class TracedNumber(Lanes):
         z = complex(other)
         return self._made([other], LinearForm(z.real), LinearForm(z.imag))
 
-    def applied(self, function: Callable[..., Any], *numbers: object) -> Lanes:
+    def apply(self, function: Callable[..., Any], *numbers: object) -> Lanes:
         """A function for which there is a formula."""
         if function is np.where:
             return self._chosen(*numbers)
@@ -114,7 +114,7 @@ class TracedNumber(Lanes):
         same = abs(complex(taken.values[0]) - complex(other.values[0])) <= _SAME
         return other if plain and same else taken
 
-    def settled(self) -> Any:
+    def uniform_value(self) -> Any:
         """The plain number, noted as such."""
         if not self.re.fixed:
             self.consensus.settled.add(self.re.node)

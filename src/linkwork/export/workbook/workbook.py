@@ -112,8 +112,8 @@ def _check(model: Model, motion: Motion) -> None:
     names = [v.name for v in model.equations.inputs]
     if motion.mechanism != model.description.name or list(motion.inputs) != names:
         raise InputError(
-            f'the motion belongs to "{motion.mechanism}", not of "{model.description.name}": '
-            "give the mechanism's own sweep"
+            f'the motion belongs to "{motion.mechanism}", not to "{model.description.name}": '
+            "give a sweep of this mechanism"
         )
     rows = int(motion.asked.sum())
     if rows > _MOST_ROWS:

@@ -28,20 +28,20 @@ __all__ = ["PARTS", "JoinedBodies", "room_of"]
 
 @dataclass(frozen=True, kw_only=True)
 class _Tables:
-    """One field for every table of parts."""
+    """One field for every table of parts; type hints give all fields, most have no other reader."""
 
     slots: tuple[Slot, ...] = ()
     sliders: tuple[Slider, ...] = ()
     cylinders: tuple[Cylinder, ...] = ()
     welds: tuple[Weld, ...] = ()
-    gears: tuple[Gear, ...] = ()
-    noncircular_gears: tuple[NoncircularGear, ...] = ()
-    belts: tuple[Belt, ...] = ()
-    racks: tuple[Rack, ...] = ()
+    gears: tuple[Gear, ...] = ()  # noqa: V107
+    noncircular_gears: tuple[NoncircularGear, ...] = ()  # noqa: V107
+    belts: tuple[Belt, ...] = ()  # noqa: V107
+    racks: tuple[Rack, ...] = ()  # noqa: V107
     rolling: tuple[Rolling, ...] = ()
     cams: tuple[Cam, ...] = ()
     curves: tuple[Curve, ...] = ()
-    springs: tuple[Spring, ...] = ()
+    springs: tuple[Spring, ...] = ()  # noqa: V107
 
 
 #: The kind of part of every table.

@@ -58,6 +58,13 @@ class NoncircularGear(ArmPair):
     References
     ----------
     F. L. Litvin, A. Fuentes-Aznar, I. Gonzalez-Perez, K. Hayasaka, Noncircular Gears (2009).
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> motion = lw.example("elliptical-gears").sweep(step=90)
+    >>> (motion["second"] - motion["second"][0]).round(1)
+    array([   0. , -133.6, -180. , -226.4, -360. ])
     """
 
     title = "Non-circular gears"
