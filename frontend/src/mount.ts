@@ -316,11 +316,12 @@ class Page implements Mounted {
     return box;
   }
 
-  /** What is plotted at first: outputs before unknowns, lengths before angles. */
+  /** What is plotted at first: outputs, unknowns, then what follows from them; lengths before angles. */
   private plotted(): string[] {
     const columns = this.data.motions[0]!.columns.slice(1);
+    const groups = ["output", "unknown", "derived"];
     const rank = (k: number): number =>
-      (columns[k]!.group === "output" ? 0 : 2) + (columns[k]!.unit === "deg" ? 1 : 0);
+      2 * groups.indexOf(columns[k]!.group) + (columns[k]!.unit === "deg" ? 1 : 0);
     const ordered = columns.map((_, k) => k).sort((a, b) => rank(a) - rank(b) || a - b);
     return ordered.slice(0, 2).map((k) => columns[k]!.name);
   }

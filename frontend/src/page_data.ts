@@ -1,6 +1,6 @@
 // Written by scripts/frontend types from src/linkwork/viewer/page_data.py.
 
-/** A quantity over the rows: its name as printed, its unit; `group` says where it is listed: `input`, `unknown`, `output`. */
+/** A quantity over the rows: its name as printed, its unit; `group` says where it is listed: `input`, `unknown`, `output`, `derived`. */
 export interface Column {
   readonly name: string;
   readonly shown: string;

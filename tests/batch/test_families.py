@@ -35,23 +35,25 @@ def motion(family: Family) -> FamilyMotion:
 
 
 def test_reductions_leave_out_rows_without_a_position(family: Family, motion: FamilyMotion) -> None:
-    found = family.reduced({"B.x": ("min", "max", "mean", "stroke")})
+    names = [f"{word}(B.x)" for word in ("min", "max", "mean", "stroke")]
+    found = family.reduced(names)
     values = motion["B.x"]
     assert np.isnan(values[2]).any()
     for k in range(len(family)):
         there = values[k][~np.isnan(values[k])]
         if not len(there):
-            for name in ("min", "max", "mean", "stroke"):
-                assert math.isnan(found[f"B.x.{name}"][k])
+            for name in names:
+                assert math.isnan(found[name][k])
             continue
-        assert found["B.x.min"][k] == there.min()
-        assert found["B.x.max"][k] == there.max()
-        assert found["B.x.stroke"][k] == there.max() - there.min()
-        assert found["B.x.mean"][k] == pytest.approx(there.mean(), rel=1e-12)
+        assert found["min(B.x)"][k] == there.min()
+        assert found["max(B.x)"][k] == there.max()
+        assert found["stroke(B.x)"][k] == there.max() - there.min()
+        assert found["mean(B.x)"][k] == pytest.approx(there.mean(), rel=1e-12)
     np.testing.assert_array_equal(found["found"], motion.found.sum(axis=1))
     np.testing.assert_array_equal(found["certified"], motion.certified.sum(axis=1))
-    named = ["B.x.min", "B.x.max", "B.x.mean", "B.x.stroke", "found", "certified"]
-    assert list(found) == [*named, "limit.lower", "limit.upper"]
+    assert list(found) == [*names, "found", "certified", "limit.lower", "limit.upper"]
+    for name in names:
+        np.testing.assert_allclose(motion.value(name), found[name], rtol=1e-12)
     np.testing.assert_array_equal(found["limit.lower"], motion.limits.lower)
     np.testing.assert_array_equal(found["limit.upper"], motion.limits.upper)
 
@@ -61,35 +63,46 @@ def test_reductions_may_be_functions_and_stand_alone(family: Family, motion: Fam
         return values[:, -1]
 
     found = family.reduced(
-        {"rocker": last, "B.y": "max", "coupler": (last, lambda values: values[:, 0])},
+        {"rocker": last, "coupler": (last, lambda values: values[:, 0])},
         certify=False,
     )
     np.testing.assert_allclose(found["rocker.last"], motion["rocker"][:, -1], rtol=0, atol=1e-9)
     np.testing.assert_allclose(found["coupler.<lambda>"], motion["coupler"][:, 0], atol=1e-9)
-    assert "B.y.max" in found
     assert not found["certified"].any()
 
 
 def test_reductions_do_not_depend_on_the_parts(
     family: Family, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    whole = family.reduced({"rocker": ("min", "mean")})
+    whole = family.reduced(["min(rocker)", "mean(rocker)"])
     monkeypatch.setattr("linkwork.batch.family._PART", 4)
     monkeypatch.setattr(Family.parts, "__defaults__", (4,))
-    parted = family.reduced({"rocker": ("min", "mean")})
+    parted = family.reduced(["min(rocker)", "mean(rocker)"])
     for key, values in whole.items():
         np.testing.assert_allclose(parted[key], values, rtol=0, atol=1e-12, err_msg=key)
 
 
 def test_reductions_of_no_use_are_refused(family: Family) -> None:
-    told = 'there is no reduction "median" (there are: min, max, mean, stroke)'
+    told = (
+        'there is no number "men" of a motion '
+        "(nearest: mean, min, max; all: linkwork quantities FILE)"
+    )
     with pytest.raises(InputError, match=re.escape(told)):
-        family.reduced({"rocker": "median"})
+        family.reduced(["men(rocker)"])
     with pytest.raises(UnknownNameError, match='there is no "rokcer"'):
-        family.take(slice(0)).reduced({"rokcer": "max"})
+        family.take(slice(0)).reduced(["max(rokcer)"])
+    with pytest.raises(InputError, match=re.escape('(write "stroke(rocker)")')):
+        family.reduced("rocker.stroke")
     told = "rocker.<lambda> needs one number per design (6,), got (6, 361)"
     with pytest.raises(InputError, match=re.escape(told)):
         family.reduced({"rocker": lambda values: values})
+
+
+def test_reductions_in_a_mapping_are_deprecated(family: Family) -> None:
+    with pytest.warns(DeprecationWarning, match=re.escape('family.reduced(["stroke(rocker)"])')):
+        found = family.reduced({"rocker": "stroke"})
+    new = family.reduced("stroke(rocker)")
+    np.testing.assert_array_equal(found["rocker.stroke"], new["stroke(rocker)"])
 
 
 # ------------------------------------------------------------------ parts
@@ -122,9 +135,9 @@ def test_no_designs_have_no_motions() -> None:
     assert motion.status.shape == motion["rocker"].shape == (0, 361)
     assert motion.counts == {}
     assert list(none.parts()) == []
-    found = none.reduced({"rocker": ("min", "stroke")})
+    found = none.reduced(["min(rocker)", "stroke(rocker)"])
     assert {key: values.shape for key, values in found.items()} == dict.fromkeys(
-        ("rocker.min", "rocker.stroke", "found", "certified", "limit.lower", "limit.upper"), (0,)
+        ("min(rocker)", "stroke(rocker)", "found", "certified", "limit.lower", "limit.upper"), (0,)
     )
 
 

@@ -132,7 +132,7 @@ def test_without_a_card_the_message_says_that_the_processor_serves(
     for ask in (
         lambda: family().sweep(device="gpu"),
         lambda: family().parts(device="gpu"),
-        lambda: family().reduced({"B.x": "min"}, device="gpu"),
+        lambda: family().reduced(["min(B.x)"], device="gpu"),
     ):
         with pytest.raises(InputError) as caught:
             ask()

@@ -251,4 +251,4 @@ def test_what_to_draw_without_a_picture_ends_with_2(run: Run) -> None:
 def test_an_unknown_quantity_is_answered_with_coordinates_too(run: Run) -> None:
     done = run("sweep", "four-bar.toml", "--limits-of", "B.z")
     assert done.exit_code == 2
-    assert '"B.z" (names: B.' in done.stderr
+    assert '"B.z" (nearest: B.y, B.x, ' in done.stderr

@@ -252,6 +252,7 @@ def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
         "check",
         "equations",
         "solve",
+        "quantities",
         "sweep",
         "configurations",
         "circuits",
@@ -364,8 +365,8 @@ def test_sweep_tells_which_ways_and_names_there_are(run: Run) -> None:
     name = run("sweep", "parallelogram.toml", "--limits-of", "roker")
     assert name.exit_code == 2
     assert name.stderr == (
-        'Error: there is no "roker" (names: rocker, coupler, crank, O2.x, O2.y, A.x, A.y,\n'
-        "  B.x, … 3 more)\n"
+        'Error: there is no "roker" (nearest: rocker, coupler, crank; all: linkwork\n'
+        "  quantities FILE)\n"
     )
 
 

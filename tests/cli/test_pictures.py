@@ -294,8 +294,8 @@ def test_unknowns_that_are_left_out_are_told(
     [
         (
             "roker",
-            'Error: there is no "roker" (names: rocker, coupler, crank, mu, O2.x, O2.y, A.x,\n'
-            "  A.y, … 6 more)\n",
+            'Error: there is no "roker" (nearest: rocker, coupler, crank; all: linkwork\n'
+            "  quantities FILE)\n",
         ),
         (
             "crank",

@@ -64,8 +64,8 @@ def test_rows_without_a_position_are_counted_beside_the_plot(run: Run, folder: P
     [
         (
             ("--of", "roker"),
-            'Error: there is no "roker" (columns: rocker, crank, coupler, mu, O2.x, O2.y,\n'
-            "  A.x, A.y, … 11 more)\n",
+            'Error: there is no "roker" (nearest: rocker, coupler, crank; all: linkwork\n'
+            "  quantities FILE)\n",
         ),
         (
             ("--kind", "circuits", "--through", "--from", "10"),

@@ -18,6 +18,8 @@ from linkwork.mechanism.part.cylinder import Strut
 from linkwork.mechanism.skeleton import Bar, DrivenPart, Skeleton
 from linkwork.results.motion import Motion, Series
 from linkwork.results.position import Position
+from linkwork.results.quantities.definition import MechanismNames
+from linkwork.results.quantities.registry import Quantities
 from linkwork.results.quantity import Kind, Quantity, Units
 
 Places = dict[str, complex]
@@ -39,6 +41,20 @@ class Sample:
     def input_unit(self) -> str:
         return "deg" if self.skeleton.driven[0].kind == "link" else self.units.length
 
+    @property
+    def quantities(self) -> Quantities:
+        first = next(places for value in self.inputs if (places := self.at(value)) is not None)
+        kind = Kind.ANGLE if self.input_unit == "deg" else Kind.LENGTH
+        names = MechanismNames(
+            units=self.units,
+            skeleton=self.skeleton,
+            inputs={self.input_name: kind},
+            points=tuple(first),
+            by="rad" if kind is Kind.ANGLE else self.input_unit,
+            lead=self.input_name,
+        )
+        return Quantities(names)
+
     def position(self, value: float) -> Position:
         places = self.at(value)
         status = Status.OUT_OF_REACH if places is None else Status.CONVERGED
@@ -46,6 +62,7 @@ class Sample:
             mechanism=self.name,
             units=self.units,
             skeleton=self.skeleton,
+            quantities=self.quantities,
             status=status,
             message=status.value,
             input={self.input_name: value},
@@ -68,6 +85,7 @@ class Sample:
             mechanism=self.name,
             units=self.units,
             skeleton=self.skeleton,
+            quantities=self.quantities,
             inputs={self.input_name: np.array(self.inputs)},
             input_units={self.input_name: self.input_unit},
             derivative_unit="rad" if self.input_unit == "deg" else self.input_unit,

@@ -323,7 +323,7 @@ def test_an_unknown_quantity_is_refused_with_those_that_exist() -> None:
     with pytest.raises(UnknownNameError) as raised:
         circuit_chart(circuits_of("four-bar"), ["roker"])
     assert str(raised.value) == (
-        'there is no "roker" (names: rocker, crank, coupler, mu, O2.x, O2.y, A.x, A.y, … 4 more)'
+        'there is no "roker" (nearest: rocker, coupler, crank; all: linkwork quantities FILE)'
     )
 
 

@@ -354,7 +354,7 @@ def test_the_leading_input_is_the_one_that_moves() -> None:
     [
         (
             "rapier-drive", ["s17"], {}, UnknownNameError,
-            'there is no "s17" (columns: s16, θ12, θ13, θ14, θ15, A0.x, A0.y, C0.x, … 16 more)',
+            'there is no "s17" (nearest: s16, radius, θ15; all: linkwork quantities FILE)',
         ),
         (
             "four-bar", ["status"], {}, InputError,

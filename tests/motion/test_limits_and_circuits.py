@@ -353,7 +353,7 @@ def test_policies_and_quantities_that_do_not_exist_are_told() -> None:
     with pytest.raises(lw.UnknownNameError) as name:
         mechanism.sweep(limits_of=["rocker", "roker"])
     assert str(name.value) == (
-        'there is no "roker" (names: rocker, coupler, crank, O2.x, O2.y, A.x, A.y, B.x, … 3 more)'
+        'there is no "roker" (nearest: rocker, coupler, crank; all: linkwork quantities FILE)'
     )
 
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from warnings import warn
 
 import numpy as np
 
 from linkwork.batch.designs import Designs, designs_of
 from linkwork.batch.family_motion import FamilyMotion
 from linkwork.batch.lane_rows import design_rows
-from linkwork.batch.reductions import REDUCTIONS
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.names import as_name
 from linkwork.foundation.plain_numbers import whole_number
 from linkwork.foundation.sharing import cores
 from linkwork.kernels.gpu.compiling import graphics_card
@@ -135,54 +137,47 @@ class Family:
 
     def reduced(
         self,
-        wanted: Mapping[str, Reduction | tuple[Reduction, ...]],
+        wanted: Iterable[str] | Mapping[str, Reduction | tuple[Reduction, ...]],
         *,
         certify: bool = True,
         threads: int | None = None,
         specialised: bool | None = None,
         device: str = "cpu",
     ) -> dict[str, Array]:
-        """One number per design and quantity over all its rows.
+        """One number per design of its whole motion: ``reduced(["stroke(s16)", "max(mu)"])``.
 
         Parameters
         ----------
-        wanted : Mapping
-            Quantity or rate (``B.x.velocity``) → ``min``, ``max``, ``mean``, ``stroke`` (largest
-            less smallest), a function of values (D, R) to (D,), or several of these. Missing
-            positions are NaN; the named reductions leave them out.
+        wanted : sequence of str, or Mapping
+            Numbers of a motion by name, see ``linkwork quantities``; or quantities and rates
+            (``B.x.velocity``), each with a function, or several, of values (D, R) to (D,), in which
+            missing positions are NaN. Names of reductions in a mapping are deprecated.
 
         Returns
         -------
         dict
-            ``"mu.min"`` and so on, (D,) each, with ``found`` and ``certified``: how many rows hold
-            a position, and how many are proved; ``limit.lower`` and ``limit.upper``: between which
-            inputs a design can move, see :class:`FamilyLimits`.
+            By these names, ``"mu.name of the function"`` for functions, (D,) each, with ``found``
+            and ``certified``: how many rows hold a position, and how many are proved;
+            ``limit.lower`` and ``limit.upper``: between which inputs a design can move, see
+            :class:`FamilyLimits`.
 
         Raises
         ------
         InputError, UnknownNameError
-            For a reduction or a quantity that does not exist.
+            For a number of a motion or a quantity that does not exist.
         """
-        columns = [
-            (name, f"{name}.{_word(reduction)}", _function(reduction))
-            for name, several in wanted.items()
-            for reduction in (several if isinstance(several, tuple) else (several,))
-        ]
-        # what does not exist is refused before anything is computed
-        self.take(slice(0)).sweep(certify=False).check_names(wanted)
-        found: dict[str, list[Array]] = {key: [np.empty(0)] for _, key, _ in columns}
+        columns = list(_columns(wanted))
+        nothing = self.take(slice(0)).sweep(certify=False)
+        for column in columns:  # what does not exist is refused before anything is computed
+            column.check(nothing)
+        found: dict[str, list[Array]] = {column.key: [np.empty(0)] for column in columns}
         found |= {"found": [np.empty(0, dtype=int)], "certified": [np.empty(0, dtype=int)]}
         found |= {"limit.lower": [np.empty(0)], "limit.upper": [np.empty(0)]}
         for part in self.parts(
             self._part(), certify=certify, threads=threads, specialised=specialised, device=device
         ):
-            for name, key, function in columns:
-                value = np.asarray(function(part[name]), dtype=float)
-                if value.shape != (len(part),):
-                    raise InputError(
-                        f"{key} needs one number per design ({len(part)},), got {value.shape}"
-                    )
-                found[key].append(value)
+            for column in columns:
+                found[column.key].append(column.of(part))
             found["found"].append(part.found.sum(axis=1))
             found["certified"].append(part.certified.sum(axis=1))
             found["limit.lower"].append(part.limits.lower)
@@ -200,15 +195,50 @@ def _workers(threads: int | None) -> int:
     return cores() if threads is None else whole_number("threads", threads, least=1)
 
 
-def _function(reduction: Reduction) -> Callable[[Array], Array]:
-    if callable(reduction):
-        return reduction
-    if reduction not in REDUCTIONS:
-        raise InputError(
-            f'there is no reduction "{reduction}" (there are: {", ".join(REDUCTIONS)})'
-        )
-    return REDUCTIONS[reduction]
+@dataclass(frozen=True)
+class _Column:
+    """A number of every design: by its name, or what a function makes of a quantity's values."""
+
+    key: str
+    name: str
+    function: Callable[[Array], Array] | None = None
+
+    def check(self, motion: FamilyMotion) -> None:
+        """Refuse what does not exist, on the motion of no designs."""
+        if self.function is None:
+            motion.value(self.name)
+        else:
+            motion.quantity(self.name)
+
+    def of(self, motion: FamilyMotion) -> Array:
+        """(D,)."""
+        if self.function is None:
+            return motion.value(self.name)
+        value = np.asarray(self.function(motion[self.name]), dtype=float)
+        if value.shape != (len(motion),):
+            raise InputError(
+                f"{self.key} needs one number per design ({len(motion)},), got {value.shape}"
+            )
+        return value
 
 
-def _word(reduction: Reduction) -> str:
-    return reduction if isinstance(reduction, str) else getattr(reduction, "__name__", "value")
+def _columns(
+    wanted: Iterable[str] | Mapping[str, Reduction | tuple[Reduction, ...]],
+) -> Iterator[_Column]:
+    if not isinstance(wanted, Mapping):
+        for name in (wanted,) if isinstance(wanted, str) else wanted:
+            yield _Column(as_name(name), name)
+        return
+    for name, several in wanted.items():
+        for reduction in several if isinstance(several, tuple) else (several,):
+            if callable(reduction):
+                word = getattr(reduction, "__name__", "value")
+                yield _Column(f"{as_name(name)}.{word}", name, reduction)
+                continue
+            asked = f"{reduction}({as_name(name)})"
+            warn(
+                f'write family.reduced(["{asked}"]): names of reductions in a mapping go in 0.3',
+                DeprecationWarning,
+                stacklevel=3,
+            )
+            yield _Column(f"{name}.{reduction}", asked)

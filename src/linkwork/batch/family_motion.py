@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from linkwork.batch.design_values import DesignValues
 from linkwork.batch.designs import Designs
 from linkwork.batch.limits import FamilyLimits
-from linkwork.batch.quantity_values import (
-    QuantityValues,
-    point_named,
-    quantity_found,
-    quantity_names,
-)
 from linkwork.batch.rates import (
     DesignEvidence,
     DesignRates,
@@ -29,16 +24,23 @@ from linkwork.batch.rows import DesignRows
 from linkwork.batch.single_sweep import message_single
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
 from linkwork.foundation.certification import Certification
-from linkwork.foundation.errors import InputError, MissingPackageError
+from linkwork.foundation.errors import (
+    InputError,
+    MissingPackageError,
+    UnknownNameError,
+    choices,
+)
+from linkwork.foundation.names import find_spelling
 from linkwork.foundation.status import Status
 from linkwork.motion.lock_step import lock_step
 from linkwork.results.motion import Series
-from linkwork.results.quantity import Quantity, Rate
+from linkwork.results.quantities.registry import Asked, Group, Quantities
+from linkwork.results.quantity import Rate
 
 __all__ = ["FamilyMotion"]
 
 _MOST_BYTES = 4 << 30  # of labelled arrays that nobody named
-_EVIDENCE = ("residual", "condition")  # columns of a motion's table
+_EVIDENCE = ("residual", "condition", "radius")  # of the evidence of a motion's rows
 _NEAR = 1 << 16  # positions whose rates are read at a time: temporaries stay in the cache
 
 
@@ -73,14 +75,14 @@ class FamilyMotion:
         )
 
     @cached_property
-    def _values(self) -> QuantityValues:
-        return QuantityValues(self.designs, self.inputs, self.rows.v, self.rows.turns)
+    def _values(self) -> DesignValues:
+        return DesignValues(self.designs, self.inputs, self.rows.v, self.rows.turns)
 
     @cached_property
     def _rates(self) -> DesignRates:
         return design_rates(self.designs, self.rows, self.threads)
 
-    def _moving(self) -> Iterator[tuple[slice, QuantityValues]]:
+    def _moving(self) -> Iterator[tuple[slice, DesignValues]]:
         """Quantities with rates, some designs at a time, so that what is computed stays near."""
         rates, rows = self._rates, self.rows
         step = max(1, _NEAR // max(1, len(self.inputs)))
@@ -88,36 +90,65 @@ class FamilyMotion:
             part = slice(begin, begin + step)
             own = self.designs.take(part)
             v, turns = rows.v[:, :, part], rows.turns[:, part]
-            yield part, QuantityValues(own, self.inputs, v, turns, rates.take(part))
+            yield part, DesignValues(own, self.inputs, v, turns, rates.take(part))
 
     @cached_property
     def _evidence(self) -> DesignEvidence:
         return design_evidence(self.designs, self.rows, self.threads)
 
-    def __getitem__(self, name: str) -> Array:
-        """Values of a quantity by name, (D, R), in file units; NaN where there is no position.
+    @property
+    def leading(self) -> Array:
+        """The leading input, (R,) [rad] or [length]."""
+        rows = self.designs.base.rows
+        return rows[:, lock_step(rows)[0]]
 
-        Names are those of a :class:`~linkwork.results.motion.Motion`: ``family["B.x"]``, and of its
-        rates ``family["B.x.d1"]``, ``family["B.x.velocity"]`` (angles in radians): NaN at dead
-        points too. ``condition`` and ``residual`` are names as in its table.
+    @property
+    def quantities(self) -> Quantities:
+        """What can be asked for."""
+        return self.designs.base.quantities
+
+    def quantity(self, name: str) -> Asked:
+        """A quantity by name, checked before anything is computed.
 
         Raises
         ------
         UnknownNameError
-            With the names that exist.
+            With the nearest names.
         """
-        if self._is_evidence(name):
-            evidence: Array = getattr(self, name)
+        asked = self.quantities.find(name)
+        if asked.group is Group.EVIDENCE and asked.name not in _EVIDENCE:
+            raise UnknownNameError(
+                f'families have no "{name}" {choices("evidence", _EVIDENCE, name)}'
+            )
+        asked.check_rate(self.speed if asked.rate and asked.rate.by_time else None)
+        return asked
+
+    def __getitem__(self, name: str) -> Array:
+        """Values of a quantity by name, (D, R), file units; NaN where there is no position.
+
+        Names are those of a :class:`~linkwork.results.motion.Motion`: ``family["B.x"]``, and of its
+        rates ``family["B.x.d1"]``, ``family["B.x.velocity"]`` (angles in radians): NaN at dead
+        points too. ``condition``, ``residual`` and ``radius`` are names as in its table.
+
+        Raises
+        ------
+        UnknownNameError
+            With the nearest names.
+        """
+        asked = self.quantity(name)
+        if asked.group is Group.EVIDENCE:
+            evidence: Array = getattr(self, asked.name)
             return evidence
-        quantity, rate = Rate.split(name)
-        if rate is None:
-            return self._values.of(name)
-        self._check_rate(quantity, rate)
+        if asked.group is Group.INPUT and asked.rate is None:
+            column = self.inputs[:, list(self.quantities.names.inputs).index(asked.name)]
+            return np.broadcast_to(column, self.status.shape)
+        if not asked.needs:
+            return asked.values(self._values, None).T
         found = np.empty(self.status.shape)
         for part, values in self._moving():
-            _, jet = values.jet(quantity)
-            found[part] = (jet.d1 if rate.order == 1 else jet.d2).T
-        return rate.of(found, found, None if self.speed is None else self.speed[:, None])
+            speed = None if self.speed is None else self.speed[part]
+            found[part] = asked.values(values, speed).T
+        return found
 
     def series(self, name: str) -> Series:
         """A quantity with both derivatives by the leading input, (D, R) each, as in a motion.
@@ -125,45 +156,42 @@ class FamilyMotion:
         Raises
         ------
         UnknownNameError
-            With the names that exist.
+            With the nearest names.
         """
-        kind, _, _ = quantity_found(self.designs.base, name)  # before anything is computed
+        asked = self.quantity(name)
         value, first, second = (np.empty(self.status.shape) for _ in range(3))
         for part, values in self._moving():
-            _, jet = values.jet(name)
+            jet = asked.jet(values)
             value[part], first[part], second[part] = jet.v.T, jet.d1.T, jet.d2.T
-        quantity = Quantity(name=name, kind=kind)
-        return Series(quantity=quantity, value=value, first=first, second=second)
+        return Series(quantity=asked.own, value=value, first=first, second=second)
 
-    def check_names(self, names: Iterable[str]) -> None:
-        """Refuse names that :meth:`__getitem__` does not know.
+    def value(self, name: str) -> Array:
+        """A number of the whole motion of every design, (D,): ``family.value("stroke(s16)")``.
 
         Raises
         ------
-        UnknownNameError
-            With the names that exist.
+        InputError, UnknownNameError
+            If there is none of this name.
         """
-        for name in names:
-            if not self._is_evidence(name):
-                self._check_rate(*Rate.split(name))
-
-    def _is_evidence(self, name: str) -> bool:
-        """Whether a name is a column of evidence, and not the mechanism's own."""
-        return name in _EVIDENCE and name not in quantity_names(self.designs.base)
-
-    def _check_rate(self, quantity: str, rate: Rate | None) -> None:
-        quantity_found(self.designs.base, quantity)
-        if rate is not None:
-            rate.check(quantity, self.speed)
+        asked = self.quantities.find_of_motion(name)
+        if not asked.follows:
+            return asked.evaluate(self.leading, self[asked.of.name])
+        found = np.empty(len(self))
+        for part, values in self._moving():
+            columns = (column.T for column in asked.columns(values))
+            found[part] = asked.evaluate(self.leading, *columns)
+        return found
 
     def trace(self, point: str) -> ComplexArray:
         """The path of a point as x + iy, (D, R); ``trace("B.velocity")`` its velocity likewise."""
         own, rate = Rate.split(point)
-        own = point_named(self.designs.base, own)
+        points = self.quantities.names.points
+        own = find_spelling(own, points)
+        if own not in points:
+            raise UnknownNameError(f'there is no point "{own}" {choices("points", points, own)}')
         if rate is None:
-            return self._values.trace(own)
-        place: ComplexArray = self[f"{own}.x.{rate.value}"] + 1j * self[f"{own}.y.{rate.value}"]
-        return place
+            return self._values.place(own).v.T
+        return self[f"{own}.x.{rate.value}"] + 1j * self[f"{own}.y.{rate.value}"]
 
     @cached_property
     def speed(self) -> Array | None:
@@ -258,7 +286,8 @@ class FamilyMotion:
             raise MissingPackageError(
                 'labelled arrays need xarray: pip install "linkwork[tables]"'
             ) from None
-        self.check_names(names)
+        for name in names:
+            self.quantity(name)
         model = self.designs.base
         lead = model.equations.inputs[0].name
         axes = ("design", lead)
@@ -277,11 +306,11 @@ class FamilyMotion:
     def _all_names(self) -> list[str]:
         """All quantities but inputs, then their rates."""
         model = self.designs.base
-        inputs = {v.name for v in model.equations.inputs}
-        own = [name for name in quantity_names(model) if name not in inputs]
+        inputs = model.quantities.names.inputs
+        own = [name for name in model.quantities.own if name not in inputs]
         asked = [rate for rate in Rate if not (rate.by_time and self.speed is None)]
         names = [*own, *(f"{name}.{rate.value}" for rate in asked for name in own)]
-        names += [name for name in _EVIDENCE if self._is_evidence(name)]
+        names += [name for name in _EVIDENCE[:2] if name not in own]
         needed = 8 * len(names) * self.status.size
         if needed > _MOST_BYTES:
             raise InputError(
@@ -292,14 +321,7 @@ class FamilyMotion:
 
     def unit(self, name: str) -> str:
         """The unit of a quantity or rate, "" for none."""
-        if self._is_evidence(name):
-            return ""
-        model = self.designs.base
-        quantity, rate = Rate.split(name)
-        kind = quantity_found(model, quantity)[0]
-        if rate is None:
-            return model.units.of(kind)
-        return rate.unit(kind, model.units, model.derivative_unit)
+        return self.quantities.find(name).unit
 
 
 def _codes(kind: type[Status]) -> str:

@@ -19,6 +19,7 @@ _COMMANDS = (
     "check",
     "equations",
     "solve",
+    "quantities",
     "sweep",
     "configurations",
     "circuits",

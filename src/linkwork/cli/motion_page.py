@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,22 +14,30 @@ from linkwork.cli.text_table import Column, short, table_lines
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
-from linkwork.results.motion import Motion, Series
+from linkwork.results.motion import Motion
+from linkwork.results.quantities.registry import Asked
+from linkwork.results.quantity import Kind
 
 __all__ = ["failure_line", "motion_lines"]
 
 _MOST_RUNS = 4  # ranges of failed rows that are listed
 
 
-def motion_lines(motion: Motion, measure: str) -> list[str]:
-    """The summary of a motion; ``measure`` is printed after residuals."""
+def motion_lines(
+    motion: Motion, measure: str, columns: Sequence[str] = (), numbers: Sequence[str] = ()
+) -> list[str]:
+    """The summary of a motion; ``measure`` is printed after residuals.
+
+    ``columns`` instead of unknowns, outputs and traced points; ``numbers`` of the whole motion.
+    """
     head = f"{_range_text(motion)}: {_how_many(motion)}"
     lines = [*title_lines(motion.mechanism), *sentence(str, head)]
     pairs = [*_counts(motion), *_limits(motion)]
     if motion.found.any():
         pairs += _evidence(motion, measure)
+        pairs += _numbers(motion, numbers)
     lines += fields(pairs, {_label(s): bad for s in motion.counts if not s.ok})
-    ranges = _ranges(motion) if motion.found.any() else []
+    ranges = _ranges(motion, columns) if motion.found.any() else []
     return [*lines, "", *ranges] if ranges else lines
 
 
@@ -103,15 +112,18 @@ def _limits(motion: Motion) -> Iterator[tuple[str, str]]:
     told = ((limit.kind.word, limit.told(name, unit)) for limit in motion.limits)
     yield from dict.fromkeys(told)
     for extreme in motion.output_limits:
-        value = f"{extreme.value:.10g} {_unit_of(motion, extreme.name)}".rstrip()
+        value = f"{extreme.value:.10g} {motion.quantity(extreme.name).unit}".rstrip()
         text = f"{extreme.name} = {value} at {name} = {extreme.input:.12g} {unit}".rstrip()
         yield extreme.kind, text
     if motion.circuit is not None:
         yield "circuit", motion.circuit.value
 
 
-def _unit_of(motion: Motion, name: str) -> str:
-    return motion.units.of(motion.series(name).quantity.kind)
+def _numbers(motion: Motion, names: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Numbers of the whole motion with their units."""
+    for name in names:
+        unit = motion.quantities.find_of_motion(name).unit
+        yield name, f"{short(motion.value(name))} {unit}".rstrip()
 
 
 def _evidence(motion: Motion, measure: str) -> Iterator[tuple[str, str]]:
@@ -148,22 +160,27 @@ def _worst(motion: Motion, values: Array, measure: str) -> str:
     return f"{size}, at {name} = {short(inputs[row])} {motion.input_units[name]}".rstrip()
 
 
+@dataclass(frozen=True)
+class _Range:
+    quantity: Asked
+    value: Array
+
+
 _STILL = 1e-10  # relative range below which a value counts as constant: its extremes have no place
 
 
-def _ranges(motion: Motion) -> list[str]:
+def _ranges(motion: Motion, columns: Sequence[str]) -> list[str]:
     """Smallest and largest value of every unknown, output and traced point, and where."""
-    riding = [motion.links[link] for link in motion.riding]
-    found: list[Series] = [*motion.unknowns.values(), *riding, *motion.outputs.values()]
-    for point in motion.skeleton.traced:
-        found += motion.points[point]
+    traced = (f"{point}.{axis}" for point in motion.skeleton.traced for axis in "xy")
+    names = columns or [*motion.unknowns, *motion.riding, *motion.outputs, *traced]
+    found = [_Range(motion.quantity(name), motion[name]) for name in names]
     if not found:
         return []
     _, inputs = _lead(motion)
     low = [int(np.argmin(_filled(series.value, np.inf))) for series in found]
     high = [int(np.argmax(_filled(series.value, -np.inf))) for series in found]
     numbers = [
-        Row(name=s.quantity.name, kind=s.quantity.kind, value=float(s.value[row]))
+        Row(name=s.quantity.name, kind=_kind(s.quantity), value=float(s.value[row]))
         for rows in (low, high)
         for s, row in zip(found, rows, strict=True)
     ]
@@ -184,9 +201,13 @@ def _ranges(motion: Motion) -> list[str]:
             places(low),
             Column(header="maximum", cells=cells[len(found) :], align="point"),
             places(high),
-            Column(header="unit", cells=[motion.units.of(s.quantity.kind) for s in found]),
+            Column(header="unit", cells=[s.quantity.unit for s in found]),
         ]
     )
+
+
+def _kind(asked: Asked) -> Kind:
+    return asked.own.kind if asked.rate is None else Kind.NUMBER
 
 
 def _filled(values: Array, filling: float) -> Array:

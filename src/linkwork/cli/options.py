@@ -18,6 +18,7 @@ __all__ = [
     "NUMBER",
     "at_option",
     "change_points_option",
+    "columns_option",
     "configuration_option",
     "debug_option",
     "file_argument",
@@ -122,6 +123,12 @@ force_option: Decorator = click.option(
     multiple=True,
     help="Draw a force at a point, given by components and unit; may be repeated.",
 )
+
+
+def columns_option(about: str) -> Decorator:
+    """``--columns``, which is ``--of`` too."""
+    about += " Repeatable; `linkwork quantities FILE` lists the names."
+    return click.option("--columns", "--of", "names", metavar="NAME", multiple=True, help=about)
 
 
 def range_options(command: Callable[..., Any]) -> Callable[..., Any]:

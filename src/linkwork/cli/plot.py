@@ -12,6 +12,7 @@ from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.motion_page import failure_line
 from linkwork.cli.options import (
     change_points_option,
+    columns_option,
     configuration_option,
     debug_option,
     file_argument,
@@ -41,13 +42,9 @@ __all__ = ["plot"]
 @click.option(
     "-o", "--output", metavar="PATH", required=True, help="Picture file: .png, .svg or .pdf."
 )
-@click.option(
-    "--of",
-    "names",
-    metavar="NAME",
-    multiple=True,
-    help="Column of the table to plot; a point for path and hodograph; a pin for "
-    "transmission; may be repeated. Default: unknowns and outputs, traced points, all pins.",
+@columns_option(
+    "Column of the table to plot; a point for path and hodograph; a pin for transmission. "
+    "Default: unknowns and outputs, traced points, all pins."
 )
 @click.option(
     "--kind",
@@ -93,10 +90,10 @@ def plot(
     branches      as circuits, with one panel for each branch
 
     \b
-      linkwork plot rapier.toml -o s16.png --of s16 --of s16.d1
-      linkwork plot fourbar.toml -o time.svg --of B.velocity --against time
-      linkwork plot jansen.toml -o foot.png --kind hodograph --of F
-      linkwork plot rapier.toml -o quality.png --of condition --of residual
+      linkwork plot rapier.toml -o s16.png --columns s16 --columns s16.d1
+      linkwork plot fourbar.toml -o time.svg --columns B.velocity --against time
+      linkwork plot jansen.toml -o foot.png --kind hodograph --columns F
+      linkwork plot rapier.toml -o quality.png --columns condition
     """
     picture.check_picture(output)
     check_outputs(file, output)

@@ -12,7 +12,7 @@ import click
 
 from linkwork.batch.study import Progress, Study, Summary, read_plan, run_study, summary_of
 from linkwork.batch.study.plan_file import read_plan_bytes
-from linkwork.cli.options import debug_option, json_option
+from linkwork.cli.options import columns_option, debug_option, json_option
 from linkwork.cli.study_page import progress_line, summary_lines
 from linkwork.cli.terminal import print_json, print_lines, wrapped
 from linkwork.foundation.errors import InputError
@@ -25,6 +25,7 @@ _PATIENCE = 1.0  # seconds before the progress line appears
 @click.command
 @click.argument("plan", metavar="PLAN", required=False)
 @click.option("-o", "--output", metavar="STORE", help="Folder for the results (a Zarr store).")
+@columns_option("Keep this quantity at every row, in addition to those of the plan.")
 @click.option(
     "--workers", metavar="N", type=int, help="Processes on this machine. Default: one per core."
 )
@@ -37,6 +38,7 @@ _PATIENCE = 1.0  # seconds before the progress line appears
 def study(
     plan: str | None,
     output: str | None,
+    names: tuple[str, ...],
     workers: int | None,
     scheduler: str | None,
     fresh: bool,
@@ -63,7 +65,7 @@ def study(
         raise InputError(
             "a study needs a plan and a store:\n    linkwork study plan.toml -o out.zarr"
         )
-    asked = _read(plan)
+    asked = _read(plan, names)
     with study_progress(quiet) as tell:
         try:
             found = run_study(
@@ -80,12 +82,12 @@ def study(
     _print(found, output, as_json)
 
 
-def _read(plan: str) -> Study:
+def _read(plan: str, columns: tuple[str, ...]) -> Study:
     if plan != "-":
-        return read_plan(plan)
+        return read_plan(plan, columns=columns)
     if sys.stdin is None:
         raise InputError("there is no standard input to read a plan from")
-    return read_plan_bytes(sys.stdin.buffer.read())
+    return read_plan_bytes(sys.stdin.buffer.read(), columns=columns)
 
 
 def _print(found: Summary, store: str, as_json: bool) -> None:

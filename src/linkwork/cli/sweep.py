@@ -14,6 +14,7 @@ from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.motion_page import failure_line, motion_lines
 from linkwork.cli.options import (
     change_points_option,
+    columns_option,
     configuration_option,
     debug_option,
     file_argument,
@@ -32,6 +33,7 @@ from linkwork.foundation.errors import InputError
 from linkwork.mechanism.dimensions import Number
 from linkwork.results.motion import Motion
 from linkwork.results.motion_table import table_of
+from linkwork.results.table import Table
 
 __all__ = ["sweep"]
 
@@ -48,6 +50,7 @@ __all__ = ["sweep"]
     multiple=True,
     help="Locate the maxima and minima of NAME; may be repeated.",
 )
+@columns_option("Write and plot only this column; a number such as stroke(s16) is printed.")
 @click.option("--no-certificates", is_flag=True, help="Skip the proofs (faster).")
 @click.option("--csv", metavar="PATH", help="Write the table of all rows; - is standard output.")
 @click.option("--xlsx", metavar="PATH", help="Write a workbook whose formulas solve the cycle.")
@@ -67,6 +70,7 @@ def sweep(
     through: bool,
     change_points: str,
     limits_of: tuple[str, ...],
+    names: tuple[str, ...],
     no_certificates: bool,
     csv: str | None,
     xlsx: str | None,
@@ -86,6 +90,7 @@ def sweep(
       linkwork sweep rapier.toml --xlsx rapier.xlsx --plot curves.png
       linkwork sweep rapier.toml --from 90 --to 180 --step 0.5 --csv - | head
       linkwork sweep rapier.toml --through --limits-of s16
+      linkwork sweep rapier.toml --columns s16.d1 --columns "stroke(s16)"
     """
     if as_json and csv == "-":
         raise InputError("--json and --csv - both use standard output: name a file for the table")
@@ -96,6 +101,7 @@ def sweep(
     mechanism = read_mechanism(file, changes)
     if draw is not None:
         picture.check_points(mechanism)
+    columns, numbers = _asked(mechanism, names)
     with progress("sweeping") as tell:
         motion = mechanism.sweep(
             start=start,
@@ -109,15 +115,16 @@ def sweep(
             progress=tell,
         )
     page = None if draw is None else _scene(mechanism, motion, configuration)
-    written = _written(motion, page, csv, draw)
+    table = table_of(motion, *columns)
+    written = _written(motion, table, page, csv, draw)
     if plot is not None:
-        written.append(_plotted(motion, plot))
+        written.append(_plotted(motion, columns, plot))
     if xlsx is not None:
-        written += _written_workbook(mechanism, motion, xlsx)
+        written += _written_workbook(mechanism, motion, columns, xlsx)
     if as_json:
-        print_json(_data(motion))
+        print_json(_data(motion, table, numbers))
     elif csv != "-":
-        page_lines = motion_lines(motion, residual_measure(mechanism))
+        page_lines = motion_lines(motion, residual_measure(mechanism), columns, numbers)
         print_lines([*page_lines, "", *(written or _hint(file, motion))])
     if not motion.found.all():
         if as_json or csv == "-":
@@ -131,14 +138,28 @@ def _scene(mechanism: Mechanism, motion: Motion, configuration: str | None) -> S
     return picture.sweep_scene(position, motion) if position.status.ok else None
 
 
-def _written(motion: Motion, page: Scene | None, csv: str | None, draw: str | None) -> list[str]:
+def _asked(mechanism: Mechanism, names: tuple[str, ...]) -> tuple[list[str], list[str]]:
+    """The columns and the numbers of the whole motion among the names that were asked for."""
+    quantities = mechanism.model.quantities
+    numbers = [name for name in names if "(" in name]
+    columns = [name for name in names if name not in numbers]
+    for name in numbers:
+        quantities.find_of_motion(name)
+    for name in columns:
+        quantities.find(name).check_rate(mechanism.model.speed)
+    return columns, numbers
+
+
+def _written(
+    motion: Motion, table: Table, page: Scene | None, csv: str | None, draw: str | None
+) -> list[str]:
     """Write the requested files; returns one line about each."""
     said = []
     if csv == "-":
-        for line in csv_lines(table_of(motion)):
+        for line in csv_lines(table):
             click.echo(line, nl=False)
     elif csv is not None:
-        write_text(csv, csv_lines(table_of(motion)))
+        write_text(csv, csv_lines(table))
         said.append(f"Wrote {csv}: {len(motion)} rows.")
     if draw is not None and page is not None:
         picture.write(page, draw)
@@ -149,17 +170,19 @@ def _written(motion: Motion, page: Scene | None, csv: str | None, draw: str | No
     return said
 
 
-def _plotted(motion: Motion, path: str) -> str:
-    """Plot the unknowns and outputs if there are positions; returns a line about the file."""
+def _plotted(motion: Motion, columns: list[str], path: str) -> str:
+    """Plot columns, or unknowns and outputs, if there are positions; returns a line about it."""
     if not motion.found.any():
         return f"Did not write {path}: there is no position to plot."
-    picture.write(motion_plot(motion), path)
-    return f"Wrote {path}: unknowns and outputs over the input."
+    picture.write(motion_plot(motion, columns), path)
+    return f"Wrote {path}: {', '.join(columns) or 'unknowns and outputs'} over the input."
 
 
-def _written_workbook(mechanism: Mechanism, motion: Motion, path: str) -> list[str]:
+def _written_workbook(
+    mechanism: Mechanism, motion: Motion, columns: list[str], path: str
+) -> list[str]:
     """Write the workbook; returns lines about it, with everything that does not recalculate."""
-    found = workbook_of(mechanism.model, motion)
+    found = workbook_of(mechanism.model, motion, columns)
     write_bytes(path, [found.content])
     rows = int(motion.asked.sum())
     said = [f"Wrote {path}: {rows} rows with formulas; edit a yellow cell to solve them again."]
@@ -176,12 +199,13 @@ def _hint(file: str, motion: Motion) -> list[str]:
     return wrapped(f"For the table add --csv {stem}.csv, for a picture --draw {stem}.png.")
 
 
-def _data(motion: Motion) -> dict[str, Any]:
-    table = table_of(motion)
+def _data(motion: Motion, table: Table, numbers: list[str]) -> dict[str, Any]:
+    values = {name: motion.value(name) for name in numbers}
     return {
         "mechanism": motion.mechanism,
         "units": dict(table.units),
         "columns": {name: column.tolist() for name, column in table.columns.items()},
+        **({"numbers": values} if numbers else {}),
         "limits": [limit.to_dict() for limit in motion.limits],
         "output_limits": [asdict(extreme) for extreme in motion.output_limits],
         "circuit": None if motion.circuit is None else motion.circuit.name,

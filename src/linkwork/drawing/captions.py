@@ -30,8 +30,8 @@ _SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 def printed_name(name: str) -> str:
     """A name as printed in a figure: ``theta12`` → ``θ₁₂``, ``O2.x`` → ``O₂.x``."""
     point, _, axis = name.rpartition(".")
-    if point and axis in ("x", "y"):
-        return f"{printed_name(point)}.{axis}"
+    if point and axis[:1].isalpha():
+        return f"{printed_name(point)}.{axis.replace('_', ' ')}"
     shown = pretty(name)
     stem = shown.rstrip("0123456789'")
     return stem + shown[len(stem) :].translate(_SUBSCRIPT) if stem else shown

@@ -10,6 +10,8 @@ from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number,
 from linkwork.foundation.errors import ExpressionError, choices
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Problems
+from linkwork.results.quantities.index import row_quantity
+from linkwork.results.quantity import Kind
 
 __all__ = ["read_outputs"]
 
@@ -31,6 +33,11 @@ def read_outputs(
         What every usable name measures, by canonical name.
     points : Mapping
         Points by their name; ``A.x`` and ``A.y`` are usable too.
+
+    Notes
+    -----
+    Names such as ``B.transmission`` are taken by their last part: whether B has that is known when
+    the mechanism is complete.
     """
     coordinates = {canonical(f"{p}.{axis}"): "length" for p in points for axis in "xy"}
     known = {**dict.fromkeys(dimensions, "number"), **kinds, **coordinates}
@@ -38,12 +45,21 @@ def read_outputs(
     for name, formula in formulas.items():
         try:
             tree = parse(formula)
+            known |= _derived(tree, known)
             _check_names(tree, known, formula)
         except ExpressionError as error:
             problems.add(("outputs", name), str(error))
             continue
         found[name] = Output(formula=tree, kind=_kind(tree, known.__getitem__))
     return found
+
+
+def _derived(tree: Node, known: Mapping[str, str]) -> dict[str, str]:
+    """Kinds of the names in a formula that are quantities of the registry."""
+    rows = {node.name: row_quantity(node.name) for node in names_in(tree) if node.name not in known}
+    kinds = {name: row.kind for name, row in rows.items() if row is not None}
+    plain = (Kind.ANGLE, Kind.LENGTH)
+    return {name: (k if k in plain else Kind.NUMBER).value for name, k in kinds.items()}
 
 
 def _check_names(tree: Node, known: Mapping[str, str], text: str) -> None:

@@ -114,7 +114,7 @@ def _tokens(text: str) -> list[_Token]:
             end = k + 1
             while end < len(text) and (
                 _is_name_part(text[end])
-                or (text[end] == "." and text[end + 1 : end + 2] in ("x", "y"))
+                or (text[end] == "." and end + 1 < len(text) and _is_name_start(text[end + 1]))
             ):
                 end += 1
             found += _name_tokens(text[k:end], column)

@@ -45,10 +45,10 @@ class Linkage(JoinedBodies):
         set_ = object.__setattr__
         own = [name for part in self.parts if (name := getattr(part, "name", ""))]
         named = (*self.points, *self.links, *own)
-        spelled = {canonical(name): name for name in named}
+        find_spelling = {canonical(name): name for name in named}
 
         def same(name: str) -> str:
-            return str(spelled.get(canonical(name), name))
+            return str(find_spelling.get(canonical(name), name))
 
         set_(self, "points", FrozenDict({n: tuple(p) for n, p in self.points.items()}))
         links = {name: tuple(map(same, points)) for name, points in self.links.items()}
@@ -59,7 +59,7 @@ class Linkage(JoinedBodies):
             set_(self, which, FrozenDict(folded if len(folded) == len(table) else table))
         for table in PARTS:
             entries: tuple[Part, ...] = getattr(self, table)
-            set_(self, table, tuple(part.spelled(same) for part in entries))
+            set_(self, table, tuple(part.find_spelling(same) for part in entries))
         self.__dict__.pop("parts", None)
         inputs = tuple(_spelled_input(driven, same) for driven in self.inputs)
         set_(self, "inputs", inputs)

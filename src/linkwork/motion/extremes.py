@@ -7,17 +7,17 @@ from collections.abc import Iterable
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import canonical, find_spelling
+from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.model import Model
-from linkwork.motion.named_quantities import Named, name_series
+from linkwork.motion.named_quantities import RowValues
 from linkwork.numerics.continuation.branch_tracking import Track, rows_on_track
-from linkwork.results.motion import OutputLimit, Series
+from linkwork.results.limit import OutputLimit
+from linkwork.results.quantities.registry import Group
 
 __all__ = ["check_quantities", "output_limit_at", "output_limits"]
 
@@ -37,30 +37,14 @@ def check_quantities(model: Model, names: str | Iterable[str]) -> tuple[str, ...
     if not isinstance(names, Iterable):
         raise InputError(f"quantities must be a name or several, got {as_told(names)}")
     names = (names,) if isinstance(names, str) else tuple(names)
-    if names:
-        blank = np.full((1, model.compiled.solver.variables), np.nan)
-        inputs = np.full((1, len(model.equations.inputs)), np.nan)
-        named = name_series(model, blank, blank, blank, inputs, np.zeros(1, dtype=bool))
-        for name in names:
-            _series(named, name)
+    for name in names:
+        asked = model.quantities.find(name)
+        if asked.rate or asked.group is Group.EVIDENCE or asked.needs:
+            raise InputError(
+                f'limits of "{name}" are not known: name a quantity that follows from the position '
+                "alone, without rates"
+            )
     return names
-
-
-def _series(named: Named, name: str) -> Series:
-    for table in (named.unknowns, named.links, named.sliders, named.outputs):
-        for known, series in table.items():
-            if canonical(known) == canonical(name):
-                return series
-    point, _, axis = name.rpartition(".")
-    point = find_spelling(point, named.points)
-    if point in named.points and axis in ("x", "y"):
-        return named.points[point][axis == "y"]
-    tables = (named.unknowns, named.links, named.sliders, named.outputs)
-    known_names = dict.fromkeys(known for table in tables for known in table)
-    places = [f"{point}.{axis}" for point in named.points for axis in "xy"]
-    raise UnknownNameError(
-        f'there is no "{name}" {choices("names", [*known_names, *places], name)}'
-    )
 
 
 def output_limits(drive: Drive, track: Track, name: str) -> list[tuple[float, OutputLimit]]:
@@ -111,8 +95,7 @@ def output_limit_at(drive: Drive, end: BranchEnd, name: str) -> OutputLimit | No
         return None
     led, node, model = end.led, end.node, drive.model
     v, first, second = (led.whole(x)[None, :] for x in (node.v, node.first, node.second))
-    inputs = np.zeros((1, len(model.equations.inputs)))
-    series = _series(name_series(model, v, first, second, inputs, np.ones(1, dtype=bool)), name)
+    series = RowValues(model, v, first, second, np.ones(1, dtype=bool)).series(name)
     rate, bend = float(series.first[0]), float(series.second[0])
     noise = 8.0 * EPSILON * node.condition * float(np.abs(series.first[0]) + np.abs(bend))
     away = (abs(rate) + noise) / abs(bend) if bend else np.inf
@@ -140,10 +123,9 @@ class _Search:
         """At the values t (B,)."""
         model = self.drive.model
         rows = rows_on_track(self.drive.solver, self.drive.path, self.track, t)
-        inputs = np.zeros((len(t), len(model.equations.inputs)))
         good = rows.status == Status.CONVERGED.code
-        named = name_series(model, rows.v, rows.rates.first, rows.rates.second, inputs, good)
-        series = _series(named, self.name)
+        rates = rows.rates
+        series = RowValues(model, rows.v, rates.first, rates.second, good).series(self.name)
         return series.value, series.first, series.second, rows.rates.condition
 
     def between(self, low: float, high: float, rate: float) -> tuple[float, float]:

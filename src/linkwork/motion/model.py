@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -11,9 +11,16 @@ import numpy as np
 from linkwork.equations.compiling import Compiled, compile_equations
 from linkwork.equations.from_linkage import write_loops
 from linkwork.equations.from_loops import read_loops, read_plain_equations
-from linkwork.equations.model import LoopEquations, Variable
+from linkwork.equations.model import LoopEquations, Output, Variable
+from linkwork.expression.tree import Name, names_in
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.errors import (
+    InputError,
+    MechanismError,
+    Problem,
+    UnknownNameError,
+    choices,
+)
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.foundation.plain_numbers import finite_number
 from linkwork.mechanism.description import Description
@@ -25,6 +32,9 @@ from linkwork.motion.rails import rails_of
 from linkwork.motion.redundancy import check_redundancy
 from linkwork.motion.speeds import input_speed
 from linkwork.results.position import Position
+from linkwork.results.quantities.definition import MechanismNames, RowQuantity
+from linkwork.results.quantities.index import row_quantity
+from linkwork.results.quantities.registry import Quantities
 from linkwork.results.quantity import Kind, Units
 
 __all__ = ["Model", "model_of"]
@@ -87,6 +97,34 @@ class Model:
     def units(self) -> Units:
         """The mechanism's units."""
         return Units(self.description.angle, self.description.length)
+
+    @cached_property
+    def quantities(self) -> Quantities:
+        """What can be asked of its positions and motions."""
+        equations = self.equations
+        released = {part.variable for part in equations.redundant}
+        inputs = {v.name: Kind(v.kind) for v in equations.inputs}
+        lead = equations.inputs[lock_step(self.rows)[0]].name if inputs else ""
+        return Quantities(
+            MechanismNames(
+                units=self.units,
+                skeleton=self.skeleton,
+                inputs=inputs,
+                unknowns={
+                    v.name: Kind(v.kind) for v in equations.unknowns if v.name not in released
+                },
+                links=tuple(equations.links),
+                sliders=tuple(equations.sliders),
+                outputs={name: Kind(output.kind) for name, output in equations.outputs.items()},
+                output_needs={
+                    name: max((row.needs for _, row in _derived(output)), default=0)
+                    for name, output in equations.outputs.items()
+                },
+                points=tuple(getattr(self.description, "points", {})),
+                by=self.derivative_unit,
+                lead=lead,
+            )
+        )
 
     @cached_property
     def input_scale(self) -> Array:
@@ -213,8 +251,31 @@ def model_of(description: Description) -> Model:
     compiled = compile_equations(equations, where)
     check_redundancy(compiled, where)
     model = Model(description, equations, compiled, skeleton)
+    _check_outputs(model, where)
     _ = model.speed  # a speed that cannot be read is an error of the file, found with the others
     return model
+
+
+def _derived(output: Output) -> Iterator[tuple[Name, RowQuantity]]:
+    """The names in a formula that are quantities of the registry."""
+    for node in names_in(output.formula):
+        row = row_quantity(node.name)
+        if row is not None:
+            yield node, row
+
+
+def _check_outputs(model: Model, where: str) -> None:
+    """Refuse formulas with quantities that the mechanism does not have."""
+    problems = []
+    for name, output in model.equations.outputs.items():
+        for node, _ in _derived(output):
+            try:
+                model.quantities.find(node.name)
+            except UnknownNameError as error:
+                message = f"column {node.column}: {error}"
+                problems.append(Problem(key=("outputs", name), message=message))
+    if problems:
+        raise MechanismError(problems, where)
 
 
 def _driven_part(

@@ -25,6 +25,7 @@ def motion_of_rows(model: Model, rows: SolvedRows, message: str, added: BoolArra
         mechanism=model.description.name,
         units=model.units,
         skeleton=model.skeleton,
+        quantities=model.quantities,
         inputs=named.inputs,
         input_units=model.input_units,
         derivative_unit=model.derivative_unit,

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, CountArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
@@ -22,6 +23,8 @@ from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
 from linkwork.results.limit import Limit, LimitKind, OutputLimit
+from linkwork.results.quantities.definition import Vector
+from linkwork.results.quantities.registry import Asked, Group, Quantities
 from linkwork.results.quantity import Quantity, Rate, Units
 from linkwork.results.table import Table
 
@@ -69,6 +72,8 @@ class Motion:
 
     Parameters
     ----------
+    quantities : Quantities
+        Everything that can be asked for by name.
     mechanism : str
         The name of the mechanism.
     units : Units
@@ -137,6 +142,7 @@ class Motion:
     mechanism: str
     units: Units
     skeleton: Skeleton
+    quantities: Quantities
     inputs: Mapping[str, Array]
     input_units: Mapping[str, str]
     derivative_unit: str
@@ -186,32 +192,79 @@ class Motion:
         """Values of one column by name, shape (N,): ``motion["s16"]``, ``motion["A.x"]``.
 
         Rates are columns too: ``motion["A.x.d1"]``, ``motion["A.x.velocity"]``; see
-        :class:`~linkwork.results.quantity.Rate`.
+        :class:`~linkwork.results.quantity.Rate`. ``linkwork quantities`` lists all names.
+
+        Raises
+        ------
+        UnknownNameError
+            With the nearest names.
         """
-        own = find_spelling(name, self.inputs)
-        if own in self.inputs:
-            return self.inputs[own]
-        quantity, rate = Rate.split(name)
-        series = self.series(quantity)
-        if rate is None:
-            return series.value
-        rate.check(quantity, self.speed)
-        return rate.of(series.first, series.second, self.speed)
+        asked = self.quantity(name)
+        if asked.group is Group.EVIDENCE:
+            evidence: Array = getattr(self, asked.name)
+            return evidence
+        if asked.group is Group.INPUT and asked.rate is None:
+            return self.inputs[asked.name]
+        return asked.values(self, self.speed)
+
+    def quantity(self, name: str) -> Asked:
+        """A quantity or rate by name, with its unit.
+
+        Raises
+        ------
+        UnknownNameError
+            With the nearest names; for rates by time, with what to add.
+        """
+        asked = self.quantities.find(name)
+        asked.check_rate(self.speed)
+        return asked
+
+    def value(self, name: str) -> float:
+        """A number of the whole motion: ``motion.value("stroke(s16)")``.
+
+        Raises
+        ------
+        InputError, UnknownNameError
+            If there is none of this name.
+        """
+        asked = self.quantities.find_of_motion(name)
+        names = asked.names
+        leading = self.inputs[names.lead] * names.units.scale(names.inputs[names.lead])
+        columns = asked.columns(self) if asked.follows else (self[asked.of.name],)
+        return float(asked.evaluate(leading, *columns))
 
     def series(self, name: str) -> Series:
-        """The series of a name: unknown, link, slider, output or ``<point>.x``."""
+        """A quantity with both derivatives by the leading input.
+
+        Raises
+        ------
+        UnknownNameError
+            With the nearest names.
+        """
+        asked = self.quantities.find(name)
+        if asked.group in (Group.EVIDENCE, Group.POINT) or asked.rate is not None:
+            raise self.quantities.unknown(name)
+        own = asked.own.name
         for table in (self.unknowns, self.links, self.sliders, self.outputs):
-            own = find_spelling(name, table)
             if own in table:
                 return table[own]
-        point, _, axis = name.rpartition(".")
-        point = find_spelling(point, self.points)
-        if point in self.points and axis in ("x", "y"):
+        point, _, axis = own.rpartition(".")
+        if asked.group is Group.COORDINATE:
             return self.points[point][axis == "y"]
-        tables = (self.inputs, self.unknowns, self.links, self.sliders, self.outputs)
-        known = dict.fromkeys(known for table in tables for known in table)
-        places = [f"{point}.{axis}" for point in self.points for axis in "xy"]
-        raise UnknownNameError(f'there is no "{name}" {choices("names", [*known, *places], name)}')
+        jet = asked.jet(self)
+        return Series(quantity=asked.own, value=jet.v, first=jet.d1, second=jet.d2)
+
+    def own(self, name: str) -> Jet:
+        """One of the mechanism's own quantities by its exact name; see :class:`Solved`."""
+        if name in self.inputs and name not in self.links:
+            raise self.quantities.unknown(name)
+        series = self.series(name)
+        return Jet(series.value, series.first, series.second)
+
+    def place(self, point: str) -> Vector:
+        """A point with both derivatives by its exact name."""
+        x, y = self.points[point]
+        return Vector(x.value + 1j * y.value, x.first + 1j * y.first, x.second + 1j * y.second)
 
     @cached_property
     def found(self) -> BoolArray:
@@ -234,9 +287,15 @@ class Motion:
         found = self.residual[self.found]
         return float(found.max()) if len(found) else float("nan")
 
-    def table(self) -> Table:
-        """All columns with units; see :func:`linkwork.results.motion_table.table_of`."""
-        return presenter(Motion.table)(self)
+    def table(self, *names: str) -> Table:
+        """Columns with units; see :func:`linkwork.results.motion_table.table_of`.
+
+        Parameters
+        ----------
+        names : str
+            Quantities and rates; all columns if none is named.
+        """
+        return presenter(Motion.table)(self, *names)
 
     def to_pandas(self) -> Any:
         """A pandas DataFrame with the input as index."""
@@ -369,5 +428,7 @@ class Motion:
             raise UnknownNameError(
                 f'there is no point "{own}" {choices("points", self.points, own)}'
             )
-        suffix = "" if rate is None else f".{rate.value}"
-        return self[f"{own}.x{suffix}"] + 1j * self[f"{own}.y{suffix}"]
+        if rate is not None:
+            rate.check(own, self.speed)
+            return self[f"{own}.x.{rate.value}"] + 1j * self[f"{own}.y.{rate.value}"]
+        return self.place(own).v

@@ -11,11 +11,21 @@ from linkwork.results.table import Column, Table
 __all__ = ["table_of"]
 
 
-def table_of(motion: Motion) -> Table:
-    """All columns of a motion: inputs, unknowns, points, outputs, derivatives, rates, evidence.
+def table_of(motion: Motion, *names: str) -> Table:
+    """Columns of a motion: inputs, unknowns, points, outputs, derivatives, rates, evidence.
 
     ``<name>.d1`` and ``.d2`` are derivatives by the (first) input with angles in radians;
     ``.velocity`` and ``.acceleration`` appear when the input has a speed.
+
+    Parameters
+    ----------
+    names : str
+        Only these quantities and rates, behind the inputs and before the status.
+
+    Raises
+    ------
+    UnknownNameError
+        With the nearest names.
     """
     units = motion.units
     columns: dict[str, Column] = {}
@@ -26,6 +36,11 @@ def table_of(motion: Motion) -> Table:
 
     for name, values in motion.inputs.items():
         add(name, values, motion.input_units[name])
+    if names:
+        for quantity in map(motion.quantity, names):
+            add(quantity.name, motion[quantity.name], quantity.unit)
+        add("status", np.array([status.name for status in motion.status]), "")
+        return Table(columns=columns, units=unit_of, index=next(iter(motion.inputs)))
     everything: dict[str, Series] = dict(motion.unknowns)
     everything |= {link: motion.links[link] for link in motion.riding}
     for x, y in motion.points.values():

@@ -8,15 +8,16 @@ from typing import Any
 
 import numpy as np
 
+from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
-from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
-from linkwork.foundation.names import find_spelling
 from linkwork.foundation.presenting import presenter
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
+from linkwork.results.quantities.definition import Vector
+from linkwork.results.quantities.registry import Group, Quantities
 from linkwork.results.quantity import Units
 from linkwork.results.summary import Summary, driven_text
 
@@ -90,6 +91,8 @@ class Position:
 
     Parameters
     ----------
+    quantities : Quantities
+        Everything that can be asked for by name.
     mechanism : str
         The name of the mechanism.
     units : Units
@@ -120,6 +123,8 @@ class Position:
         Derivatives with respect to the input of unknowns, links, sliders, outputs and coordinates.
     velocity, acceleration : Mapping[str, float]
         Derivatives with respect to time [per s, per s²], if the input has a speed.
+    speed : float, optional
+        Rate of the first input [rad/s or length/s], if given.
     residual : float
         Largest closure error relative to the longest link.
     iterations : int
@@ -157,6 +162,7 @@ class Position:
     mechanism: str
     units: Units
     skeleton: Skeleton
+    quantities: Quantities
     status: Status
     message: str
     input: Mapping[str, float]
@@ -172,6 +178,7 @@ class Position:
     second: Mapping[str, float] = FrozenDict()
     velocity: Mapping[str, float] = FrozenDict()
     acceleration: Mapping[str, float] = FrozenDict()
+    speed: float | None = None
     residual: float
     iterations: int
     condition: float
@@ -187,19 +194,45 @@ class Position:
         object.__setattr__(self, "q", read_only(self.q))
 
     def __getitem__(self, name: str) -> float:
-        """A value by name: input, unknown, link angle, slider, output or ``<point>.x``."""
-        tables = (self.input, self.unknowns, self.links, self.sliders, self.outputs)
-        for table in tables:
-            own = find_spelling(name, table)
-            if own in table:
-                return table[own]
+        """A value by name: ``position["s16"]``, ``position["B.x"]``, ``position["B.x.velocity"]``.
+
+        ``linkwork quantities`` lists all names.
+
+        Raises
+        ------
+        UnknownNameError
+            With the nearest names.
+        """
+        asked = self.quantities.find(name)
+        asked.check_rate(self.speed)
+        if asked.rate is None and asked.row is None:
+            for table in (self.input, self.unknowns, self.links, self.sliders, self.outputs):
+                if asked.name in table:
+                    return table[asked.name]
+        if asked.group is Group.EVIDENCE:
+            holder = self.certificate if hasattr(self.certificate, asked.name) else self
+            number: float | None = getattr(holder, asked.name)
+            return float("nan") if number is None else number
+        return float(asked.values(self, self.speed))
+
+    def own(self, name: str) -> Jet:
+        """One of the mechanism's own quantities by its exact name; see :class:`Solved`."""
         point, _, axis = name.rpartition(".")
-        point = find_spelling(point, self.points)
-        if point in self.points and axis in ("x", "y"):
-            return self.points[point][axis == "y"]
-        known = dict.fromkeys(known for table in tables for known in table)
-        places = [f"{point}.{axis}" for point in self.points for axis in "xy"]
-        raise UnknownNameError(f'there is no "{name}" {choices("names", [*known, *places], name)}')
+        for table in (self.unknowns, self.links, self.sliders, self.outputs):
+            if name in table:
+                value = table[name]
+                break
+        else:
+            if point not in self.points:  # an input that is no link
+                raise self.quantities.unknown(name)
+            value = self.points[point][axis == "y"]
+        rates = (self.first.get(name, np.nan), self.second.get(name, np.nan))
+        return Jet(*(np.asarray(part) for part in (value, *rates)))
+
+    def place(self, point: str) -> Vector:
+        """A point with both derivatives by its exact name."""
+        x, y = self.own(f"{point}.x"), self.own(f"{point}.y")
+        return Vector(*(a + 1j * b for a, b in ((x.v, y.v), (x.d1, y.d1), (x.d2, y.d2))))
 
     def __repr__(self) -> str:
         return str(position_summary(self))

@@ -20,6 +20,7 @@ class Kind(Enum):
 
     ANGLE = "angle"
     LENGTH = "length"
+    PER_LENGTH = "per length"
     NUMBER = "number"
 
 
@@ -31,12 +32,17 @@ class Units:
     length: str
 
     def of(self, kind: Kind) -> str:
-        """Unit of a value: ``deg``, ``mm`` or nothing."""
-        return {Kind.ANGLE: self.angle.value, Kind.LENGTH: self.length}.get(kind, "")
+        """Unit of a value: ``deg``, ``mm``, ``1/mm`` or nothing."""
+        return self.angle.value if kind is Kind.ANGLE else self._of_length(kind)
 
     def of_rate(self, kind: Kind) -> str:
         """Unit in which a derivative counts the quantity: radians, lengths."""
-        return {Kind.ANGLE: "rad", Kind.LENGTH: self.length}.get(kind, "1")
+        return {Kind.ANGLE: "rad", Kind.NUMBER: "1"}.get(kind) or self._of_length(kind)
+
+    def _of_length(self, kind: Kind) -> str:
+        if kind is Kind.LENGTH or not self.length:
+            return self.length
+        return f"1/{self.length}" if kind is Kind.PER_LENGTH else ""
 
     def scale(self, kind: Kind) -> float:
         """Internal units (radians) per file unit."""
@@ -79,6 +85,12 @@ class Rate(Enum):
     def by_time(self) -> bool:
         """Whether the input needs a speed."""
         return self in (Rate.VELOCITY, Rate.ACCELERATION)
+
+    @property
+    def measure(self) -> str:
+        """What it measures, in a word."""
+        ordinal = "first" if self.order == 1 else "second"
+        return self.value if self.by_time else f"{ordinal} derivative"
 
     def check(self, name: str, speed: Array | float | None) -> None:
         """Refuse a rate by time of a quantity if the input has no speed.

@@ -17,7 +17,7 @@ from linkwork.drawing.theme import DARK, LIGHT, Theme
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.results.force import Force, check_forces, force_unit
-from linkwork.results.motion import Motion, Series
+from linkwork.results.motion import Motion
 from linkwork.results.quantity import Rate
 from linkwork.results.vector_loop import MovingLoop
 from linkwork.viewer.loop_arrows import loop_arrows
@@ -190,20 +190,22 @@ def _columns(motion: Motion, pack: Pack) -> Iterator[Column]:
             first=None,
             first_unit="",
         )
-    everything: dict[str, tuple[str, Series]] = {}
-    everything |= {name: ("unknown", series) for name, series in motion.unknowns.items()}
-    everything |= {name: ("unknown", motion.links[name]) for name in motion.riding}
-    everything |= {name: ("output", series) for name, series in motion.outputs.items()}
-    for name, (group, series) in everything.items():
-        kind = series.quantity.kind
+    everything = dict.fromkeys([*motion.unknowns, *motion.riding], "unknown")
+    everything |= dict.fromkeys(motion.outputs, "output")
+    traced = motion.skeleton.traced
+    for name, asked in motion.quantities.derived.items():
+        if asked.row is not None and (not asked.row.of_path or asked.part in traced):
+            everything[name] = "derived"
+    for name, group in everything.items():
+        asked, series = motion.quantity(name), motion.series(name)
         yield Column(
             name=name,
             shown=printed_name(name),
-            unit=motion.units.of(kind),
+            unit=asked.unit,
             group=group,
             values=pack(series.value, found),
-            first=pack(series.first, found, rate=True),
-            first_unit=Rate.FIRST.unit(kind, motion.units, motion.derivative_unit),
+            first=pack(series.first, found, rate=True) if asked.needs < 2 else None,
+            first_unit=Rate.FIRST.unit(asked.own.kind, motion.units, motion.derivative_unit),
         )
 
 

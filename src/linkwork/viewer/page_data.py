@@ -44,7 +44,7 @@ class PackedColumn:
 @dataclass(frozen=True, kw_only=True)
 class Column:
     """A quantity over the rows: its name as printed, its unit; ``group`` says where it is listed:
-    ``input``, ``unknown``, ``output``.
+    ``input``, ``unknown``, ``output``, ``derived``.
     """
 
     name: str

@@ -17,10 +17,11 @@ from linkwork.batch import Plan, from_table, grid, latin_hypercube, random
 from linkwork.batch.sampling import CHUNK, Normal
 from linkwork.batch.study import read_plan, read_plan_text
 from linkwork.batch.study.choosing import Choice, Triangular, values_between
-from linkwork.batch.study.measures import Comparison, Reduced, Word, read_condition
+from linkwork.batch.study.measures import Comparison, Word, read_condition
 from linkwork.batch.study.plan_keys import PLAN as FORM
 from linkwork.batch.study.study import usual_chunk
 from linkwork.foundation.errors import InputError, MechanismFileError
+from linkwork.results.quantities.registry import Call
 from linkwork.textfile import schema_of, schema_text
 from tests.batch.study.plans import PLAN, edited, study
 
@@ -84,8 +85,8 @@ z = "certified"
   line 7   dimensions."O2 A"  sampling = "latin-hypercube" needs a range: { from = 36, to = 44 }; got mean, deviation
   line 8   dimensions."A B"   from = 5 must not be larger than to = 2
   line 10  input.step         a step of -3 does not lead from 0 to 360
-  line 12  reductions.a       there is no reduction "range" (reductions: min, max, mean, stroke)
-  line 13  reductions.b       must be a reduction of a quantity, as in "stroke(rocker)", got "mu" (reductions: min, max, mean, stroke)
+  line 12  reductions.a       there is no number "range" of a motion (nearest: mean, path_length, stroke; all: linkwork quantities FILE)
+  line 13  reductions.b       must be a number of a whole motion, as in "stroke(rocker)", got "mu" (nearest: min, max, mean; all: linkwork quantities FILE)
   line 15  filters.x          must be "whole cycle", "no dead point", "certified" or a comparison such as "mu >= 40" or "stroke(rocker) <= 60", got "mu => 40"
   line 16  filters.y          "forty" in "mu >= forty" must be a number, as in "mu >= 40"
   line 17  filters.z          no design passes it with certify = false: leave one of them out""",
@@ -112,16 +113,16 @@ x = "mew <= 40"
 """,
         """\
 10 problems in plan.toml
-  line 6   keep[1]                 there is no "B.z" (names: B.y, B.x, crank, coupler, rocker, mu, O2.x, O2.y, … 4 more)
+  line 6   keep[1]                 there is no "B.z" (nearest: B.y, B.x, A.y; all: linkwork quantities FILE)
   line 6   keep[2]                 "crank" is an input, the same for every design: leave it out
   line 6   keep[4]                 "B.x" is already the name of keep[3]: leave it out or rename it
   line 10  reductions."B.x"        "B.x" is already the name of keep[3]: leave it out or rename it
   line 11  reductions.passed       "passed" is already an array of every study: leave it out or rename it
-  line 12  reductions.a            there is no "mew" (names: crank, coupler, rocker, mu, O2.x, O2.y, O4.x, O4.y, … 4 more)
+  line 12  reductions.a            there is no "mew" (nearest: mu, unique_within, rocker; all: linkwork quantities FILE)
   line 13  reductions."x/y"        "x/y" cannot name an array: up to 80 letters, without / \\ : *
   line 14  reductions."zarr.json"  "zarr.json" is already an array of every study: leave it out or rename it
   line 15  reductions.".x"         ".x" cannot name an array: begin with a letter
-  line 17  filters.x               there is no "mew" (names: crank, coupler, rocker, mu, O2.x, O2.y, O4.x, O4.y, … 4 more)""",
+  line 17  filters.x               there is no "mew" (nearest: mu, unique_within, rocker; all: linkwork quantities FILE)""",
     ),
     "numbers of the mechanism that are called like an array of the store": (
         'format = 1\nmechanism = "circle.toml"\nsampling = "grid"\n'
@@ -300,10 +301,10 @@ def test_draws_stay_within_what_was_asked() -> None:
 @pytest.mark.parametrize(
     ("text", "read"),
     [
-        ("mu >= 40", Comparison(Reduced("min", "mu"), ">=", 40.0)),
-        ("mu<140.5", Comparison(Reduced("max", "mu"), "<", 140.5)),
-        (" stroke( B.x ) <= -1e3 ", Comparison(Reduced("stroke", "B.x"), "<=", -1000.0)),
-        ("max(stick-boom) > 1", Comparison(Reduced("max", "stick-boom"), ">", 1.0)),
+        ("mu >= 40", Comparison(Call("min", "mu"), ">=", 40.0)),
+        ("mu<140.5", Comparison(Call("max", "mu"), "<", 140.5)),
+        (" stroke( B.x ) <= -1e3 ", Comparison(Call("stroke", "B.x"), "<=", -1000.0)),
+        ("max(stick-boom) > 1", Comparison(Call("max", "stick-boom"), ">", 1.0)),
         ("whole   cycle", Word("whole cycle")),
     ],
 )

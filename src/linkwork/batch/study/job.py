@@ -11,12 +11,13 @@ from importlib.metadata import PackageNotFoundError, version
 import numpy as np
 
 from linkwork.batch.family import Family, family_of
-from linkwork.batch.study.measures import Condition, Measured, Reduced
+from linkwork.batch.study.measures import Condition, Measured
 from linkwork.foundation.arrays import AnyArray, Array
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.status import Status
 from linkwork.mechanism.description import Description
 from linkwork.motion import Model, as_described
+from linkwork.results.quantities.registry import Call
 
 __all__ = ["Job", "Part", "compute_part", "linkwork_version", "passes_name"]
 
@@ -47,7 +48,7 @@ class Job:
         The mechanism, with the study's range of its input.
     keep : tuple of str
         Quantities at every row.
-    reductions : Mapping[str, Reduced]
+    reductions : Mapping[str, Call]
         One number per design, by the name of its array.
     filters : Mapping[str, Condition]
         What a design has to pass, by name.
@@ -60,7 +61,7 @@ class Job:
 
     description: Description
     keep: tuple[str, ...]
-    reductions: Mapping[str, Reduced]
+    reductions: Mapping[str, Call]
     filters: Mapping[str, Condition]
     certify: bool
     device: str
@@ -117,7 +118,7 @@ def compute_part(job: Job, values: Mapping[str, Array | float]) -> Part:
         "passed": passed,
     }
     arrays |= {passes_name(name): values for name, values in passes.items()}
-    arrays |= {name: reduced.values(measured) for name, reduced in job.reductions.items()}
+    arrays |= {name: measured.value(str(call)) for name, call in job.reductions.items()}
     for name in job.keep:
         arrays[name] = np.where(passed[:, None], measured[name], np.nan)
     if job.keep:

@@ -1,8 +1,7 @@
-"""Reductions and conditions of a plan, parsed from text.
+"""Conditions that a plan sets for the motion of a design, parsed from text.
 
-``stroke(rocker)`` is one number per design; ``mu >= 40`` and ``stroke(rocker) <= 60`` are true or
-false of it, as are the words of :data:`WORDS`. They are read by two patterns and never evaluated
-as code.
+``mu >= 40`` and ``stroke(rocker) <= 60`` are true or false of it, as are the words of
+:data:`WORDS`. They are read by patterns and never evaluated as code.
 """
 
 from __future__ import annotations
@@ -15,14 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.batch.family_motion import FamilyMotion
-from linkwork.batch.reductions import REDUCTIONS
 from linkwork.foundation.arrays import Array, BoolArray
-from linkwork.foundation.errors import InputError, choices
+from linkwork.foundation.errors import InputError
 from linkwork.foundation.status import Status
+from linkwork.results.quantities.registry import Call
 
-__all__ = ["WORDS", "Comparison", "Condition", "Measured", "Reduced", "Word", "read_condition"]
+__all__ = ["WORDS", "Comparison", "Condition", "Measured", "Word", "read_condition"]
 
-_CALL = re.compile(r"\s*(\w+)\s*\(\s*([^()<>=]*[^()<>=\s])\s*\)\s*")
 _COMPARISON = re.compile(r"(?P<left>[^<>=]+)(?P<sign>>=|<=|>|<)(?P<bound>[^<>=]+)")
 _SIGNS: Mapping[str, Callable[[Array, float], BoolArray]] = {
     ">=": np.greater_equal,
@@ -51,62 +49,28 @@ class Measured:
             self._values[name] = self.motion[name]
         return self._values[name]
 
-
-@dataclass(frozen=True)
-class Reduced:
-    """One number per design of a quantity's values at the rows found: ``stroke(rocker)``."""
-
-    take: str
-    of: str
-
-    @classmethod
-    def read(cls, text: str) -> Reduced:
-        """From text.
-
-        Raises
-        ------
-        InputError
-            If it is none.
-        """
-        call = _CALL.fullmatch(text)
-        if call is None:
-            raise InputError(
-                f'must be a reduction of a quantity, as in "stroke(rocker)", got "{text}" '
-                f"{choices('reductions', REDUCTIONS)}"
-            )
-        if call[1] not in REDUCTIONS:
-            raise InputError(
-                f'there is no reduction "{call[1]}" {choices("reductions", REDUCTIONS, call[1])}'
-            )
-        return cls(call[1], call[2])
-
-    def __str__(self) -> str:
-        return f"{self.take}({self.of})"
-
-    def values(self, measured: Measured) -> Array:
-        """(D,), NaN where no row is found."""
-        return REDUCTIONS[self.take](measured[self.of])
+    def value(self, name: str) -> Array:
+        """A number of the whole motion, (D,): ``stroke(rocker)``."""
+        asked = self.motion.quantities.find_of_motion(name)
+        if asked.follows:
+            return self.motion.value(name)
+        return asked.evaluate(self.motion.leading, self[asked.of.name])
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """A reduction against a number, in file units; false where no row is found."""
+    """A number of a motion against a bound, in file units; false where no row is found."""
 
-    reduced: Reduced
+    reduced: Call
     sign: str
     bound: float
-
-    @property
-    def quantity(self) -> str:
-        """What is compared."""
-        return self.reduced.of
 
     def __str__(self) -> str:
         return f"{self.reduced} {self.sign} {str(self.bound).removesuffix('.0')}"
 
     def holds(self, measured: Measured) -> BoolArray:
         """(D,)."""
-        return _SIGNS[self.sign](self.reduced.values(measured), self.bound)
+        return _SIGNS[self.sign](measured.value(str(self.reduced)), self.bound)
 
 
 @dataclass(frozen=True)
@@ -170,10 +134,10 @@ def read_condition(text: str) -> Condition:
         )
     left = parts["left"].strip()
     if "(" in left:
-        reduced = Reduced.read(left)
+        call = Call.read(left)
     else:
-        reduced = Reduced("min" if parts["sign"].startswith(">") else "max", left)
-    return Comparison(reduced, parts["sign"], _number(parts["bound"].strip(), text))
+        call = Call("min" if parts["sign"].startswith(">") else "max", left)
+    return Comparison(call, parts["sign"], _number(parts["bound"].strip(), text))
 
 
 def _number(text: str, whole: str) -> float:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -13,7 +14,7 @@ from linkwork.batch.family_motion import FamilyMotion
 from linkwork.batch.sampling import Plan
 from linkwork.batch.study.choosing import choose_values, values_between
 from linkwork.batch.study.job import Job, linkwork_version, passes_name
-from linkwork.batch.study.measures import Comparison, Condition, Reduced, Word, read_condition
+from linkwork.batch.study.measures import Comparison, Condition, Word, read_condition
 from linkwork.batch.study.plan_keys import PLAN
 from linkwork.batch.study.study import DESIGN, Study, usual_chunk
 from linkwork.batch.study.zarr_files import LEDGER, METADATA
@@ -29,6 +30,7 @@ from linkwork.foundation.names import find_spelling
 from linkwork.mechanism.description import Description, Problems
 from linkwork.mechanism.quantities import quantity_named
 from linkwork.motion import Model, as_described
+from linkwork.results.quantities.registry import Call
 from linkwork.textfile.library import example_text, examples
 from linkwork.textfile.lines import Lines
 from linkwork.textfile.reader import ReadFile, check_format, located_error, read_text
@@ -44,8 +46,13 @@ Key = tuple[str | int, ...]
 T = TypeVar("T")
 
 
-def read_plan(path: Path | str) -> Study:
+def read_plan(path: Path | str, *, columns: Sequence[str] = ()) -> Study:
     """Read the plan of a study.
+
+    Parameters
+    ----------
+    columns : sequence of str
+        Quantities that are kept at every row besides those that the plan keeps.
 
     Raises
     ------
@@ -54,15 +61,23 @@ def read_plan(path: Path | str) -> Study:
     """
     name = str(path)
     text = text_of(bytes_of(Path(path), name), name)
-    return read_plan_text(text, name, Path(path).parent)
+    return read_plan_text(text, name, Path(path).parent, columns=columns)
 
 
-def read_plan_bytes(data: bytes, name: str = "standard input") -> Study:
+def read_plan_bytes(
+    data: bytes, name: str = "standard input", *, columns: Sequence[str] = ()
+) -> Study:
     """Read the plan in the bytes of a file; raises like :func:`read_plan`."""
-    return read_plan_text(text_of(data, name), name)
+    return read_plan_text(text_of(data, name), name, columns=columns)
 
 
-def read_plan_text(text: str, name: str = "the plan", folder: Path | str = ".") -> Study:
+def read_plan_text(
+    text: str,
+    name: str = "the plan",
+    folder: Path | str = ".",
+    *,
+    columns: Sequence[str] = (),
+) -> Study:
     """Read the plan in a text; files that it names are looked for in ``folder``.
 
     Raises like :func:`read_plan`.
@@ -73,7 +88,10 @@ def read_plan_text(text: str, name: str = "the plan", folder: Path | str = ".") 
     structure = Structure(data, PLAN)
     if structure.problems:
         raise located_error(structure.problems, lines, name)
-    reader = _Reader(structure.content, text, Path(folder))
+    content = dict(structure.content)
+    if columns:
+        content["keep"] = [*dict.fromkeys([*content.get("keep", ()), *columns])]
+    reader = _Reader(content, text, Path(folder))
     study = reader.study(Path(name).stem)
     if study is None:
         raise located_error(reader.problems, lines, name)
@@ -100,7 +118,7 @@ class _Reader:
         description = self._with_range(described)
         found = choose_values(self.content, self.folder, self.problems)
         conditions = self._filters()
-        reductions = self._texts("reductions", Reduced.read)
+        reductions = self._texts("reductions", Call.read)
         if description is None or found is None:
             return None
         plan, constants = found
@@ -132,7 +150,7 @@ class _Reader:
             plan=plan,
             constants=constants,
             job=job,
-            units=_units(motion, {*job.keep, *(r.of for r in reductions.values())}),
+            units=_units(motion, job),
             chunk_size=min(size, plan.count),
             identity=self._identity(source[0], plan, job, model, min(size, plan.count)),
         )
@@ -223,20 +241,26 @@ class _Reader:
         model: Model,
         plan: Plan,
         motion: FamilyMotion,
-        reductions: Mapping[str, Reduced],
+        reductions: Mapping[str, Call],
         conditions: Mapping[str, Condition],
     ) -> None:
         """Quantities exist, and every array of the store has a name of its own."""
         keep = self.content.get("keep", ())
         inputs = [variable.name for variable in model.equations.inputs]
-        asked: list[tuple[Key, str]] = [(("keep", k), name) for k, name in enumerate(keep)]
-        asked += [(("reductions", name), reduced.of) for name, reduced in reductions.items()]
-        asked += [
-            (("filters", name), condition.quantity)
+        known = [
+            self._check_quantity(("keep", k), name, inputs, partial(motion.quantity, name))
+            for k, name in enumerate(keep)
+        ]
+        calls: list[tuple[Key, Call]] = [
+            (("reductions", name), c) for name, c in reductions.items()
+        ]
+        calls += [
+            (("filters", name), condition.reduced)
             for name, condition in conditions.items()
             if isinstance(condition, Comparison)
         ]
-        known = [self._check_quantity(key, name, inputs, motion) for key, name in asked]
+        for key, call in calls:
+            self._check_quantity(key, call.of, inputs, partial(motion.value, str(call)))
         taken = dict.fromkeys(_TAKEN, "an array of every study")
         for name in inputs:
             self._check_free(("mechanism",), name, name, taken)
@@ -252,13 +276,15 @@ class _Reader:
         for name in conditions:
             self._check_free(("filters", name), name, passes_name(name), taken)
 
-    def _check_quantity(self, key: Key, name: str, inputs: list[str], motion: FamilyMotion) -> bool:
+    def _check_quantity(
+        self, key: Key, name: str, inputs: list[str], ask: Callable[[], object]
+    ) -> bool:
         """Whether there is such a quantity, and designs can differ in it."""
         if find_spelling(name, inputs) in inputs:
             self.problems.add(key, f'"{name}" is an input, the same for every design: leave it out')
             return False
         try:
-            motion[name]
+            ask()
         except UnknownNameError as error:
             self.problems.add(key, str(error))
             return False
@@ -307,9 +333,9 @@ def _digest(plan: Plan) -> str:
     return total.hexdigest()
 
 
-def _units(motion: FamilyMotion, names: set[str]) -> dict[str, str]:
-    """The file units of quantities."""
-    if not names:
-        return {}
-    arrays = motion.to_xarray(*names)
-    return {name: arrays[name].attrs.get("units", "") for name in names}
+def _units(motion: FamilyMotion, job: Job) -> dict[str, str]:
+    """The units of what is kept and of numbers of motions, by the names of their arrays."""
+    found = {name: motion.unit(name) for name in job.keep}
+    for name, call in job.reductions.items():
+        found[name] = motion.quantities.find_of_motion(str(call)).unit
+    return found

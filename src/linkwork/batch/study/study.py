@@ -63,7 +63,7 @@ class Study:
     job : Job
         What is computed of every design.
     units : Mapping[str, str]
-        Of the quantities that are kept or reduced.
+        Of what is kept and of numbers of motions, by the names of their arrays.
     chunk_size : int
         Designs that are computed and stored together.
     identity : Mapping[str, object]
@@ -140,7 +140,7 @@ class Study:
             for name, condition in self.job.filters.items()
         ]
         return found + [
-            self._variable(name, one, "float64", np.nan, self.units[reduced.of], about=str(reduced))
+            self._variable(name, one, "float64", np.nan, self.units[name], about=str(reduced))
             for name, reduced in self.job.reductions.items()
         ]
 

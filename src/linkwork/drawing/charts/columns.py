@@ -11,9 +11,10 @@ from linkwork.drawing.captions import printed_name
 from linkwork.drawing.charts.chart import Pen, Scale
 from linkwork.drawing.charts.labels import rate_label, size_label
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import find_spelling
 from linkwork.results.motion import Motion
+from linkwork.results.quantities.registry import Asked, Group
 from linkwork.results.quantity import Kind, Rate
 
 __all__ = ["TIME", "Column", "abscissa_of", "column_of", "lead_of"]
@@ -95,104 +96,63 @@ def column_of(motion: Motion, name: str) -> Column:
     InputError
         If the column is text, or a point has to be followed by one of its coordinates.
     """
-    if name in _EVIDENCE:
-        scale, pen = _EVIDENCE[name]
-        shown = motion.found
-        if name == "condition":  # infinite at dead points but for rounding
-            shown = shown & ~np.isin(motion.limit, ("dead point", "change point"))
-        values = np.where(shown, getattr(motion, name).astype(float), np.nan)
-        label = name.replace("_", " ")
-        return Column(name=name, label=label, unit="", measure="", values=values, scale=scale,
-                      pen=pen)  # fmt: skip
     if name in _TEXTS:
         raise InputError(f'"{name}" is text and cannot be plotted')
-    own = find_spelling(name, motion.inputs)
-    if own in motion.inputs:
-        return _input(motion, own)
-    quantity, rate = Rate.split(name)
-    point = find_spelling(quantity, motion.points)
-    if point in motion.points and point not in _named(motion):
-        if rate is None:
-            raise InputError(
-                f'"{point}" is a point: plot a coordinate, "{point}.x" or "{point}.y", or its '
-                'path, kind="path" (--kind path)'
-            )
-        return _size_of_rate(motion, point, rate)
-    return _quantity(motion, quantity, rate)
-
-
-def _named(motion: Motion) -> list[str]:
-    tables = (motion.inputs, motion.unknowns, motion.links, motion.sliders, motion.outputs)
-    return list(dict.fromkeys(name for table in tables for name in table))
-
-
-def _input(motion: Motion, name: str) -> Column:
-    unit = motion.input_units[name]
-    angle = unit == motion.units.angle.value
-    return Column(
-        name=name,
-        label=printed_name(name),
-        unit=unit,
-        measure="angle" if angle else "length" if unit else "",
-        values=motion.inputs[name],
-        turn=motion.units.angle.turn if angle else 0.0,
-    )
-
-
-def _quantity(motion: Motion, name: str, rate: Rate | None) -> Column:
-    try:
-        series = motion.series(name)
-    except UnknownNameError:
-        known = [*_named(motion), *(f"{p}.{axis}" for p in motion.points for axis in "xy")]
-        text = f'there is no "{name}" {choices("columns", [*known, *_EVIDENCE], name)}'
-        raise UnknownNameError(text) from None
-    own, kind, units = series.quantity.name, series.quantity.kind, motion.units
-    lead = lead_of(motion)
-    if rate is not None:
-        rate.check(own, motion.speed)
-        size = _reach(motion) if kind is Kind.LENGTH else 1.0
-        return Column(
-            name=f"{own}.{rate.value}",
-            label=rate_label(own, rate, lead),
-            unit=rate.unit(kind, units, motion.derivative_unit),
-            measure=_word(rate) if kind is not Kind.NUMBER else "",
-            values=rate.of(series.first, series.second, motion.speed),
-            size=size * abs(motion.speed or 1.0) ** rate.order if rate.by_time else size,
+    point = find_spelling(name, motion.points)
+    own = motion.quantities.own
+    if point in motion.points and find_spelling(name, own) not in own:
+        raise InputError(
+            f'"{point}" is a point: plot a coordinate, "{point}.x" or "{point}.y", or its '
+            'path, kind="path" (--kind path)'
         )
+    asked = motion.quantity(name)
+    if asked.group is Group.EVIDENCE:
+        return _evidence(motion, asked)
+    if asked.rate is not None:
+        return _rate(motion, asked, asked.rate)
+    units, kind, lead = motion.units, asked.own.kind, lead_of(motion)
     turn = units.angle.turn if kind is Kind.ANGLE else 0.0
-    by_input = 1.0 if motion.input_units[lead] != units.angle.value else units.angle.radians
+    slope = None
+    if asked.group is not Group.INPUT and kind is Kind.ANGLE:
+        by_input = 1.0 if motion.input_units[lead] != units.angle.value else units.angle.radians
+        slope = asked.jet(motion).d1 * by_input / units.scale(kind)
     return Column(
-        name=own,
-        label=printed_name(own),
-        unit=units.of(kind),
-        measure="" if kind is Kind.NUMBER else kind.value,
-        values=series.value,
+        name=asked.name,
+        label=printed_name(asked.name),
+        unit=asked.unit,
+        measure=asked.measure,
+        values=motion[asked.name],
         turn=turn,
-        slope=series.first * by_input / units.scale(kind),
+        slope=slope,
         size=turn or (_reach(motion) if kind is Kind.LENGTH else 1.0),
     )
 
 
-def _size_of_rate(motion: Motion, point: str, rate: Rate) -> Column:
-    """The length of a point's velocity or acceleration, or of its derivatives by the input."""
-    rate.check(point, motion.speed)
+def _evidence(motion: Motion, asked: Asked) -> Column:
+    """A number about positions, of those found."""
+    scale, pen = _EVIDENCE.get(asked.name, (Scale.LINEAR, Pen.LINE))
+    shown = motion.found
+    if asked.name == "condition":  # infinite at dead points but for rounding
+        shown = shown & ~np.isin(motion.limit, ("dead point", "change point"))
+    values = np.where(shown, motion[asked.name].astype(float), np.nan)
+    label = asked.name.replace("_", " ")
     return Column(
-        name=f"{point}.{rate.value}",
-        label=size_label(point, rate, lead_of(motion)),
-        unit=rate.unit(Kind.LENGTH, motion.units, motion.derivative_unit),
-        measure=_word(rate),
-        values=np.abs(motion.trace(f"{point}.{rate.value}")),
-        size=_reach(motion) * abs(motion.speed or 1.0) ** (rate.order if rate.by_time else 0),
+        name=asked.name, label=label, unit="", measure="", values=values, scale=scale, pen=pen
     )
 
 
-def _word(rate: Rate) -> str:
-    return {
-        Rate.FIRST: "first derivative",
-        Rate.SECOND: "second derivative",
-        Rate.VELOCITY: "velocity",
-        Rate.ACCELERATION: "acceleration",
-    }[rate]
+def _rate(motion: Motion, asked: Asked, rate: Rate) -> Column:
+    """A rate of a quantity, or the length of a point's."""
+    own, of_point = asked.own, asked.group is Group.POINT
+    size = _reach(motion) if own.kind is Kind.LENGTH else 1.0
+    return Column(
+        name=asked.name,
+        label=(size_label if of_point else rate_label)(own.name, rate, lead_of(motion)),
+        unit=asked.unit,
+        measure=asked.measure,
+        values=motion[asked.name],
+        size=size * abs(motion.speed or 1.0) ** (rate.order if rate.by_time else 0),
+    )
 
 
 def _reach(motion: Motion) -> float:
@@ -212,7 +172,7 @@ def abscissa_of(motion: Motion, against: str = "") -> Column:
     """
     if not against:
         return column_of(motion, lead_of(motion))
-    if against == TIME and TIME not in _named(motion):
+    if against == TIME and TIME not in motion.quantities.own:
         return _time(motion)
     return column_of(motion, against)
 

@@ -14,12 +14,10 @@ from linkwork.drawing.charts.columns import Column, abscissa_of, column_of
 from linkwork.drawing.charts.labels import with_unit
 from linkwork.drawing.charts.motion_chart import across_axis, check_found, shared_panels
 from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import find_spelling
-from linkwork.mechanism.dyad import Dyad
+from linkwork.mechanism.dyad import Dyad, dyads_of
 from linkwork.results.motion import Motion
-from linkwork.results.transmission import transmission_angles
 
 __all__ = ["transmission_chart"]
 
@@ -45,14 +43,13 @@ def transmission_chart(motion: Motion, names: Sequence[str] = (), *, against: st
         For a name that is neither the pin of a dyad nor an angle.
     """
     check_found(motion)
-    found = transmission_angles(motion)
-    if not names and not found:
+    pins = {dyad.pin: dyad for dyad in dyads_of(motion.skeleton)}
+    if not names and not pins:
         raise InputError(
             f'"{motion.mechanism}" has no pair of links with a known transmission angle: '
             'add it to [outputs], as in mu = "rocker - coupler", and name it'
         )
-    pins = {dyad.pin: dyad for dyad in found}
-    columns = [_column(motion, found, pins, name) for name in names or pins]
+    columns = [_column(motion, pins, name) for name in names or pins]
     across = abscissa_of(motion, against)
     axis, band = _axis(motion), _band(motion)
     panels = [
@@ -89,32 +86,30 @@ def _band(motion: Motion) -> Band:
     return Band(low=low, high=high, name=f"recommended: {told[0]} to {told[1]}")
 
 
-def _column(
-    motion: Motion, found: Mapping[Dyad, Array], pins: Mapping[str, Dyad], name: str
-) -> Column:
-    radians = motion.units.angle.radians
+def _column(motion: Motion, pins: Mapping[str, Dyad], name: str) -> Column:
+    """The angle at the pin of a dyad, or another angle folded to half a turn."""
     pin = find_spelling(name, pins)
-    if pin in pins:
-        label = f"{printed_name(pin)}: {', '.join(pins[pin].links)}"
-        values = found[pins[pin]] / radians
-    elif name in motion.points:
+    if pin not in pins and name in motion.points:
         known = choices("pins with a known transmission angle", pins, name)
         raise UnknownNameError(f'the transmission angle at "{name}" is not known {known}')
+    column = column_of(motion, f"{pin}.transmission" if pin in pins else name)
+    if not column.turn:
+        raise UnknownNameError(
+            f'"{name}" is not an angle {choices("pins", pins, name)}; name a pin between two '
+            "links, or an angle"
+        )
+    label, values = column.label, column.values
+    if pin in pins:
+        label = f"{printed_name(pin)}: {', '.join(pins[pin].links)}"
     else:
-        column = column_of(motion, name)
-        if not column.turn:
-            raise UnknownNameError(
-                f'"{name}" is not an angle {choices("pins", pins, name)}; name a pin between two '
-                "links, or an angle"
-            )
-        label = column.label
-        values = np.abs(np.angle(np.exp(1j * column.values * radians))) / radians
-    return Column(
+        radians = motion.units.angle.radians
+        values = np.abs(np.angle(np.exp(1j * values * radians))) / radians
+    return replace(
+        column,
         name=name,
         label=label,
-        unit=motion.units.angle.value,
         measure="transmission angle",
         values=values,
-        turn=motion.units.angle.turn,
-        size=motion.units.angle.turn,
+        slope=None,
+        size=column.turn,
     )

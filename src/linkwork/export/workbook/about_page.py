@@ -130,6 +130,9 @@ def notices(book: Book) -> Iterator[str]:
     settled = [names.get(key, key) for key in book.traced.settled]
     if settled:
         yield f"{', '.join(settled)}: gear ratios keep the values of the file"
+    outputs = [name for name in book.motion.outputs if name not in book.closure.outputs]
+    if outputs:
+        yield f"{', '.join(outputs)}: values on the sheet Linkwork only"
     held = int((book.iterations.found & ~book.iterations.live).sum())
     if held:
         yield (

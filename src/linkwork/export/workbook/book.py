@@ -56,7 +56,7 @@ class Book:
     """A workbook while its sheets are written.
 
     ``values`` holds what formulas come to: numbers of dimensions, arrays (R,) of what
-    every row has.
+    every row has. ``further``: further quantities for the sheet of Linkwork's own values.
     """
 
     workbook: Any
@@ -65,6 +65,7 @@ class Book:
     traced: TracedEquations
     closure: ClosureFormulas
     iterations: Iterations
+    further: tuple[str, ...] = ()
     names: CellNames = field(default_factory=CellNames)
     values: dict[str, Any] = field(default_factory=dict)
 

@@ -34,7 +34,7 @@ def _curves(book: Book, kind: Kind) -> list[tuple[str, str]]:
         for v in equations.unknowns
         if v.kind == kind.value and v.name in named
     ]
-    outputs = {name: output.kind for name, output in equations.outputs.items()}
+    outputs = {name: equations.outputs[name].kind for name in book.closure.outputs}
     found += [(f"output {name}", name) for name, own in outputs.items() if own == kind.value]
     return found
 

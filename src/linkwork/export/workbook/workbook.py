@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from typing import Any
@@ -36,13 +37,15 @@ class WrittenWorkbook:
     notices: tuple[str, ...]
 
 
-def workbook_of(model: Model, motion: Motion) -> WrittenWorkbook:
+def workbook_of(model: Model, motion: Motion, further: Sequence[str] = ()) -> WrittenWorkbook:
     """Write a motion of a mechanism as a workbook that solves it again.
 
     Parameters
     ----------
     model : Model
     motion : Motion
+    further : sequence of str
+        Further quantities, as values on the sheet of Linkwork's own table.
         A sweep of that mechanism.
 
     Raises
@@ -68,7 +71,7 @@ def workbook_of(model: Model, motion: Motion) -> WrittenWorkbook:
     )
     formulas = ClosureFormulas(model, traced(description))
     done = iterated(model, motion, formulas)
-    book = Book(workbook, model, motion, formulas.traced, formulas, done)
+    book = Book(workbook, model, motion, formulas.traced, formulas, done, tuple(further))
     about = workbook.add_worksheet("About")
     write_dimensions(book)
     cycle = workbook.add_worksheet(CYCLE)

@@ -128,7 +128,7 @@ class Part:
         """The same part where another link is the ground."""
         return self._renamed("link", inversion.name)
 
-    def spelled(self, same: Callable[[str], str]) -> Self:
+    def find_spelling(self, same: Callable[[str], str]) -> Self:
         """A copy in which every name has the spelling of its declaration."""
         return self._renamed("", same)
 

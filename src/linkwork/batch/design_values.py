@@ -1,0 +1,123 @@
+"""The quantities of many designs over many rows, from their variables."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwork.batch.designs import Designs
+from linkwork.batch.rates import DesignRates
+from linkwork.expression.jets import Jet
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, TurnArray
+from linkwork.motion.lock_step import lock_step
+from linkwork.motion.quantity_values import QuantityValues
+from linkwork.results.quantities.definition import Vector
+
+__all__ = ["DesignValues"]
+
+
+_NONE = np.zeros(())  # the rates of what is only asked for its value
+
+
+class DesignValues(QuantityValues):
+    """Reads quantities off the variables of D designs over R rows, (R, D) each.
+
+    Parameters
+    ----------
+    designs : Designs
+    inputs : (R, p)
+        As asked, file units.
+    v : (n, R, D)
+        Unknowns, internal units; NaN where there is no position.
+    turns : (R, D)
+        How many whole turns further than asked the first input of a position is.
+    rates : DesignRates, optional
+        Without them only values can be asked for.
+    """
+
+    def __init__(
+        self,
+        designs: Designs,
+        inputs: Array,
+        v: Array,
+        turns: TurnArray,
+        rates: DesignRates | None = None,
+    ) -> None:
+        lost: BoolArray = np.zeros(v.shape[1:], dtype=bool)
+        lost |= np.isnan(v).any(axis=0)
+        still = _NONE if rates is None else np.where(lost, np.nan, 0.0)
+        super().__init__(designs.base, lost, still, designs.link_angles, designs.numbers)
+        self.designs, self.inputs, self.v, self.turns = designs, inputs, v, turns
+        self.rates = rates
+        self.number = {x.symbol: k for k, x in enumerate(self.equations.variables)}
+
+    def _blanks(self) -> tuple[Array, Array]:
+        """0, NaN where a variable has no first or no second derivative, (R, D)."""
+        if self.rates is None:
+            return _NONE, _NONE
+        first = np.isnan(self.rates.first).any(axis=0) | self.lost
+        second = np.isnan(self.rates.second).any(axis=0) | first
+        return np.where(first, np.nan, 0.0), np.where(second, np.nan, 0.0)
+
+    def variable(self, symbol: str) -> Jet:
+        """A variable by its symbol, internal units."""
+        k = self.number[symbol]
+        n, rates = len(self.equations.unknowns), self.rates
+        if k < n:
+            if rates is None:
+                return Jet(self.v[k], _NONE, _NONE)
+            return Jet(self.v[k], rates.first[k], rates.second[k])
+        column = self.inputs[:, k - n] * self.model.input_scale[k - n]
+        value = np.where(self.lost, np.nan, column[:, None])
+        if k == n and self.turns.any():
+            value = value + self.turns * FULL_TURN
+        if rates is None:
+            return Jet(value, _NONE, _NONE)
+        rate = lock_step(self.model.rows)[1][k - n]
+        first, second = (
+            np.where(self.lost | ~driven, np.nan, own)
+            for driven, own in zip(rates.driven, (rate, 0.0), strict=True)
+        )
+        return Jet(value, first, second)
+
+    def place(self, point: str) -> Vector:
+        """A point by its exact name: its parent's place, and its own terms."""
+        table = self.model.compiled.points
+        number = {own: k for k, own in enumerate(table.names)}
+        parent = self.equations.points[point].parent
+        if parent is None:
+            blanks = (np.where(self.lost, np.nan, 0.0), *self._blanks())
+            place = Vector(*(_as_complex(blank) for blank in blanks))
+        else:
+            place = self.place(parent)
+        for term in np.flatnonzero(table.rows.row == number[point]):
+            own = self._term(int(term))
+            place = Vector(place.v + own.v, place.d1 + own.d1, place.d2 + own.d2)
+        return place
+
+    def _term(self, term: int) -> Vector:
+        """c s e^{iψ} with both derivatives."""
+        rows = self.model.compiled.points.rows
+        symbols = [x.symbol for x in self.equations.variables]
+        value: ComplexArray = self.designs.points[:, term][None, :]
+        mine = rows.phase_term == term
+        turn = Jet.constant(0.0)
+        for k, weight in zip(rows.phase_variable[mine], rows.phase_weight[mine], strict=True):
+            angle = self.variable(symbols[k])
+            turn = turn + Jet(weight * angle.v, weight * angle.d1, weight * angle.d2)
+        if mine.any():
+            value = value * np.exp(1j * np.asarray(turn.v))
+        length = int(rows.length[term])
+        if self.rates is None:
+            value = value if length < 0 else value * self.variable(symbols[length]).v
+            return Vector(value, np.zeros((), dtype=complex), np.zeros((), dtype=complex))
+        s = Jet.constant(1.0) if length < 0 else self.variable(symbols[length])
+        first = value * (s.d1 + 1j * s.v * turn.d1)
+        second = s.d2 - s.v * turn.d1**2 + 1j * (2.0 * s.d1 * turn.d1 + s.v * turn.d2)
+        return Vector(value * s.v, first, value * second)
+
+
+def _as_complex(blank: Array) -> ComplexArray:
+    """0, or NaN in both parts."""
+    both: ComplexArray = np.asarray(blank * (1.0 + 1.0j), dtype=complex)
+    return both

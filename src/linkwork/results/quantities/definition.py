@@ -1,0 +1,212 @@
+"""A quantity: what it is asked by, what it measures, and how it follows from solved positions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from linkwork.expression.jets import Jet
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.mechanism.skeleton import Skeleton
+from linkwork.results.quantity import Kind, Units
+
+__all__ = [
+    "UNKNOWN",
+    "MechanismNames",
+    "MotionQuantity",
+    "MotionRows",
+    "RowQuantity",
+    "Solved",
+    "Vector",
+    "folded",
+]
+
+_SAME = 1e-9  # relative: what differs by less is the same
+
+#: The derivative of a quantity whose derivative would need a third one of the positions.
+UNKNOWN = np.array(np.nan)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MechanismNames:
+    """The parts of a mechanism that have quantities of their own.
+
+    Parameters
+    ----------
+    units : Units
+    skeleton : Skeleton
+    inputs, unknowns, outputs : Mapping[str, Kind]
+        With what they measure.
+    output_needs : Mapping[str, int]
+        Of outputs, how many derivatives of the positions their values take.
+    links, sliders, points : tuple of str
+    by : str
+        What derivatives are taken by: ``rad``, or the length unit; "" without an input.
+    lead : str
+        The leading input, the first one that changes from row to row; "" without an input.
+    """
+
+    units: Units
+    skeleton: Skeleton
+    inputs: Mapping[str, Kind] = FrozenDict()
+    unknowns: Mapping[str, Kind] = FrozenDict()
+    links: tuple[str, ...] = ()
+    sliders: tuple[str, ...] = ()
+    outputs: Mapping[str, Kind] = FrozenDict()
+    output_needs: Mapping[str, int] = FrozenDict()
+    points: tuple[str, ...] = ()
+    by: str = ""
+    lead: str = ""
+
+
+@dataclass(frozen=True)
+class Vector:
+    """A vector x + iy in the plane with its derivatives by the leading input, shape S each."""
+
+    v: ComplexArray
+    d1: ComplexArray
+    d2: ComplexArray
+
+    def __sub__(self, other: Vector) -> Vector:
+        return Vector(self.v - other.v, self.d1 - other.d1, self.d2 - other.d2)
+
+    def direction(self) -> Jet:
+        """The angle of the vector with its derivatives [rad]; NaN for a vector of length 0."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rate = self.d1 / self.v
+            bend = self.d2 / self.v - rate**2
+        angle = np.where(self.v == 0, np.nan, np.angle(self.v))
+        return Jet(angle, rate.imag, bend.imag)
+
+
+class Solved(Protocol):
+    """Solved positions as arrays of one shape S: one position, the rows of a motion, of a family.
+
+    Derivatives are by the leading input; angles count in radians there.
+    """
+
+    def own(self, name: str) -> Jet:
+        """A quantity of the mechanism's own by its exact name; values in the file's units."""
+
+    def place(self, point: str) -> Vector:
+        """A point by its exact name."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RowQuantity:
+    """A quantity that every position has: ``B.transmission``.
+
+    Parameters
+    ----------
+    word : str
+        The last part of its name, behind the part of the mechanism that has it.
+    about : str
+        A line for lists, without the name of the part.
+    needs : int
+        How many derivatives of the positions its value needs; so many fewer than two it has itself.
+    of : callable
+        The parts of a mechanism that have it, with the kind of its value.
+    evaluate : callable
+        From names, solved positions and the part; angles in radians.
+    of_path : bool
+        Whether it is about the path of a point: pages list it for traced points only.
+    kind : Kind
+        What formulas take it for.
+    """
+
+    word: str
+    about: str
+    needs: int
+    of: Callable[[MechanismNames], Mapping[str, Kind]]
+    evaluate: Callable[[MechanismNames, Solved, str], Jet]
+    of_path: bool = False
+    kind: Kind = Kind.NUMBER
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionRows:
+    """A quantity, or the path of a point, over the rows of a motion or of a family.
+
+    Parameters
+    ----------
+    input : array (R,)
+        The leading input, [rad] or [length].
+    value : array (…, R)
+        In the file's units, a path as x + iy; NaN where there is no position.
+    first, second : array (…, R)
+        Its derivatives by the leading input, in the same units; NaN if not asked for.
+    unit : float
+        [rad] or [length] per unit of the input in files.
+    turn : float
+        A full turn of the leading input [rad], 0 if it is no angle.
+    """
+
+    input: Array
+    value: Array
+    first: Array
+    second: Array
+    unit: float
+    turn: float
+
+    def ascending(self) -> MotionRows | None:
+        """The rows by growing input; ``None`` if the input turns back between them."""
+        steps = np.diff(self.input)
+        if (steps >= 0.0).all():
+            return self
+        if (steps > 0.0).any():
+            return None
+        value, first, second = (x[..., ::-1] for x in (self.value, self.first, self.second))
+        return replace(self, input=self.input[::-1], value=value, first=first, second=second)
+
+    @property
+    def cycle(self) -> BoolArray:
+        """Which motions come back after one turn of the input, at the last row, (…,)."""
+        span = self.input[-1] - self.input[0]
+        around = self.turn > 0.0 and abs(abs(span) - self.turn) <= _SAME * self.turn
+        size = np.fmax.reduce(np.abs(self.value), axis=-1)
+        same = np.abs(self.value[..., -1] - self.value[..., 0]) <= _SAME * size
+        found: BoolArray = around & same & np.isfinite(self.value).all(axis=-1)
+        return found
+
+
+def folded(angle: Jet, period: float) -> Jet:
+    """The size of an angle that is the same after a period: from 0 to half of it [rad]."""
+    rest = angle.v - period * np.round(angle.v / period)
+    side = np.sign(rest)
+    return Jet(np.abs(rest), side * angle.d1, side * angle.d2)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionQuantity:
+    """A number of a whole motion: ``stroke(s16)``.
+
+    Parameters
+    ----------
+    word : str
+        What stands before the parenthesis.
+    about : str
+        A line for lists.
+    evaluate : callable
+        From rows and the further numbers in the parentheses, shape (…,).
+    of_point : bool
+        Whether it is asked of a point instead of a quantity.
+    numbers : tuple of str
+        What further numbers are called.
+    needs : int
+        How many derivatives of the quantity it needs.
+    measures : str
+        ``quantity``: the same as the quantity; ``input``: the same as the leading input;
+        ``number``.
+    """
+
+    word: str
+    about: str
+    evaluate: Callable[[MotionRows, tuple[float, ...]], Array]
+    of_point: bool = False
+    numbers: tuple[str, ...] = ()
+    needs: int = 0
+    measures: str = "quantity"

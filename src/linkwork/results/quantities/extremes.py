@@ -1,0 +1,34 @@
+"""The smallest, largest and mean value of a quantity at the rows of a motion."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.results.quantities.definition import MotionQuantity, MotionRows
+
+__all__ = ["EXTREMES"]
+
+
+def _least(rows: MotionRows, _: tuple[float, ...]) -> Array:
+    found: Array = np.fmin.reduce(rows.value, axis=-1)
+    return found
+
+
+def _most(rows: MotionRows, _: tuple[float, ...]) -> Array:
+    found: Array = np.fmax.reduce(rows.value, axis=-1)
+    return found
+
+
+def _mean(rows: MotionRows, _: tuple[float, ...]) -> Array:
+    there = ~np.isnan(rows.value)
+    with np.errstate(invalid="ignore"):
+        mean: Array = np.where(there, rows.value, 0.0).sum(axis=-1) / there.sum(axis=-1)
+    return mean
+
+
+EXTREMES = (
+    MotionQuantity(word="min", about="smallest value at the rows found", evaluate=_least),
+    MotionQuantity(word="max", about="largest value at the rows found", evaluate=_most),
+    MotionQuantity(word="mean", about="mean of the values at the rows found", evaluate=_mean),
+)

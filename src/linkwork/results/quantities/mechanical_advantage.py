@@ -1,0 +1,55 @@
+"""Mechanical advantage: the force or moment at a part for one at the input, without friction.
+
+Virtual work of forces in balance: Q δx = P δu, so that Q/P = du/dx. Where the part stands still
+while the input moves, as in a toggle press that is stretched, it is infinite; where the input
+itself stands still, at its dead points, there is no rate and it is not given.
+
+References
+----------
+R. L. Norton, Design of Machinery, 6th ed., McGraw-Hill 2020, section 6.5.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from linkwork.expression.jets import Jet
+from linkwork.results.quantities.definition import UNKNOWN, MechanismNames, RowQuantity, Solved
+from linkwork.results.quantity import Kind
+
+__all__ = ["MECHANICAL_ADVANTAGE"]
+
+
+def _parts(names: MechanismNames) -> Mapping[str, Kind]:
+    """Links and sliders, or all unknowns where nothing else is named, with what it measures."""
+    if not names.lead or names.inputs[names.lead] is Kind.NUMBER:
+        return {}
+    by_angle = names.inputs[names.lead] is Kind.ANGLE
+    other = Kind.PER_LENGTH if by_angle else Kind.LENGTH
+    of_angle, of_length = (Kind.NUMBER, other) if by_angle else (other, Kind.NUMBER)
+    parts = {*names.links, *names.sliders} if names.links else {*names.unknowns}
+    return {
+        part: of_angle if kind is Kind.ANGLE else of_length
+        for part, kind in names.unknowns.items()
+        if part in parts and kind is not Kind.NUMBER
+    }
+
+
+def _advantage(names: MechanismNames, solved: Solved, part: str) -> Jet:
+    moved = solved.own(part)
+    value = np.where(moved.d1 == 0.0, np.inf, 1.0 / moved.d1)
+    rate = np.where(moved.d1 == 0.0, np.nan, -moved.d2 / moved.d1**2)
+    return Jet(value, rate, UNKNOWN)
+
+
+MECHANICAL_ADVANTAGE = (
+    RowQuantity(
+        word="mechanical_advantage",
+        about="its force or moment for one at the input, no friction",
+        needs=1,
+        of=_parts,
+        evaluate=_advantage,
+    ),
+)

@@ -1,0 +1,44 @@
+"""The length of the path of a point over the rows of a motion.
+
+L = ∫ |F'| du, by Gauss' rule with four points between neighbouring rows, where F' is the cubic
+through its values and slopes there. Where a derivative is missing, as at a dead point, the chord
+counts; where a row is missing nothing does.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.results.quantities.definition import MotionQuantity, MotionRows
+
+__all__ = ["PATH_LENGTH"]
+
+_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+
+def _length(rows: MotionRows, _: tuple[float, ...]) -> Array:
+    step = np.diff(rows.input)
+    begin, end = rows.first[..., :-1], rows.first[..., 1:]
+    slopes = step * rows.second[..., :-1], step * rows.second[..., 1:]
+    total = np.zeros(begin.shape)
+    for s, weight in zip(0.5 * (1.0 + _PLACES), 0.5 * _WEIGHTS, strict=True):
+        r = 1.0 - s
+        rate = r**2 * ((1.0 + 2.0 * s) * begin + s * slopes[0])
+        rate = rate + s**2 * ((1.0 + 2.0 * r) * end - r * slopes[1])
+        total += weight * np.abs(rate)
+    chord = np.abs(np.diff(rows.value, axis=-1))
+    parts = np.where(np.isfinite(total), total * np.abs(step), chord)
+    found: Array = np.where(np.isfinite(chord).any(axis=-1), np.nansum(parts, axis=-1), np.nan)
+    return found
+
+
+PATH_LENGTH = (
+    MotionQuantity(
+        word="path_length",
+        about="length of the point's path over the rows found",
+        evaluate=_length,
+        of_point=True,
+        needs=2,
+    ),
+)

@@ -1,0 +1,439 @@
+"""The registry of quantities: what can be asked of a mechanism, found by name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from enum import Enum
+from functools import cached_property
+
+import numpy as np
+
+from linkwork.expression.jets import Jet
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.names import as_name, canonical, find_spelling
+from linkwork.results.quantities.definition import (
+    UNKNOWN,
+    MechanismNames,
+    MotionQuantity,
+    MotionRows,
+    RowQuantity,
+    Solved,
+)
+from linkwork.results.quantities.index import MOTION_QUANTITIES, ROW_QUANTITIES
+from linkwork.results.quantity import Kind, Quantity, Rate
+
+__all__ = ["EVIDENCE", "Asked", "AskedOfMotion", "Call", "Group", "Listed", "Quantities"]
+
+#: Numbers about a position: how well it closes, how it was found, what is proved of it.
+EVIDENCE = {
+    "residual": "how well the position closes, relative to the longest link",
+    "iterations": "steps of Newton-Raphson to the position",
+    "condition": "how much the equations magnify errors there",
+    "radius": "within this a true position lies, relative to the longest link",
+    "unique_within": "within this there is no other position, relative to the longest link",
+}
+
+_OF_MOTIONS = {quantity.word: quantity for quantity in MOTION_QUANTITIES}
+_CALL = re.compile(r"\s*(\w+)\s*\(\s*([^()<>=]*[^()<>=\s])\s*\)\s*")
+_RATES = {
+    Rate.FIRST: "first derivative by the input",
+    Rate.SECOND: "second derivative by the input",
+    Rate.VELOCITY: "rate by time; the input needs a speed",
+    Rate.ACCELERATION: "second rate by time; the input needs a speed",
+}
+
+
+class Group(Enum):
+    """Where a quantity comes from."""
+
+    INPUT = "input"
+    UNKNOWN = "unknown"
+    LINK = "link"
+    SLIDER = "slider"
+    OUTPUT = "output"
+    COORDINATE = "coordinate"
+    DERIVED = "derived"
+    EVIDENCE = "evidence"
+    POINT = "point"
+
+
+_ABOUT = {
+    Group.INPUT: "input",
+    Group.UNKNOWN: "unknown of the loop equations",
+    Group.LINK: "angle of the link",
+    Group.SLIDER: "displacement along the guide, or length",
+    Group.OUTPUT: "formula in [outputs]",
+    Group.COORDINATE: "coordinate of the point",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Listed:
+    """A line of the list of quantities."""
+
+    name: str
+    kind: str
+    unit: str
+    about: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Asked:
+    """A quantity of every row that was asked for by name.
+
+    Parameters
+    ----------
+    own : Quantity
+        Itself; of ``B.velocity`` the point.
+    group : Group
+    rate : Rate, optional
+        Which of its rates is meant.
+    row : RowQuantity, optional
+        How a derived quantity is evaluated; ``part`` has it.
+    """
+
+    names: MechanismNames
+    own: Quantity
+    group: Group
+    rate: Rate | None = None
+    row: RowQuantity | None = None
+    part: str = ""
+
+    @property
+    def name(self) -> str:
+        """The name as the mechanism spells it, with the rate."""
+        return self.own.name if self.rate is None else f"{self.own.name}.{self.rate.value}"
+
+    @property
+    def unit(self) -> str:
+        """Of its values, "" for none."""
+        units = self.names.units
+        if self.rate is None:
+            return units.of(self.own.kind)
+        return self.rate.unit(self.own.kind, units, self.names.by)
+
+    @property
+    def measure(self) -> str:
+        """What it measures, in a word; "" for a number."""
+        if self.own.kind is Kind.NUMBER:
+            return ""
+        return self.own.kind.value if self.rate is None else self.rate.measure
+
+    @property
+    def needs(self) -> int:
+        """How many derivatives of the positions its values take."""
+        own = self.row.needs if self.row else self.names.output_needs.get(self.own.name, 0)
+        return own + (self.rate.order if self.rate else 0)
+
+    def check_rate(self, speed: Array | float | None) -> None:
+        """Refuse a rate that is not known: of a derived quantity, or by time without a speed.
+
+        Raises
+        ------
+        UnknownNameError
+            With the name of the rate by the input.
+        """
+        if self.rate is None:
+            return
+        self.rate.check(self.own.name, speed)
+        if self.needs > 2:
+            raise UnknownNameError(
+                f'"{self.name}" is not known: positions have two derivatives, '
+                f'and "{self.own.name}" itself takes {self.needs - self.rate.order}'
+            )
+
+    def jet(self, solved: Solved) -> Jet:
+        """The quantity itself: values in the file's units, derivatives in radians and lengths."""
+        if self.row is None:
+            return solved.own(self.own.name)
+        with np.errstate(all="ignore"):
+            jet = self.row.evaluate(self.names, solved, self.part)
+        rates = (np.broadcast_to(rate, np.shape(jet.v)) for rate in (jet.d1, jet.d2))
+        return Jet(jet.v / self.names.units.scale(self.own.kind), *rates)
+
+    def values(self, solved: Solved, speed: Array | float | None) -> Array:
+        """What was asked for, the rate included."""
+        if self.group is Group.POINT:
+            assert self.rate is not None
+            place = solved.place(self.own.name)
+            x = self.rate.of(place.d1.real, place.d2.real, speed)
+            size: Array = np.hypot(x, self.rate.of(place.d1.imag, place.d2.imag, speed))
+            return size
+        jet = self.jet(solved)
+        return jet.v if self.rate is None else self.rate.of(jet.d1, jet.d2, speed)
+
+
+@dataclass(frozen=True, kw_only=True)
+class AskedOfMotion:
+    """A number of a whole motion that was asked for by name: ``dwell(s16, 0.5)``."""
+
+    names: MechanismNames
+    quantity: MotionQuantity
+    of: Asked
+    numbers: tuple[float, ...] = ()
+
+    @property
+    def unit(self) -> str:
+        """Of the number, "" for none."""
+        match self.quantity.measures:
+            case "input":
+                return self.names.units.of(self.names.inputs[self.names.lead])
+            case "quantity":
+                return self.names.units.length if self.quantity.of_point else self.of.unit
+            case _:
+                return ""
+
+    @property
+    def needs(self) -> int:
+        """How many derivatives of the positions it takes."""
+        return self.of.needs + self.quantity.needs
+
+    @property
+    def follows(self) -> bool:
+        """Whether it follows the course between rows, or the path of a point: not values alone."""
+        return self.quantity.of_point or self.quantity.needs > 0
+
+    def columns(self, solved: Solved) -> tuple[Array, Array, Array]:
+        """What it follows, with both derivatives by the leading input, in the file's units."""
+        if self.quantity.of_point:
+            place = solved.place(self.of.name)
+            return place.v, place.d1, place.d2  # type: ignore[return-value]  # complex
+        jet, scale = self.of.jet(solved), self.names.units.scale(self.of.own.kind)
+        return jet.v, jet.d1 / scale, jet.d2 / scale
+
+    def evaluate(
+        self, leading: Array, value: Array, first: Array = UNKNOWN, second: Array = UNKNOWN
+    ) -> Array:
+        """The number of every motion, (…,).
+
+        Parameters
+        ----------
+        leading : (R,)
+            The leading input, [rad] or [length].
+        value, first, second : (…, R)
+            See :meth:`columns`.
+        """
+        units, kind = self.names.units, self.names.inputs[self.names.lead]
+        rows = MotionRows(
+            input=leading,
+            value=value,
+            first=np.broadcast_to(first, value.shape),
+            second=np.broadcast_to(second, value.shape),
+            unit=units.scale(kind),
+            turn=FULL_TURN if kind is Kind.ANGLE else 0.0,
+        )
+        with np.errstate(all="ignore"):
+            return np.asarray(self.quantity.evaluate(rows, self.numbers), dtype=float)
+
+
+@dataclass(frozen=True)
+class Quantities:
+    """Everything that can be asked of one mechanism."""
+
+    names: MechanismNames
+
+    @cached_property
+    def own(self) -> dict[str, Asked]:
+        """The mechanism's own quantities by name, inputs first."""
+        parts = self.names
+        tables = (
+            (Group.INPUT, parts.inputs),
+            (Group.UNKNOWN, parts.unknowns),
+            (Group.LINK, dict.fromkeys(parts.links, Kind.ANGLE)),
+            (Group.SLIDER, dict.fromkeys(parts.sliders, Kind.LENGTH)),
+            (Group.OUTPUT, parts.outputs),
+            (Group.COORDINATE, dict.fromkeys(_coordinates(parts.points), Kind.LENGTH)),
+        )
+        found: dict[str, Asked] = {}
+        for group, table in tables:
+            for name, kind in table.items():
+                quantity = Quantity(name=name, kind=kind)
+                found.setdefault(name, Asked(names=parts, own=quantity, group=group))
+        return found
+
+    @cached_property
+    def derived(self) -> dict[str, Asked]:
+        """Quantities that follow from the mechanism's own, by name."""
+        found: dict[str, Asked] = {}
+        for row in ROW_QUANTITIES:
+            for part, kind in row.of(self.names).items():
+                own = Quantity(name=f"{part}.{row.word}", kind=kind)
+                found[own.name] = Asked(
+                    names=self.names, own=own, group=Group.DERIVED, row=row, part=part
+                )
+        return {name: asked for name, asked in found.items() if name not in self.own}
+
+    @cached_property
+    def evidence(self) -> dict[str, Asked]:
+        """Numbers about positions by name."""
+        return {
+            name: Asked(
+                names=self.names, own=Quantity(name=name, kind=Kind.NUMBER), group=Group.EVIDENCE
+            )
+            for name in EVIDENCE
+            if name not in self.own
+        }
+
+    @cached_property
+    def _known(self) -> dict[str, Asked]:
+        """What has been asked for, by the name as it was written."""
+        return {}
+
+    def find(self, name: str) -> Asked:
+        """A quantity of every row, or one of its rates, by name.
+
+        Raises
+        ------
+        UnknownNameError
+            With the nearest names, and the command that lists all.
+        """
+        if name not in self._known:
+            self._known[as_name(name)] = self._find(name)
+        return self._known[name]
+
+    def _find(self, name: str) -> Asked:
+        whole, rate = Rate.split(name)
+        for table in (self.own, self.evidence):
+            own = find_spelling(whole, table)
+            if own in table and not (rate and table[own].group is Group.EVIDENCE):
+                return _with_rate(table[own], rate)
+        point = find_spelling(whole, self.names.points)
+        if rate is not None and point in self.names.points:
+            place = Quantity(name=point, kind=Kind.LENGTH)
+            return Asked(names=self.names, own=place, group=Group.POINT, rate=rate)
+        own = find_spelling(whole, self.derived)
+        if own in self.derived:
+            return _with_rate(self.derived[own], rate)
+        call = _CALL.fullmatch(name)
+        if call and call[1] in _OF_MOTIONS:
+            raise UnknownNameError(
+                f'"{name}" is a number of a whole motion, not of every row: '
+                "ask a motion, a family or a study for its value"
+            )
+        raise self.unknown(whole)
+
+    def find_of_motion(self, text: str) -> AskedOfMotion:
+        """A number of a whole motion by name: ``stroke(s16)``, ``dwell(s16, 0.5)``.
+
+        Raises
+        ------
+        InputError
+            If it is none, or lacks a number.
+        UnknownNameError
+            With the nearest names, and the command that lists all.
+        """
+        call = Call.read(text)
+        quantity = call.quantity
+        if quantity.of_point:
+            point = find_spelling(call.of, self.names.points)
+            if point not in self.names.points:
+                points = choices("points", self.names.points, call.of)
+                raise UnknownNameError(f'there is no point "{call.of}" {points}')
+            own = Quantity(name=point, kind=Kind.LENGTH)
+            asked = Asked(names=self.names, own=own, group=Group.POINT)
+        else:
+            asked = self.find(call.of)
+        found = AskedOfMotion(names=self.names, quantity=quantity, of=asked, numbers=call.numbers)
+        if found.needs > 2 or (quantity.needs and (asked.rate or asked.group is Group.EVIDENCE)):
+            raise UnknownNameError(
+                f'"{text}" is not known: positions have two derivatives, which are not enough; '
+                "ask for it of a quantity that is no rate"
+            )
+        return found
+
+    def unknown(self, name: str) -> UnknownNameError:
+        """What to say of a name that does not exist: the three nearest names."""
+        known = [*self.own, *self.derived, *self.evidence]
+        return UnknownNameError(f'there is no "{name}" {nearest(name, known)}')
+
+    def listed(self, *, timed: bool) -> Iterator[Listed]:
+        """Everything that can be asked, a line each; rates and numbers of motions last."""
+        for asked in (*self.own.values(), *self.derived.values()):
+            about = asked.row.about if asked.row else _ABOUT[asked.group]
+            kind, unit = asked.own.kind.value, asked.unit
+            yield Listed(name=asked.name, kind=kind, unit=unit, about=about)
+        for name in self.evidence:
+            yield Listed(name=name, kind=Kind.NUMBER.value, unit="", about=EVIDENCE[name])
+        for rate, about in _RATES.items():
+            if timed or not rate.by_time:
+                yield Listed(name=f"….{rate.value}", kind="rate", unit="", about=about)
+        for quantity in MOTION_QUANTITIES:
+            inside = ["POINT" if quantity.of_point else "…", *map(str.upper, quantity.numbers)]
+            name = f"{quantity.word}({', '.join(inside)})"
+            yield Listed(name=name, kind="of a motion", unit="", about=quantity.about)
+
+
+@dataclass(frozen=True)
+class Call:
+    """A number of a motion as a text asks for it: which, of what, with which further numbers."""
+
+    word: str
+    of: str
+    numbers: tuple[float, ...] = ()
+
+    def __str__(self) -> str:
+        return f"{self.word}({', '.join([self.of, *(f'{number:g}' for number in self.numbers)])})"
+
+    @property
+    def quantity(self) -> MotionQuantity:
+        """Which number it is."""
+        return _OF_MOTIONS[self.word]
+
+    @classmethod
+    def read(cls, text: str) -> Call:
+        """From text.
+
+        Raises
+        ------
+        InputError
+            If it is none.
+        """
+        call = _CALL.fullmatch(as_name(text))
+        known = nearest(text if call is None else call[1], _OF_MOTIONS)
+        if call is None:
+            own, dot, last = text.strip().rpartition(".")
+            known = f'(write "{last}({own})")' if dot and last in _OF_MOTIONS else known
+            raise InputError(
+                f'must be a number of a whole motion, as in "stroke(rocker)", got "{text}" {known}'
+            )
+        if call[1] not in _OF_MOTIONS:
+            raise InputError(f'there is no number "{call[1]}" of a motion {known}')
+        of, *rest = (part.strip() for part in call[2].split(","))
+        numbers = tuple(finite for part in rest if (finite := _finite(part)) is not None)
+        wanted = _OF_MOTIONS[call[1]].numbers
+        if len(rest) != len(wanted) or len(numbers) != len(rest):
+            form = ", ".join([of, *map(str.upper, wanted)])
+            raise InputError(f'"{text}" must be {call[1]}({form})')
+        return cls(call[1], of, numbers)
+
+
+def _finite(text: str) -> float | None:
+    try:
+        number = float(text)
+    except ValueError:
+        return None
+    return number if np.isfinite(number) else None
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """The three nearest names and the command that lists all, for the end of a message."""
+    folded = {canonical(own): own for own in known}
+    near = [folded[own] for own in get_close_matches(canonical(name), folded, n=3, cutoff=0.0)]
+    told = ", ".join(near)
+    return f"(nearest: {told}; all: linkwork quantities FILE)"
+
+
+def _with_rate(asked: Asked, rate: Rate | None) -> Asked:
+    if rate is None:
+        return asked
+    return replace(asked, rate=rate)
+
+
+def _coordinates(points: Iterable[str]) -> Iterator[str]:
+    for point in points:
+        yield from (f"{point}.x", f"{point}.y")

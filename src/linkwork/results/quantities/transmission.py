@@ -1,0 +1,53 @@
+"""Transmission angles: how well a force is passed on at the pin of a dyad.
+
+Between two pinned links it is the angle of their arms at the common pin; of a link that moves a
+block, that between the link and the normal of the block's line: a right angle passes on all of the
+force, none of it is passed on at 0 and at π.
+
+References
+----------
+H. Alt, Der Übertragungswinkel und seine Bedeutung für das Konstruieren periodischer Getriebe,
+Werkstattstechnik 26 (1932) 61-64.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from linkwork.expression.jets import Jet
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.mechanism.dyad import dyads_of
+from linkwork.results.quantities.definition import MechanismNames, RowQuantity, Solved, folded
+from linkwork.results.quantity import Kind
+
+__all__ = ["TRANSMISSION"]
+
+
+def _pins(names: MechanismNames) -> Mapping[str, Kind]:
+    return {dyad.pin: Kind.ANGLE for dyad in dyads_of(names.skeleton)}
+
+
+def _angle(names: MechanismNames, solved: Solved, pin: str) -> Jet:
+    dyad = next(dyad for dyad in dyads_of(names.skeleton) if dyad.pin == pin)
+    place = solved.place(pin)
+    one = (solved.place(dyad.arms[0]) - place).direction()
+    if dyad.guide is None:
+        other = (solved.place(dyad.arms[1]) - place).direction()
+    else:
+        start, end = (solved.place(point) for point in dyad.guide.line)
+        other = (end - start).direction() + Jet.constant(np.pi / 2)
+    return folded(one - other, FULL_TURN)
+
+
+TRANSMISSION = (
+    RowQuantity(
+        word="transmission",
+        about="transmission angle at the pin, 0 to half a turn",
+        kind=Kind.ANGLE,
+        needs=0,
+        of=_pins,
+        evaluate=_angle,
+    ),
+)

@@ -1,0 +1,41 @@
+"""Time ratios of quick returns against closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+
+
+@pytest.mark.parametrize("step", [1, 4])
+def test_of_an_offset_slider_crank_it_follows_from_both_stretched_positions(step: float) -> None:
+    motion = lw.example("slider-crank").sweep(step=step)
+    far, near = (np.degrees(np.arcsin(20 / reach)) for reach in (160, 80))
+    expected = (180 + near - far) / (180 - near + far)
+    assert motion.value("time_ratio(d)") == pytest.approx(expected, rel=1e-9 * step**4)
+    assert motion.quantities.find_of_motion("time_ratio(d)").unit == ""
+
+
+def test_it_is_1_for_strokes_that_take_as_long() -> None:
+    motion = lw.example("scotch-yoke").sweep()
+    name = next(iter(motion.sliders))
+    assert motion.value(f"time_ratio({name})") == pytest.approx(1.0, abs=1e-9)
+
+
+def test_designs_have_it_as_they_have_it_alone() -> None:
+    mechanism = lw.example("slider-crank")
+    cranks = np.array([30.0, 40.0, 45.0])
+    found = mechanism.family({"O2 A": cranks}).reduced("time_ratio(d)")["time_ratio(d)"]
+    far, near = (np.degrees(np.arcsin(20 / (120 + s * cranks))) for s in (1, -1))
+    np.testing.assert_allclose(found, (180 + near - far) / (180 - near + far), rtol=1e-8)
+
+
+def test_without_a_whole_turn_or_a_return_there_is_none() -> None:
+    slider = lw.example("slider-crank").sweep(stop=300)
+    assert np.isnan(slider.value("time_ratio(d)"))
+    drag = lw.example("drag-link").sweep()
+    turning = next(name for name, s in drag.unknowns.items() if abs(s.value[-1] - s.value[0]) > 300)
+    assert np.isnan(drag.value(f"time_ratio({turning})"))
+    with pytest.raises(lw.UnknownNameError, match="a quantity that is no rate"):
+        slider.value("time_ratio(d.d1)")
