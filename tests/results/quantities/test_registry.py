@@ -146,6 +146,7 @@ def test_formulas_with_quantities_that_do_not_exist_are_refused(mechanism: lw.Me
 
 def test_rates_by_time_follow_the_speed_of_each_design() -> None:
     family = lw.example("four-bar").family({"O2 A": [38.0, 40.0]}).sweep()
+    assert family.speed is not None
     np.testing.assert_allclose(
         family["B.transmission.velocity"],
         family["B.transmission.d1"] * family.speed[:, None],
