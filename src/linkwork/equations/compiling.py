@@ -9,7 +9,6 @@ import numpy as np
 
 from linkwork.equations.model import LawEquation, LoopEquations, Term
 from linkwork.equations.real_rows import FormulaRow
-from linkwork.expression.jets import Jet, evaluate
 from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.foundation.errors import MechanismError, Problem
@@ -241,19 +240,6 @@ def _mismatch(equations: LoopEquations, form: BlockForm) -> list[Problem]:
                 "remove an equation or an input",
             )
         )
-    return found
-
-
-def evaluate_outputs(
-    equations: LoopEquations, names: Mapping[str, Jet], count: int
-) -> dict[str, Jet]:
-    """The jets of all outputs; ``names`` gives variables, links and coordinates."""
-    known = {**{n: Jet.constant(v) for n, v in equations.dimensions.items()}, **names}
-    found = {}
-    with np.errstate(all="ignore"):
-        for name, output in equations.outputs.items():
-            jet = evaluate(output.formula, known, equations.angle)
-            found[name] = Jet(*(np.broadcast_to(p, count) for p in (jet.v, jet.d1, jet.d2)))
     return found
 
 

@@ -97,7 +97,7 @@ def test_changes_together_are_messages_inside_a_message() -> None:
         ),
         (
             '{"kind": "set_number", "name": "\\ud800", "value": 1}',
-            "set_number: name: contains a lone surrogate",
+            "set_number: name: contains a lone surrogate: send valid Unicode",
         ),
         (sent(kind="set_input", drive=5), "set_input: drive: must be text, got 5"),
         (sent(kind="set_input", start=[]), "set_input: start: must be a number, got a list"),
