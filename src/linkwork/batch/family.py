@@ -237,7 +237,8 @@ def _columns(
                 continue
             asked = f"{reduction}({as_name(name)})"
             warn(
-                f'write family.reduced(["{asked}"]): names of reductions in a mapping go in 0.3',
+                f'write family.reduced(["{asked}"]): names of reductions in a mapping are removed '
+                "in version 0.4",
                 DeprecationWarning,
                 stacklevel=3,
             )

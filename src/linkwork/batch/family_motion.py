@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -122,6 +122,21 @@ class FamilyMotion:
             )
         asked.check_rate(self.speed if asked.rate and asked.rate.by_time else None)
         return asked
+
+    def check_names(self, names: Iterable[str]) -> None:
+        """Raise an error for names that do not exist, before anything is computed.
+
+        Parameters
+        ----------
+        names : iterable of str
+
+        Raises
+        ------
+        UnknownNameError
+            With the nearest names.
+        """
+        for name in names:
+            self.quantity(name)
 
     def __getitem__(self, name: str) -> Array:
         """Values of a quantity by name, (D, R), file units; NaN where there is no position.
@@ -286,8 +301,7 @@ class FamilyMotion:
             raise MissingPackageError(
                 'labelled arrays need xarray: pip install "linkwork[tables]"'
             ) from None
-        for name in names:
-            self.quantity(name)
+        self.check_names(names)
         model = self.designs.base
         lead = model.equations.inputs[0].name
         axes = ("design", lead)

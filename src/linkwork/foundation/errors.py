@@ -209,7 +209,7 @@ class UnknownNameError(InputError, KeyError):
     ...     lw.example("four-bar").solve()["rockr"]
     ... except lw.UnknownNameError as error:
     ...     print(error)
-    there is no "rockr" (names: rocker, crank, coupler, mu, O2.x, O2.y, A.x, A.y, … 4 more)
+    there is no "rockr" (nearest: rocker, crank, coupler; all: linkwork quantities FILE)
     """
 
     def __str__(self) -> str:
