@@ -437,7 +437,7 @@ def test_the_command_ends_cleanly_and_keeps_what_is_unsaved(path: Path, number: 
         output, _ = process.communicate(timeout=20)
     kept = path.parent / "four-bar.unsaved.toml"
     assert process.returncode == 0
-    assert "changes that were not saved" in output
+    assert "Unsaved changes were written to" in output
     assert kept.name in output
     assert "Traceback" not in output
     assert "a = 42" in kept.read_text(encoding="utf-8")
@@ -464,7 +464,7 @@ def test_nothing_is_left_behind_if_nothing_changed(path: Path) -> None:
 
 def test_a_file_that_cannot_be_read_is_refused_by_the_command(tmp_path: Path) -> None:
     words = [sys.executable, "-m", "linkwork", "view", "--no-browser"]
-    for name, message in (("none.toml", "there is no such file"), ("-", "name one, standard")):
+    for name, message in (("none.toml", "there is no such file"), ("-", "standard input cannot be edited and saved")):
         done = subprocess.run([*words, name], cwd=tmp_path, capture_output=True, text=True)
         assert done.returncode == 2
         assert message in done.stderr
