@@ -145,7 +145,7 @@ def test_what_would_not_fit_into_memory_is_refused(
     family: Family, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("linkwork.batch.family._MOST_BYTES", 6 * 361 * 3 * 8 - 1)
-    told = "6 designs × 361 rows take 0 GiB: use family.parts() or family.reduced"
+    told = "6 designs × 361 rows take 0 GiB: use family.parts() or family.reduced({...})"
     with pytest.raises(InputError, match=re.escape(told)):
         family.sweep()
     monkeypatch.setattr("linkwork.batch.family._MOST_BYTES", 6 * 361 * 3 * 8)
