@@ -464,7 +464,10 @@ def test_nothing_is_left_behind_if_nothing_changed(path: Path) -> None:
 
 def test_a_file_that_cannot_be_read_is_refused_by_the_command(tmp_path: Path) -> None:
     words = [sys.executable, "-m", "linkwork", "view", "--no-browser"]
-    for name, message in (("none.toml", "there is no such file"), ("-", "standard input cannot be edited and saved")):
+    for name, message in (
+        ("none.toml", "there is no such file"),
+        ("-", "standard input cannot be edited and saved"),
+    ):
         done = subprocess.run([*words, name], cwd=tmp_path, capture_output=True, text=True)
         assert done.returncode == 2
         assert message in done.stderr
