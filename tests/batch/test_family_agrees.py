@@ -32,7 +32,13 @@ from tests.thinned import thinned
 Array = npt.NDArray[np.float64]
 DRIVEN = driven_examples()
 #: What the compiled march does not lead through all rows, and why.
-ALONE = {"cam-roller-follower": "a law", "curved-slot": "a law", "garage-door": "a curve"}
+ALONE = {
+    "cam-roller-follower": "a law",
+    "curved-slot": "a law",
+    "elliptical-gears": "a law",
+    "garage-door": "a curve",
+    "oval-gears": "a law",
+}
 #: Whose guess lies beside the table's path of inputs.
 BESIDE = ("excavator", "five-bar-robot", "kempe-translator", "three-rpr")
 #: Tables that end right at a dead point: the steps in front of it get too small for the march.

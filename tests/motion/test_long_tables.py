@@ -315,7 +315,7 @@ def test_who_waits_for_a_compiler_is_told(
     say_that_it_compiles()
     (told,) = caplog.records
     assert "once after an installation" in told.getMessage()
-    left = tmp_path / "lanes_0a1b" / "rowwise.by_rows-336.py311.nbi"
+    left = tmp_path / "march_0a1b" / "rowwise.by_rows-336.py311.nbi"
     left.parent.mkdir()
     left.write_bytes(b"")
     say_that_it_compiles()
@@ -327,7 +327,7 @@ def test_compiled_code_counts_if_it_is_that_of_its_source(
 ) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     assert not kernels_are_compiled()
-    left = tmp_path / "lanes_0a1b" / "rowwise.by_rows-336.py311.nbi"
+    left = tmp_path / "march_0a1b" / "rowwise.by_rows-336.py311.nbi"
     left.parent.mkdir()
     left.write_bytes(b"")
     assert kernels_are_compiled()

@@ -18,7 +18,7 @@ from tests.library_mechanisms import read_example
 from tests.motion.dyad_linkages import dyad_linkage
 from tests.motion.written_loops import as_loops
 
-_HIGHER = ("gears", "belts", "racks", "rolling", "cams", "curves", "welds")
+_HIGHER = ("gears", "noncircular_gears", "belts", "racks", "rolling", "cams", "curves", "welds")
 
 
 def _all() -> dict[str, lw.Mechanism]:
@@ -309,5 +309,5 @@ def test_pins_of_loops_that_share_one_link_only_are_not_made_up() -> None:
     seen = as_linkage(excavator.model)
     assert isinstance(seen, Seen)
     assert seen.loose
-    with pytest.raises(lw.InputError, match=r"do not tell where on .* they are joined"):
+    with pytest.raises(lw.InputError, match=r"do not determine where on .* they are joined"):
         excavator.inversion(seen.loose[0])

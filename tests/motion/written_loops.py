@@ -11,6 +11,7 @@ from typing import Any
 import linkwork as lw
 from linkwork.equations.frames import Frames
 from linkwork.equations.model import LoopEquations, Term
+from linkwork.equations.part.index import rows_of_parts
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.linkage import Linkage
@@ -75,6 +76,7 @@ def as_loops(
 def _along(linkage: Linkage, around: list[str]) -> Iterator[Term]:
     """The vectors of a loop from point to point, beginning behind ground if it touches it."""
     frames = Frames.of(linkage, Problems())
+    rows_of_parts(frames, Problems())  # places what slides
     bodies: list[str] = []
     steps = list(pairwise([*around, around[0]]))
     for one, other in steps:
