@@ -37,7 +37,6 @@ ALONE = {
     "curved-slot": "a law",
     "elliptical-gears": "a law",
     "garage-door": "a curve",
-    "oval-gears": "a law",
 }
 #: Whose guess lies beside the table's path of inputs.
 BESIDE = ("excavator", "five-bar-robot", "kempe-translator", "three-rpr")
