@@ -162,7 +162,7 @@ def test_a_polar_plot_needs_an_angle() -> None:
     with pytest.raises(InputError) as raised:
         motion_plot(motion, kind="polar")
     assert str(raised.value) == (
-        'a polar plot is over an angle, and "d" is none: name an angle with against= '
+        'a polar plot needs an angle, and "d" is not one: name an angle with against= '
         '(--against), as in "θ2"'
     )
     [panel] = motion_plot(motion, ["d"], kind="polar", against="θ2").panels
@@ -256,17 +256,17 @@ def test_transmission_angles_are_missing_where_there_is_no_position() -> None:
     [
         (
             "geared-five-bar", [], InputError,
-            '"Geared five-bar" has no two links of which the transmission angle is known: add it '
+            '"Geared five-bar" has no pair of links with a known transmission angle: add it '
             'to [outputs], as in mu = "rocker - coupler", and name it',
         ),
         (
             "jansen-leg", ["A"], UnknownNameError,
-            'the transmission angle at "A" is not known (pins between two links that are known to '
-            "be held: B, C, E)",
+            'the transmission angle at "A" is not known (pins with a known transmission '
+            "angle: B, C, E)",
         ),
         (
             "slider-crank", ["d"], UnknownNameError,
-            '"d" is no angle (pins: B); name a pin between two links, or an angle',
+            '"d" is not an angle (pins: B); name a pin between two links, or an angle',
         ),
     ],
 )  # fmt: skip
@@ -322,6 +322,6 @@ def test_too_many_branches_for_several_quantities_are_refused() -> None:
     with pytest.raises(InputError) as raised:
         branch_chart(circuits_of("jansen-leg"), ["foot", "coupler"])
     assert str(raised.value) == (
-        '"Jansen leg (Strandbeest)" has 8 branches, which stand side by side for one quantity '
-        "only: name one of foot, coupler"
+        '"Jansen leg (Strandbeest)" has 8 branches, too many for several quantities: '
+        "name one of foot, coupler"
     )

@@ -159,7 +159,7 @@ def test_a_long_formula_is_shown_around_the_column() -> None:
 def test_formulas_without_end_are_refused_before_they_are_read() -> None:
     with pytest.raises(ExpressionError) as raised:
         parse("1+" * 5000 + "1")
-    assert raised.value.message == "the formula has 10001 characters, at most 10000 are read"
+    assert raised.value.message == "the formula has 10001 characters, at most 10000 are allowed"
     with pytest.raises(ExpressionError) as raised:
         parse("+".join(["a"] * 300))
     assert raised.value.message == (

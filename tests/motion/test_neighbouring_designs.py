@@ -255,5 +255,5 @@ def test_what_cannot_be_dragged_is_said() -> None:
     assert design.pulled_guess("O2", (5.0, 5.0), still) == pytest.approx(still)
     with pytest.raises(lw.UnknownNameError, match='there is no point "Z"'):
         design.pulled_guess("Z", (0.0, 0.0))
-    with pytest.raises(lw.InputError, match="the place of B must be two finite numbers"):
+    with pytest.raises(lw.InputError, match="the coordinates of B must be two finite numbers"):
         design.pulled_guess("B", (math.nan, 0.0))

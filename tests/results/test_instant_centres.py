@@ -125,7 +125,7 @@ def test_a_link_that_only_slides_has_no_centrodes() -> None:
 
 def test_equations_without_points_have_no_instant_centres() -> None:
     position = position_of("newton-convergence")
-    with pytest.raises(InputError, match="has no links with points and so no instant centres"):
+    with pytest.raises(InputError, match="has no links with points, so no instant centres"):
         instant_centres(position)
 
 

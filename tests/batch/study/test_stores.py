@@ -263,8 +263,8 @@ def test_an_interrupt_leaves_a_store_to_go_on_with_and_says_so(tmp_path: Path) -
     assert (out, process.returncode) == (b"", 130)
     assert 200 <= found.computed < 800
     assert " ".join(err.decode().split()) == (
-        f"{found.computed} of 800 designs are stored in out.zarr. The same command goes on from "
-        "there. Interrupted."
+        f"{found.computed} of 800 designs are stored in out.zarr. To resume, repeat the same "
+        "command. Interrupted."
     )
     entries = [json.loads(path.read_text()) for path in (store / "ledger").glob("[0-9]*.json")]
     assert sum(entry["stop"] - entry["start"] for entry in entries) == found.computed
@@ -302,7 +302,7 @@ def test_workers_that_die_again_and_again_end_the_run(
     with pytest.raises(InputError) as caught:
         run_study(study(*FEW), tmp_path / "out.zarr", workers=2)
     assert str(caught.value) == (
-        "worker processes ended 3 times over the same designs, perhaps for want of memory: "
+        "worker processes ended 3 times on the same designs, perhaps for lack of memory: "
         "reduce chunk or --workers"
     )
 
@@ -361,8 +361,8 @@ def test_another_study_is_refused_with_what_differs(whole: Path, tmp_path: Path)
         "  input.rows: 12 there, 23 here\n"
         "  reductions.swing: stroke(rocker) there, nothing here\n"
         "  filters.transmission: min(mu) >= 25 there, min(mu) >= 26 here\n"
-        "Choose another store, or start over with --fresh, which takes the old "
-        "one away."
+        "Choose another store, or start over with --fresh, which deletes the old "
+        "study."
     )
     assert contents(whole) == before
 
