@@ -10,8 +10,8 @@ import pytest
 __all__ = ["thinned"]
 
 
-def thinned(values: Iterable[Any], every: int = 3) -> list[Any]:
-    """Every third value, or whichever, as it is; the others marked as extended."""
+def thinned(values: Iterable[Any], every: int = 6) -> list[Any]:
+    """Every sixth value, or whichever, as it is; the others marked as extended."""
     return [
         value if k % every == 0 else pytest.param(value, marks=pytest.mark.extended)
         for k, value in enumerate(values)

@@ -29,7 +29,7 @@ SWEPT = (
     "planetary-gear", "rack-and-pinion", "rapier-drive", "rapier-drive-limited", "rolling-wheel",
     "scotch-yoke", "slider-input", "stephenson-far-crank",
 )  # fmt: skip
-every_second = pytest.mark.parametrize("name", thinned(SWEPT, 2))
+every_fourth = pytest.mark.parametrize("name", thinned(SWEPT, 4))
 QUARTER = math.pi / 2
 LINKS = {
     "ground": ("O2", "O4"),
@@ -100,7 +100,7 @@ def test_every_branch_of_every_circuit_is_a_curve_in_every_panel() -> None:
         assert told == [("circuit 1", 1), ("circuit 2", 2), ("circuit 3", 3), ("circuit 3", 3)]
 
 
-@every_second
+@every_fourth
 def test_curves_pass_through_every_position_of_their_circuit_and_through_no_other(
     name: str,
 ) -> None:
@@ -124,7 +124,7 @@ def test_curves_pass_through_every_position_of_their_circuit_and_through_no_othe
             assert len(x) <= len(wanted_x) + added
 
 
-@every_second
+@every_fourth
 def test_curves_and_marks_stay_inside_their_axes(name: str) -> None:
     chart = circuit_chart(circuits_of(name))
     for panel in chart.panels:
@@ -271,7 +271,7 @@ def test_a_curve_under_others_is_drawn_wider() -> None:
 # ------------------------------------------------------------------ marks
 
 
-@every_second
+@every_fourth
 def test_dead_points_are_marked_at_their_input_and_at_the_value_there(name: str) -> None:
     circuits = circuits_of(name)
     chart = circuit_chart(circuits)
@@ -343,7 +343,7 @@ def test_no_circuit_is_no_chart() -> None:
 # ------------------------------------------------------------------ the page
 
 
-@every_second
+@every_fourth
 def test_texts_are_on_the_page_and_keep_clear_of_each_other(name: str) -> None:
     circuits = circuits_of(name)
     chart = circuit_chart(circuits)

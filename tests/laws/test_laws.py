@@ -21,7 +21,7 @@ from tests.laws.transforms import mirrored, scaled, turned
 from tests.thinned import thinned
 
 Array = npt.NDArray[np.float64]
-every = pytest.mark.parametrize("name", NAMES)
+every = pytest.mark.parametrize("name", thinned(NAMES, 3))
 
 
 @every

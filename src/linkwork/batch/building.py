@@ -130,7 +130,8 @@ class Builder:
             self._mark(rows[agreeing], problem)
         else:
             self._write(rows, agreeing & ~apart, found)
-            self._mark(rows[agreeing & apart], self._another_structure)
+            for k in rows[agreeing & apart]:  # laws of their own: swept by themselves, too
+                self._alone(int(k))
         return rows[~agreeing]
 
     def _alone(self, k: int) -> None:
