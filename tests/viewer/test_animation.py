@@ -104,7 +104,7 @@ def test_mechanism_writes_any_of_them_by_the_name_of_the_file(tmp_path: Path) ->
             FilmOptions(),
             r"cannot animate \"x.avi\": its suffix must be one of .html, .gif",
         ),
-        ("x.gif", FilmOptions(fps=0), r"more than 0 and at most 240 pictures a second: 0"),
+        ("x.gif", FilmOptions(fps=0), r"more than 0 and at most 240 frames per second, got 0$"),
         ("x.gif", FilmOptions(fps=60), r"a GIF plays at most 50 frames per second, not 60"),
         ("x.mp4", FilmOptions(rows=1), r"a film needs at least 2 rows, not 1"),
     ],

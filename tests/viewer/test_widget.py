@@ -86,7 +86,9 @@ def test_another_configuration_keeps_the_row_or_takes_the_nearest(limited: lw.Mo
 
 
 def test_all_circuits_are_the_mechanisms_own(circuits: dict[str, lw.Motion]) -> None:
-    with pytest.raises(lw.InputError, match=r"^a widget shows the motion that is given, or all "):
+    with pytest.raises(
+        lw.InputError, match=r"^a widget shows either the given motion or all circuits, not both$"
+    ):
         lw.example("four-bar").widget(circuits["circuit 1"], all_circuits=True)
 
 

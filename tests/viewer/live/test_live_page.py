@@ -417,7 +417,7 @@ def test_equations_without_points_are_no_blank_page(open_live: Open, served: Ser
         "[guess]\nx = 1.5\n",
         "utf-8",
     )
-    page.get_by_text("the iteration ran away to infinity").wait_for()
+    page.get_by_text("the iteration diverged to infinity").wait_for()
     assert "atan(x)" in page.locator(".lw-plain-equations").text_content()
     page.get_by_role("tab", name="Newton").click()
     page.locator('.lw-outcome[data-trouble="INFLECTION"]').wait_for()

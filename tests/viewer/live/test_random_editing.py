@@ -65,7 +65,8 @@ def test_any_requests_are_answered_and_the_file_is_left_alone(
     for request in asked:
         for event in bench.handle(request):
             assert encoded(event)
-    state = bench.opened()[0]
+    palette, state, *_ = bench.opened()
+    assert isinstance(palette, tell.PaletteShown)
     assert isinstance(state, tell.FileState)
     assert isinstance(lw.loads(state.text), lw.Mechanism)  # what is kept is always a mechanism
     assert path.read_text(encoding="utf-8") == FOUR_BAR

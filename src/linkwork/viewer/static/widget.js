@@ -62,11 +62,12 @@ body { margin: 0; min-height: 100%; }
 .lw-toggle input { width: 17px; height: 17px; margin: 0; accent-color: var(--accent); }
 .lw-hint { margin: 0 0 0 auto; color: var(--faint); font-size: 13px; align-self: center; }
 .lw-side { min-width: 0; display: flex; flex-direction: column; gap: 14px; }
-.lw-charts { display: grid; gap: 12px; }
+.lw-charts { display: grid; grid-template-columns: minmax(0, 1fr); gap: 12px; }
 .lw-chart { margin: 0; border: 1px solid var(--line); border-radius: 12px; padding: 8px 10px 6px; }
 .lw-chart figcaption { display: flex; justify-content: space-between; align-items: center; gap: 8px; }
-.lw-chart select { border-color: transparent; background: none; font-weight: 560; padding-left: 2px; min-height: 30px; }
+.lw-chart select { border-color: transparent; background: none; font-weight: 560; padding-left: 2px; min-height: 30px; min-width: 0; text-overflow: ellipsis; }
 .lw-value { font-variant-numeric: tabular-nums; font-size: 14px; }
+.lw-chart .lw-value { flex: none; white-space: nowrap; }
 .lw-chart svg { width: 100%; height: auto; display: block; cursor: crosshair; touch-action: pan-y; font-family: inherit; }
 .lw-chart svg text { font-size: 11px; fill: var(--faint); font-variant-numeric: tabular-nums; }
 .lw-grid { stroke: var(--line); stroke-width: 1; }
