@@ -117,8 +117,8 @@ def test_without_numba_cuda_the_message_says_what_to_install(
 
 
 NO_CARD = (
-    "no graphics card can be used here: it takes one by NVIDIA, its driver, and CUDA's compiler "
-    '(pip install "numba-cuda[cu12]" or "[cu13]"); without device="gpu" the processor serves'
+    "no usable graphics card was found: an NVIDIA card needs its driver and CUDA's compiler "
+    '(pip install "numba-cuda[cu12]" or "[cu13]"); leave out device="gpu" to use the processor'
 )
 
 
@@ -148,8 +148,7 @@ def test_devices_that_do_not_exist_and_cards_that_should_not_compile_are_refused
     with pytest.raises(InputError) as caught:
         family().parts(device="gpu", specialised=False)
     assert str(caught.value) == (
-        "a graphics card runs nothing but compiled equations: leave out specialised=False or "
-        'device="gpu"'
+        'a graphics card runs compiled equations only: leave out specialised=False or device="gpu"'
     )
 
 

@@ -67,7 +67,9 @@ UNTURNED = frozenset(
     if any(getattr(mechanism_of(name).description, kind, ()) for kind in list(PARTS)[3:])
 )
 #: The third derivative of a spline jumps; Dixon's bars change too fast for these steps.
-UNEVEN = frozenset({"curved-slot", "dixon-one", "dixon-two", "eccentric-cam", "garage-door"})
+UNEVEN = frozenset(
+    {"curved-slot", "dixon-one", "dixon-two", "eccentric-cam", "garage-door", "oval-gears"}
+)
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in UNTURNED])
