@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ast
-import inspect
 import sys
 from collections.abc import Callable
 from functools import cache
@@ -36,6 +34,9 @@ def loader(package: str) -> Callable[[str], object]:
     @cache
     def homes() -> dict[str, str]:
         """The module that defines each public name."""
+        import ast  # commands use modules, and do without these
+        import inspect
+
         return {
             alias.name: statement.module
             for statement in ast.walk(ast.parse(inspect.getsource(module)))
