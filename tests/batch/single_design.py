@@ -35,6 +35,8 @@ def disagreement(designs: Designs, k: int, relative: float = RELATIVE) -> str:
     try:
         alone = designs.design(k)
     except LinkworkError as error:
+        if "another structure" in kind:  # laws of its own, of which only the message tells more
+            return "" if designs.message(k) == str(error) else f"{kind!r}, alone: {error}"
         same = re.fullmatch(re.escape(kind).replace("…", ".*"), str(error), re.DOTALL)
         return "" if same and designs.message(k) == str(error) else f"{kind!r}, alone: {error}"
     if kind:

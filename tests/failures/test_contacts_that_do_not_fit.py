@@ -285,6 +285,11 @@ link = "first"
         ),
         ('law = "-psi"', 'column 2: "psi" is not defined (dimensions: phi)'),
         ('law = "phi"', "does not fall everywhere: external gears turn against each other"),
+        ('law = "-phi - 10*abs(sin(phi))"', "is not smooth, or changes too fast, near phi = "),
+        (
+            'law = "-(phi + 2*atan(0.999*sin(phi)/(1 - 0.999*cos(phi))))"',
+            "is not smooth, or changes too fast, near phi = ",
+        ),
         (
             'law = "-phi*0.7071"',
             "turns the second wheel by -0.7071 of a turn while the first one turns once: that is "

@@ -8,7 +8,9 @@ from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
+import pytest
 
+import linkwork as lw
 from linkwork.mechanism.part.noncircular_gear import PitchCurve
 from tests.library.laws import degrees, law, motion_of, same
 from tests.oracles.four_bar import FourBar
@@ -68,13 +70,23 @@ def test_elliptical_gears_roll_on_each_other_about_their_foci() -> None:
         np.exp(1j * second),
         np.exp(-2j * np.arctan2(share * np.sin(first / 2), np.cos(first / 2))),
         1,
-        1e-11,  # pieces of degree five, a degree long
+        1e-13,  # rounding of the law
     )
     for curve in motion.skeleton.of(PitchCurve):
         points = np.array(curve.points)
         focus = 100 * e if curve.link == "first" else 100 * e * -1
         sums = [np.abs(points) + np.abs(points - f) for f in (focus, -focus)]
         same(min(sums, key=lambda s: float(np.ptp(s))), 100, 100, 1e-11)
+
+
+@pytest.mark.parametrize("e", [0.1, 0.7, 0.9, 0.95])
+def test_what_is_proved_of_elliptical_gears_is_true_of_their_formula(e: float) -> None:
+    motion = lw.example("elliptical-gears").with_dimensions(ecc=e).sweep(step=0.37)
+    assert motion.certified.all()
+    phi = degrees(motion, "first")
+    psi = -phi - 2 * np.arctan2(e * np.sin(phi), 1 - e * np.cos(phi))
+    off = np.abs(degrees(motion, "second") - psi)
+    assert np.all(off <= motion.radius + 4e-15)  # and the rounding of both angles
 
 
 @law("oval-gears")

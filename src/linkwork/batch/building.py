@@ -130,8 +130,7 @@ class Builder:
             self._mark(rows[agreeing], problem)
         else:
             self._write(rows, agreeing & ~apart, found)
-            for k in rows[agreeing & apart]:  # laws of their own: swept by themselves, too
-                self._alone(int(k))
+            self._mark(rows[agreeing & apart], self._another_structure)
         return rows[~agreeing]
 
     def _alone(self, k: int) -> None:

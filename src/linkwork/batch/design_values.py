@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from linkwork.batch.designs import Designs
@@ -51,6 +53,7 @@ class DesignValues(QuantityValues):
         self.rates = rates
         self.number = {x.symbol: k for k, x in enumerate(self.equations.variables)}
 
+    @cached_property
     def _blanks(self) -> tuple[Array, Array]:
         """0, NaN where a variable has no first or no second derivative, (R, D)."""
         if self.rates is None:
@@ -86,7 +89,7 @@ class DesignValues(QuantityValues):
         number = {own: k for k, own in enumerate(table.names)}
         parent = self.equations.points[point].parent
         if parent is None:
-            blanks = (np.where(self.lost, np.nan, 0.0), *self._blanks())
+            blanks = (np.where(self.lost, np.nan, 0.0), *self._blanks)
             place = Vector(*(_as_complex(blank) for blank in blanks))
         else:
             place = self.place(parent)

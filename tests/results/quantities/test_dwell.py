@@ -76,4 +76,6 @@ def test_a_dwell_needs_the_height_of_its_band() -> None:
     for text in ("dwell(x)", "dwell(x, wide)", "dwell(x, 1, 2)", "dwell(x, inf)"):
         with pytest.raises(InputError, match=r"must be dwell\(x, BAND\)"):
             motion.value(text)
-    assert np.isnan(motion.value("dwell(x, -1)"))
+    for band in (0, -1):
+        with pytest.raises(InputError, match=f"band must be positive, got {band}"):
+            motion.value(f"dwell(x, {band})")

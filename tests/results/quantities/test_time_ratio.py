@@ -39,3 +39,10 @@ def test_without_a_whole_turn_or_a_return_there_is_none() -> None:
     assert np.isnan(drag.value(f"time_ratio({turning})"))
     with pytest.raises(lw.UnknownNameError, match="a quantity that is no rate"):
         slider.value("time_ratio(d.d1)")
+
+
+def test_of_what_does_not_change_there_is_none() -> None:
+    # a slider on a level line: its y is constant but for rounding
+    motion = lw.example("rapier-drive").sweep()
+    assert np.ptp(motion["E.y"]) < 1e-9
+    assert np.isnan(motion.value("time_ratio(E.y)"))

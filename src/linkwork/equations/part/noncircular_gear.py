@@ -18,6 +18,7 @@ from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.lanes import leader_value, uniform_value
 from linkwork.foundation.names import canonical
+from linkwork.foundation.rounding import EPSILON
 from linkwork.kernels.piecewise import Piecewise
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.description import Key
@@ -26,11 +27,15 @@ from linkwork.mechanism.part.noncircular_gear import NoncircularGear
 __all__ = ["write"]
 
 _PIECES = 360  # of a law that is a formula or a pitch curve, each a polynomial of degree five
+_HALVINGS = 24  # of a formula's pieces; where it has a kink no number would do
+_MOST_PIECES = 20_000
+_EXACT = 4e-15  # [rad] between a formula and its pieces, and so many roundings of it:
+_ROUNDINGS = 2.0
+_INSIDE = np.array([0.25, 0.5, 0.75])  # of a piece: where it is compared with the formula
 _DRAWN = 720  # points of a pitch curve
 _MOST_LOBES = 12
 _CLOSED = 1e-7  # relative; how well a law closes after one turn of each wheel
 _NEARLY = 1e-4  # the same of a pitch curve by its points
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
 class _Misfit(Exception):
@@ -97,17 +102,47 @@ def _law(gear: NoncircularGear, linkage: Bodies) -> tuple[Fraction, Piecewise]:
         begin = float(table[0, 0]) * radians
         return ratio, _shifted(spline(phi, rest, True), begin)
     phi = np.linspace(0.0, math.tau, _PIECES + 1)
-    jet = _formula(gear.law, phi, linkage) if gear.law else _rolled(gear, phi, linkage)
-    if not np.all(np.isfinite(jet.v)) or jet.d1.max() >= 0.0:
-        field = "law" if gear.law else "pitch_curve"
-        raise _Misfit(field, "does not fall everywhere: external gears turn against each other")
-    over = float(jet.v[-1] - jet.v[0])
     if gear.law:
-        ratio = _ratio(over, "law")
-    else:  # points of a curve close only nearly: the rest is spread over the turn
-        ratio = _ratio(over, "pitch_curve", _NEARLY)
-        jet = jet * Jet.constant(float(ratio) * math.tau / over)
+        return _pieces_of_formula(gear.law, phi, linkage)
+    jet = _rolled(gear, phi, linkage)
+    _check_falling(jet, "pitch_curve")
+    over = float(jet.v[-1] - jet.v[0])
+    # points of a curve close only nearly: the rest is spread over the turn
+    ratio = _ratio(over, "pitch_curve", _NEARLY)
+    jet = jet * Jet.constant(float(ratio) * math.tau / over)
     return ratio, _through(phi, jet, float(ratio))
+
+
+def _pieces_of_formula(law: str, phi: Array, linkage: Bodies) -> tuple[Fraction, Piecewise]:
+    """The mean ratio and the rest of a formula, in pieces that are halved until they agree with it.
+
+    A proof holds for the law that is solved: that has to be the one that was given.
+    """
+    for _ in range(_HALVINGS):
+        jet = _formula(law, phi, linkage)
+        _check_falling(jet, "law")
+        ratio = _ratio(float(jet.v[-1] - jet.v[0]), "law")
+        rest = _through(phi, jet, float(ratio))
+        inside = phi[:-1, None] + np.diff(phi)[:, None] * _INSIDE
+        given = _formula(law, inside.ravel(), linkage)
+        _check_falling(given, "law")
+        wanted = given.v.reshape(inside.shape) - jet.v[0] - float(ratio) * inside
+        rounding = (np.abs(given.v) + np.abs(inside.ravel() * given.d1)).reshape(inside.shape)
+        off = np.abs(rest(inside.ravel()).reshape(inside.shape) - wanted)
+        coarse = (off > _EXACT + _ROUNDINGS * EPSILON * rounding).any(axis=1)
+        if not coarse.any():
+            return ratio, rest
+        halves = inside[coarse, 1]
+        if len(phi) + len(halves) > _MOST_PIECES:
+            break
+        phi = np.sort(np.concatenate([phi, halves]))
+    where = linkage.angle.from_radians(float(halves[0]))
+    raise _Misfit("law", f"is not smooth, or changes too fast, near phi = {where:.6g}")
+
+
+def _check_falling(jet: Jet, field: str) -> None:
+    if not np.all(np.isfinite(jet.v)) or jet.d1.max() >= 0.0:
+        raise _Misfit(field, "does not fall everywhere: external gears turn against each other")
 
 
 def _ratio(over: float, field: str, within: float = _CLOSED) -> Fraction:
@@ -169,10 +204,11 @@ def _rolled(gear: NoncircularGear, phi: Array, linkage: Bodies) -> Jet:
         r, r1 = np.abs(z), np.abs(z) * (z1 / z).real / (z1 / z).imag
         return -r / (distance - r), r1 * distance / (distance - r) ** 2
 
+    nodes, weights = np.polynomial.legendre.leggauss(6)
     half = np.diff(phi) / 2.0
     middle = (phi[1:] + phi[:-1]) / 2.0
-    inside = speeds((middle[:, None] + half[:, None] * _NODES).ravel())[0].reshape(len(half), -1)
-    psi = np.concatenate([[0.0], np.cumsum(half * (inside @ _WEIGHTS))])
+    inside = speeds((middle[:, None] + half[:, None] * nodes).ravel())[0].reshape(len(half), -1)
+    psi = np.concatenate([[0.0], np.cumsum(half * (inside @ weights))])
     return Jet(psi, *speeds(phi))
 
 

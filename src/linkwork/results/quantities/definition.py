@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.mechanism.dyad import Dyad, dyads_of
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.quantity import Kind, Units
 
@@ -22,6 +24,7 @@ __all__ = [
     "RowQuantity",
     "Solved",
     "Vector",
+    "cubic",
     "folded",
 ]
 
@@ -61,6 +64,11 @@ class MechanismNames:
     points: tuple[str, ...] = ()
     by: str = ""
     lead: str = ""
+
+    @cached_property
+    def dyads(self) -> tuple[Dyad, ...]:
+        """The dyads of the skeleton, found once."""
+        return dyads_of(self.skeleton)
 
 
 @dataclass(frozen=True)
@@ -172,6 +180,22 @@ class MotionRows:
         found: BoolArray = around & same & np.isfinite(self.value).all(axis=-1)
         return found
 
+    @property
+    def moves(self) -> BoolArray:
+        """Which motions change the quantity by more than rounding, (…,)."""
+        high, low = (each.reduce(self.value, axis=-1) for each in (np.fmax, np.fmin))
+        found: BoolArray = high - low > _SAME * np.fmax(np.abs(high), np.abs(low))
+        return found
+
+
+def cubic(s: Array | float, ends: tuple[Array, Array], slopes: tuple[Array, Array]) -> Array:
+    """Hermite's cubic at s from 0 to 1, from values and slopes by s at both ends."""
+    r = 1.0 - s
+    value: Array = r**2 * ((1.0 + 2.0 * s) * ends[0] + s * slopes[0]) + s**2 * (
+        (1.0 + 2.0 * r) * ends[1] - r * slopes[1]
+    )
+    return value
+
 
 def folded(angle: Jet, period: float) -> Jet:
     """The size of an angle that is the same after a period: from 0 to half of it [rad]."""
@@ -195,7 +219,7 @@ class MotionQuantity:
     of_point : bool
         Whether it is asked of a point instead of a quantity.
     numbers : tuple of str
-        What further numbers are called.
+        What further numbers are called; each of them is positive.
     needs : int
         How many derivatives of the quantity it needs.
     measures : str

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.results.quantities.definition import MotionQuantity, MotionRows
+from linkwork.results.quantities.definition import MotionQuantity, MotionRows, cubic
 
 __all__ = ["DWELL"]
 
@@ -34,7 +34,7 @@ def _range(rows: MotionRows, band: float) -> tuple[Array, Array]:
     """Between which inputs the quantity stays within the band for longest, (…,) each."""
     shape = rows.value.shape[:-1]
     up = rows.ascending()
-    if up is None or len(up.input) < 2 or not band > 0.0:
+    if up is None or len(up.input) < 2:
         return np.full(shape, np.nan), np.full(shape, np.nan)
     flat = [x.reshape(-1, len(up.input)) for x in (up.value, up.first)]
     u, f = _fine(up.input, *flat)
@@ -61,12 +61,10 @@ def _fine(u: Array, value: Array, first: Array) -> tuple[Array, Array]:
     """Inputs (F,) and values (D, F) at parts of the distances between rows."""
     step = np.diff(u)
     s = np.arange(_PARTS) / _PARTS
-    r = 1.0 - s
     ends = value[:, :-1, None], value[:, 1:, None]
     slopes = ((step * x)[..., None] for x in (first[:, :-1], first[:, 1:]))
     begin, end = (np.where(np.isfinite(x), x, ends[1] - ends[0]) for x in slopes)
-    inner = r**2 * ((1.0 + 2.0 * s) * ends[0] + s * begin)
-    inner = inner + s**2 * ((1.0 + 2.0 * r) * ends[1] - r * end)
+    inner = cubic(s, ends, (begin, end))
     inner[..., 0] = value[:, :-1]
     places = (u[:-1, None] + s * step[:, None]).reshape(-1)
     fine = inner.reshape(len(value), -1)

@@ -10,11 +10,11 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.results.quantities.definition import MotionQuantity, MotionRows
+from linkwork.results.quantities.definition import MotionQuantity, MotionRows, cubic
 
 __all__ = ["PATH_LENGTH"]
 
-_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+_POINTS = 4  # of Gauss' rule
 
 
 def _length(rows: MotionRows, _: tuple[float, ...]) -> Array:
@@ -22,11 +22,9 @@ def _length(rows: MotionRows, _: tuple[float, ...]) -> Array:
     begin, end = rows.first[..., :-1], rows.first[..., 1:]
     slopes = step * rows.second[..., :-1], step * rows.second[..., 1:]
     total = np.zeros(begin.shape)
-    for s, weight in zip(0.5 * (1.0 + _PLACES), 0.5 * _WEIGHTS, strict=True):
-        r = 1.0 - s
-        rate = r**2 * ((1.0 + 2.0 * s) * begin + s * slopes[0])
-        rate = rate + s**2 * ((1.0 + 2.0 * r) * end - r * slopes[1])
-        total += weight * np.abs(rate)
+    for place, weight in zip(*np.polynomial.legendre.leggauss(_POINTS), strict=True):
+        rate = cubic(0.5 * (1.0 + place), (begin, end), slopes)
+        total += 0.5 * weight * np.abs(rate)
     chord = np.abs(np.diff(rows.value, axis=-1))
     parts = np.where(np.isfinite(total), total * np.abs(step), chord)
     found: Array = np.where(np.isfinite(chord).any(axis=-1), np.nansum(parts, axis=-1), np.nan)

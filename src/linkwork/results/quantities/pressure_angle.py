@@ -16,7 +16,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from linkwork.expression.jets import Jet
-from linkwork.mechanism.dyad import Dyad, dyads_of
+from linkwork.mechanism.dyad import Dyad
 from linkwork.mechanism.part.cam import CamOutline, Follower
 from linkwork.results.quantities.definition import (
     UNKNOWN,
@@ -40,8 +40,7 @@ def _followers(names: MechanismNames) -> dict[str, Follower]:
 
 
 def _blocks(names: MechanismNames) -> dict[str, Dyad]:
-    dyads = dyads_of(names.skeleton)
-    return {dyad.guide.name: dyad for dyad in dyads if dyad.guide is not None}
+    return {dyad.guide.name: dyad for dyad in names.dyads if dyad.guide is not None}
 
 
 def _guided(names: MechanismNames) -> Mapping[str, Kind]:

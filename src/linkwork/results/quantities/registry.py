@@ -409,6 +409,9 @@ class Call:
         if len(rest) != len(wanted) or len(numbers) != len(rest):
             form = ", ".join([of, *map(str.upper, wanted)])
             raise InputError(f'"{text}" must be {call[1]}({form})')
+        for word, number in zip(wanted, numbers, strict=True):
+            if number <= 0.0:
+                raise InputError(f'"{text}": {word} must be positive, got {number:g}')
         return cls(call[1], of, numbers)
 
 

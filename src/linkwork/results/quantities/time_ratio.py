@@ -2,7 +2,7 @@
 
 The input turns steadily once around; between its extremes the quantity is followed by its
 derivative, whose zero is found on the cubic through rows and slopes. A motion that is not one
-whole turn, or does not come back, has none.
+whole turn, or does not come back, has none; nor has a quantity that does not change.
 
 References
 ----------
@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.results.quantities.definition import MotionQuantity, MotionRows
+from linkwork.results.quantities.definition import MotionQuantity, MotionRows, cubic
 
 __all__ = ["TIME_RATIO"]
 
@@ -30,7 +30,7 @@ def _ratio(rows: MotionRows, _: tuple[float, ...]) -> Array:
     lowest = _turning(up, filled.argmin(axis=-1), -1.0)
     part = np.mod(highest - lowest, up.turn)
     ratio = np.maximum(part, up.turn - part) / np.minimum(part, up.turn - part)
-    found: Array = np.where(up.cycle, ratio, np.nan)
+    found: Array = np.where(up.cycle & up.moves, ratio, np.nan)
     return found
 
 
@@ -49,19 +49,10 @@ def _turning(rows: MotionRows, row: Array, side: float) -> Array:
         middle = 0.5 * (low + high)
         ends = at(rows.first, begin), at(rows.first, begin + 1)
         slopes = step * at(rows.second, begin), step * at(rows.second, begin + 1)
-        ahead = side * _cubic(middle, ends, slopes) > 0.0
+        ahead = side * cubic(middle, ends, slopes) > 0.0
         low, high = np.where(ahead, middle, low), np.where(ahead, high, middle)
     found: Array = rows.input[np.mod(begin, last)] + step * high
     return found
-
-
-def _cubic(s: Array, ends: tuple[Array, Array], slopes: tuple[Array, Array]) -> Array:
-    """Hermite's cubic at s from 0 to 1."""
-    r = 1.0 - s
-    value: Array = r**2 * ((1.0 + 2.0 * s) * ends[0] + s * slopes[0]) + s**2 * (
-        (1.0 + 2.0 * r) * ends[1] - r * slopes[1]
-    )
-    return value
 
 
 TIME_RATIO = (

@@ -18,7 +18,6 @@ import numpy as np
 
 from linkwork.expression.jets import Jet
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.mechanism.dyad import dyads_of
 from linkwork.results.quantities.definition import MechanismNames, RowQuantity, Solved, folded
 from linkwork.results.quantity import Kind
 
@@ -26,11 +25,11 @@ __all__ = ["TRANSMISSION"]
 
 
 def _pins(names: MechanismNames) -> Mapping[str, Kind]:
-    return {dyad.pin: Kind.ANGLE for dyad in dyads_of(names.skeleton)}
+    return {dyad.pin: Kind.ANGLE for dyad in names.dyads}
 
 
 def _angle(names: MechanismNames, solved: Solved, pin: str) -> Jet:
-    dyad = next(dyad for dyad in dyads_of(names.skeleton) if dyad.pin == pin)
+    dyad = next(dyad for dyad in names.dyads if dyad.pin == pin)
     place = solved.place(pin)
     one = (solved.place(dyad.arms[0]) - place).direction()
     if dyad.guide is None:
