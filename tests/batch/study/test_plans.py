@@ -113,7 +113,7 @@ x = "mew <= 40"
 """,
         """\
 10 problems in plan.toml
-  line 6   keep[1]                 there is no "B.z" (nearest: B.y, B.x, A.y; all: linkwork quantities FILE)
+  line 6   keep[1]                 there is no "B.z" (nearest: B.y, B.x, B.centre.y; all: linkwork quantities FILE)
   line 6   keep[2]                 "crank" is an input, the same for every design: leave it out
   line 6   keep[4]                 "B.x" is already the name of keep[3]: leave it out or rename it
   line 10  reductions."B.x"        "B.x" is already the name of keep[3]: leave it out or rename it

@@ -424,10 +424,18 @@ def _finite(text: str) -> float | None:
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """The three nearest names and the command that lists all, for the end of a message."""
+    """The three nearest names and the command that lists all, for the end of a message.
+
+    Quantities of the same part, and the same quantity of other parts, come before all others.
+    """
     folded = {canonical(own): own for own in known}
-    near = [folded[own] for own in get_close_matches(canonical(name), folded, n=3, cutoff=0.0)]
-    told = ", ".join(near)
+    wanted = canonical(name)
+    part, dot, word = wanted.rpartition(".")
+    mates = [own for own in folded if dot and own.startswith(f"{part}.")]
+    mates += [own for own in folded if dot and own.endswith(f".{word}")]
+    others = get_close_matches(wanted, folded, n=3, cutoff=0.0)
+    near = dict.fromkeys([*get_close_matches(wanted, mates, n=3, cutoff=0.0), *others])
+    told = ", ".join(folded[own] for own in [*near][:3])
     return f"(nearest: {told}; all: linkwork quantities FILE)"
 
 
