@@ -181,7 +181,7 @@ class _LatinHypercube(Plan):
         rows, (low, high) = self._rows(k), self.ranges[column]
         stratum = _shuffle(np.arange(rows.start, rows.stop), self.count, (self.seed, column))
         within = _generator(self.seed, column, k).random(len(rows))
-        values: Array = low + (high - low) * ((stratum + within) / self.count)
+        values: Array = low + (high - low) * ((stratum + within) / self.count)  # eq. (70)
         return values
 
 

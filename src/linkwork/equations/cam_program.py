@@ -107,7 +107,7 @@ class FollowerPath:
             worst = int(bend.argmax())
             if bend[worst] * self.roller >= 1.0:
                 raise Undercut(float(phi[worst]))
-        surface: ComplexArray = z - self.roller * 1j * z1 / np.abs(z1)
+        surface: ComplexArray = z - self.roller * 1j * z1 / np.abs(z1)  # eq. (66)
         return surface
 
     def _face(self, phi: Array) -> ComplexArray:
@@ -119,7 +119,7 @@ class FollowerPath:
         still = np.flatnonzero(turned >= 0.0)
         if len(still):
             raise Undercut(float(phi[still[0]]))
-        surface: ComplexArray = (w - (d.conj() * z1).imag / turned * d) * back
+        surface: ComplexArray = (w - (d.conj() * z1).imag / turned * d) * back  # eq. (67)
         ways = ((np.roll(surface, -1) - np.roll(surface, 1)) * (d * back).conj()).real
         majority = np.sign(np.median(ways))
         wrong = np.flatnonzero(ways * majority <= 0.0)

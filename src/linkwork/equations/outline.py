@@ -81,11 +81,11 @@ def spline(u: Array, values: Array, closed: bool) -> Piecewise:
     second = np.zeros(len(u))
     if closed:
         before = np.roll(h, 1)
-        right = 6.0 * (chords - np.roll(chords, 1))
+        right = 6.0 * (chords - np.roll(chords, 1))  # eq. (69)
         second[:-1] = _solve_cyclic(before, 2.0 * (before + h), h, right)
         second[-1] = second[0]
     else:
-        right = 6.0 * np.diff(chords)[:, None]
+        right = 6.0 * np.diff(chords)[:, None]  # eq. (69)
         second[1:-1] = _solve_tridiagonal(h[:-1], 2.0 * (h[:-1] + h[1:]), h[1:], right)[:, 0]
     powers = np.stack(
         [

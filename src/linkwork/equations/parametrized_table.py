@@ -93,8 +93,9 @@ class ParametrizedTable:
         left, _, right = np.linalg.svd(self.jacobian(v[None, :])[0])
         w = np.insert(right[-1], self.parameter, 0.0) * table.variable_scale
         both = np.stack([rates + w, rates - w])
+        # eq. (5)
         change = 0.25 * np.subtract(*table.second_directional_derivative(np.stack([v, v]), both))
-        return float(left[:, -1] @ (change / table.equation_scale))
+        return float(left[:, -1] @ (change / table.equation_scale))  # eq. (16)
 
 
 def _lock_inputs(table: LoopTable, path: InputPath, parameter: int) -> LoopTable:

@@ -51,7 +51,7 @@ def grubler_count(linkage: Linkage) -> int:
     as teeth do. A wheel that rolls without slipping has one freedom; a weld has none, of its two
     links' pin.
     """
-    rigid = 3 * (len(linkage.links) - 1) - 2 * pins(linkage)
+    rigid = 3 * (len(linkage.links) - 1) - 2 * pins(linkage)  # eq. (64)
     return rigid + sum(part.mobility for part in linkage.parts)
 
 

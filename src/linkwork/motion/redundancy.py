@@ -115,4 +115,4 @@ def mobility_by_rank(compiled: Compiled, v: Array) -> int:
     if not scaled.size:
         return int(scaled.shape[1])
     tolerance = RANK_TOLERANCE * np.linalg.norm(scaled, 2)
-    return int(scaled.shape[1] - np.linalg.matrix_rank(scaled, tol=tolerance))
+    return int(scaled.shape[1] - np.linalg.matrix_rank(scaled, tol=tolerance))  # eq. (65)

@@ -167,11 +167,14 @@ class BlockSolver:
             system = block.system
             here = v[:, block.variables]
             jacobian, inverse = parts[k].jacobian, parts[k].inverse
+            # earlier blocks have left their rates there: they are known motions for this one
             known = block.variables[n:]
             direction = np.empty_like(here)
             direction[:, n:] = first[:, known]
+            # eq. (11)
             x1 = -matrix_vector(inverse, matrix_vector(jacobian[:, :, n:], direction[:, n:]))
             direction[:, :n] = x1
+            # eq. (12)
             bend = system.second_directional_derivative(here, direction) + matrix_vector(
                 jacobian[:, :, n:], second[:, known]
             )
@@ -179,6 +182,7 @@ class BlockSolver:
             second[:, block.unknowns] = -matrix_vector(inverse, bend)
             own = _condition(system, jacobian[:, :, :n], inverse)
             condition = np.maximum(condition, own)
+            # balancing the columns costs more than the rates themselves
             if own.max(initial=0.0) > _LARGE:
                 own = _nearness(own, system.equation_scale, jacobian[:, :, :n], inverse)
             nearness = np.maximum(nearness, own)
@@ -218,6 +222,7 @@ def _inverse(jacobian: Array) -> tuple[Array, StatusArray]:
                 inverse[lane] = np.linalg.inv(matrix)
             except np.linalg.LinAlgError:
                 continue
+    # its sign tells apart the two positions that meet at a dead point
     sign = np.sign(np.linalg.det(jacobian))
     return np.asarray(inverse, dtype=float), np.where(np.isfinite(sign), sign, 0).astype(np.int8)
 
@@ -227,7 +232,7 @@ def _condition(system: System, jacobian: Array, inverse: Array) -> Array:
     w, s = system.variable_scale[: jacobian.shape[2]], system.equation_scale
     forward = np.abs(jacobian * w / s[:, None]).sum(axis=2).max(axis=1, initial=0.0)
     backward = np.abs(inverse * s / w[:, None]).sum(axis=2).max(axis=1, initial=0.0)
-    product: Array = forward * backward
+    product: Array = forward * backward  # eq. (14)
     return np.where(np.isfinite(product), product, np.inf)
 
 
@@ -246,4 +251,4 @@ def _nearness(condition: Array, s: Array, jacobian: Array, inverse: Array) -> Ar
         backward = np.abs(inverse * s * longest[:, :, None]).sum(axis=2).max(axis=1, initial=0.0)
         balanced = forward * backward
         least = np.where(np.isfinite(balanced), np.minimum(condition, balanced), condition)
-        return np.asarray(np.sqrt(condition) * np.sqrt(least))
+        return np.asarray(np.sqrt(condition) * np.sqrt(least))  # eq. (15)

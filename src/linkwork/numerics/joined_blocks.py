@@ -131,6 +131,7 @@ class JoinedBlocks:
 
     def mixed(self, v: Array, a: Array, b: Array) -> Array:
         """D²F[a, b], (B, n), by polarisation."""
+        # eq. (5)
         half: Array = 0.25 * (
             self.second_directional_derivative(v, a + b)
             - self.second_directional_derivative(v, a - b)

@@ -202,7 +202,7 @@ def _rolled(gear: NoncircularGear, phi: Array, linkage: Bodies) -> Jet:
         x, y = outline.x.jet(place), outline.y.jet(place)
         z, z1 = x[0] + 1j * y[0], x[1] + 1j * y[1]
         r, r1 = np.abs(z), np.abs(z) * (z1 / z).real / (z1 / z).imag
-        return -r / (distance - r), r1 * distance / (distance - r) ** 2
+        return -r / (distance - r), r1 * distance / (distance - r) ** 2  # eq. (68)
 
     nodes, weights = np.polynomial.legendre.leggauss(6)
     half = np.diff(phi) / 2.0
@@ -280,6 +280,7 @@ def _draw(
         phi = np.linspace(0.0, math.tau * float(span), _DRAWN)
         value, slope, _ = rest.jet(phi)
         steep = float(ratio) + slope
+        # eq. (68): r1 and r2 in centre distances
         radius = (-steep if k == 0 else 1.0) / (1.0 - steep)
         angle = phi + start
         if k == 1:

@@ -107,12 +107,12 @@ def _dyad(kind: str, gap: float, size: float, roots: list[tuple[float, float]]) 
 
 def _two_links(known: complex, first: complex, second: complex) -> Dyad:
     d, a, b = abs(known), abs(first), abs(second)
-    gap = max(d - (a + b), abs(a - b) - d)
+    gap = max(d - (a + b), abs(a - b) - d)  # eq. (54)
     size = max(d, a, b)
     if d == 0.0 or a == 0.0 or b == 0.0:  # no triangle: none, or a position for every angle
         return replace(_dyad("RRR", gap, size, []), all_roots=gap > _TOUCHING * size)
     # the first link makes the angle ±ε with the vector -K that both have to span
-    cosine = (d * d + (a - b) * (a + b)) / (2.0 * d * a)
+    cosine = (d * d + (a - b) * (a + b)) / (2.0 * d * a)  # eq. (54) without cancellation
     swing = math.acos(max(-1.0, min(1.0, cosine)))
     roots = []
     for side in (1.0, -1.0) if swing not in (0.0, math.pi) else (1.0,):
@@ -128,7 +128,7 @@ def _on_a_line(known: complex, link: complex, along: complex) -> Dyad | None:
         return None
     beside = (known * along.conjugate()).imag / u
     middle = -(known * along.conjugate()).real / u
-    half = math.sqrt(max(0.0, (a - abs(beside)) * (a + abs(beside))))
+    half = math.sqrt(max(0.0, (a - abs(beside)) * (a + abs(beside))))  # eq. (55)
     roots = []
     for side in (1.0, -1.0) if half else (1.0,):
         s = (middle + side * half) / u
@@ -142,7 +142,7 @@ def _turning_line(known: complex, arm: complex, along: complex) -> Dyad | None:
         return None
     beside = (arm * along.conjugate()).imag / u
     middle = -(arm * along.conjugate()).real / u
-    half = math.sqrt(max(0.0, (d - abs(beside)) * (d + abs(beside))))
+    half = math.sqrt(max(0.0, (d - abs(beside)) * (d + abs(beside))))  # eq. (55)
     roots = []
     for side in (1.0, -1.0) if half else (1.0,):
         s = (middle + side * half) / u

@@ -86,6 +86,7 @@ def locate_change_point(
         system = JoinedBlocks(solver, closure_of(solver, block))
         mine = system.order[: system.unknowns]
         known = KnownJet.along(path)
+        # the crossing may lie a little before the last node, but not on the other side of it
         found = _locate(system, known, last.v[mine], last.t, last.first[mine])
         if found is None or (found.t - last.t) * side < -1e-3 * near:
             continue
@@ -164,6 +165,7 @@ def tangents_behind_kink(
         if not np.isfinite(both).all():
             return None
         ahead = here + (share - last) * slope
+        # the quadratic equation gives its roots in any order: tangents keep to their extrapolation
         if np.abs(both[::-1] - ahead).max() < np.abs(both - ahead).max():
             both = both[::-1]
         slope = (both - here) / (share - last)
@@ -189,10 +191,12 @@ def _locate(system: Equations, known: KnownJet, x: Array, t: float, own: Array) 
     if found is None:
         return None
     x, t, w, beta, error = found
+    # β is the gap between two branches that come near each other and do not cross
     tangents = None if abs(beta) > _UNFOLDED else crossing.tangents(x, t, w)
     if tangents is None:
         return None
     mine = own / crossing.weights
+    # the branch that was followed has the tangent nearer to its last rates
     onward, other = sorted(tangents, key=lambda z: _distance(_rate(z), mine))
     return _Located(x=x, t=t, error=error, onward=onward, other=other)
 
@@ -302,6 +306,7 @@ def _near(system: System, v: Array) -> Array:
     i, j = (index.ravel() for index in np.indices((n, count)))
     column, step = np.eye(count)[i], np.diag(system.variable_scale)[j]
     lanes = np.repeat(v[None, :], n * count, axis=0)
+    # eq. (5)
     mixed = 0.25 * (
         system.second_directional_derivative(lanes, column + step)
         - system.second_directional_derivative(lanes, column - step)

@@ -48,6 +48,7 @@ def prove_curve(leads: Parametrizations, curve: Curve) -> ProvenCurve:
     if all(leg.led.provable for leg in curve.legs):
         for k, leg in enumerate(curve.legs):
             proof = _proof_of(leg, max(_MOST_STEPS - steps, 0))
+            # from its first position: the one that the leg before has proved
             legs[k] = proof.connected_to(0).all()
             steps += int(proof.pieces.sum())
             if steps > _MOST_STEPS or proof.given_up.any():
@@ -73,6 +74,7 @@ def _goes_on(leads: Parametrizations, leg: Leg, following: Leg) -> bool:
         np.sign(part.nodes[-1].t - part.nodes[0].t) * part.first[place] / leads.scale
         for part, place in ((leg, -1), (following, 0))
     )
+    # a leg that turned around would prove the way back, not the way on
     return bool(arrival @ departure > 0.0)
 
 
@@ -83,6 +85,7 @@ def leg_is_proved(leg: Leg) -> bool:
 
 def _proof_of(leg: Leg, most: int) -> ProvenPath:
     nodes = leg.nodes
+    # a leg may be traced downwards; proofs take rising values, so t and odd derivatives change sign
     sign = np.sign(nodes[-1].t - nodes[0].t) or 1.0
     points = PathPoints(
         t=sign * np.array([node.t for node in nodes]),

@@ -97,13 +97,13 @@ class _At:
         """
         n = self.n
         bordered = np.zeros((n + 1, n + 1))
-        bordered[:n, :n], bordered[:n, n], bordered[n, :n] = self.j, self.w, self.z
+        bordered[:n, :n], bordered[:n, n], bordered[n, :n] = self.j, self.w, self.z  # eq. (43)
         unit = np.eye(n + 1)[n]
         right, left = np.linalg.solve(bordered, unit), np.linalg.solve(bordered.T, unit)
         self.z, self.w = right[:n], left[:n]
         whole = np.zeros((n + 1, n + 1))
         whole[:n, :n], whole[:n, n] = self.j, self.f_p
-        whole[n, :n] = [-self.bend(e) for e in np.eye(n)]
+        whole[n, :n] = [-self.bend(e) for e in np.eye(n)]  # eq. (43): dg
         whole[n, n] = -self.w @ self.j_p @ self.z
         step: Array = -np.linalg.solve(whole, np.concatenate([self.f, [right[n]]]))
         return step
@@ -164,13 +164,14 @@ def _opening(family: FoldFamily, begin: float, x: Array, p: float) -> Fold | Non
     here = _At(family, x, p)
     if np.abs(here.f).max() > _CLOSED:
         return None
+    # solutions have to exist on the side that leads away from the present length
     towards = np.sign(p - begin) or 1.0
-    ratio = -2.0 * float(here.w @ here.f_p) / here.bend(here.z)
+    ratio = -2.0 * float(here.w @ here.f_p) / here.bend(here.z)  # eq. (44)
     if not np.isfinite(ratio) or ratio * towards <= 0.0:
         return None
     further = towards * _FURTHER * family.size
     system, inputs = family.at(p + further), family.inputs
-    start = x + np.sqrt(ratio * further) * here.z * here.weights[: here.n]
+    start = x + np.sqrt(ratio * further) * here.z * here.weights[: here.n]  # eq. (44)
     found = _is_solved_from(system, np.concatenate([start, inputs]))
     return Fold(p=p, x=x, opens=float(towards), checked=found)
 

@@ -89,7 +89,7 @@ def fastest_leader(
     first: int | None = None,
 ) -> tuple[Parametrization, Node] | None:
     """The fastest variable that determines all others at a position, and the node it gives."""
-    by_speed = [int(k) for k in np.argsort(-speed, kind="stable")]
+    by_speed = [int(k) for k in np.argsort(-speed, kind="stable")]  # eq. (35)
     for lead in by_speed if first is None else [first, *by_speed]:
         led = leads.with_parameter(lead) if lead != avoid and speed[lead] > 0.0 else None
         if led is not None:
@@ -121,6 +121,7 @@ def same_position(leads: Parametrizations, a: Array, b: Array) -> bool:
     one lies where only the other is. Where nothing is proved, they agree if they do to rounding.
     """
     turns, p = whole_turns(leads, a, b), leads.parameter
+    # the equations are the same whole turns away, but the numbers have to agree
     near = np.stack([a, b - FULL_TURN * turns])
     gap = np.abs(near[1] - near[0]) / leads.scale
     rounding = 8.0 * EPSILON * max(1.0, abs(float(a[p])), abs(float(b[p])))
@@ -130,6 +131,7 @@ def same_position(leads: Parametrizations, a: Array, b: Array) -> bool:
     size = 1.0 + np.abs(near / leads.scale).max()
     if gap.max() <= _ROUNDINGS * EPSILON * size:
         return True
+    # both at exactly one value of the parameter, so that only one branch is compared with the other
     near[:, p] = a[p]
     sharp = replace(own.solver.options, equation_tolerance=EPSILON)
     found = own.solver.solve(near[:, own.order], sharp).v

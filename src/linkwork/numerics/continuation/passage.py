@@ -129,6 +129,7 @@ def _through(
     rows, right = [], []
     for s, jet in ((0.0, at_begin), (1.0, at_end)):
         for order, value in enumerate(jet):
+            # a row of the confluent Vandermonde matrix: the derivative of every power at s
             powers = np.arange(count)
             falling = np.prod([powers - k for k in range(order)], axis=0) if order else 1.0
             rows.append(
@@ -151,6 +152,7 @@ class _Motion:
         n = self.solver.unknowns
         value, first, second = (np.zeros(self.solver.variables) for _ in range(3))
         value[n:], first[n:] = self.path.at(t), self.path.rate
+        # a point just inside the side that is asked for decides which piece holds at a kink
         inside = t + 1e-9 * (towards - t)
         for unknowns, pieces in self.pieces:
             piece = next(
@@ -248,15 +250,15 @@ class _Walk:
         whole[block.variables] = v
         part = linearise_block(block, whole[None, :])
         slope, inverse = part.jacobian[0], part.inverse[0]
-        first = -inverse @ (slope[:, n:] @ y1)
+        first = -inverse @ (slope[:, n:] @ y1)  # eq. (11)
         bend = system.second_directional_derivative(
             v[None, :], np.concatenate([first, y1])[None, :]
         )[0]
-        second = -inverse @ (bend + slope[:, n:] @ y2)
+        second = -inverse @ (bend + slope[:, n:] @ y2)  # eq. (12)
         w, s = system.variable_scale[:n], system.equation_scale
         forward = np.abs(slope[:, :n] * w / s[:, None]).sum(axis=1).max(initial=0.0)
         backward = np.abs(inverse * s / w[:, None]).sum(axis=1).max(initial=0.0)
-        condition = float(forward * backward)
+        condition = float(forward * backward)  # eq. (14)
         return _Step(t=t, x=x, first=first, second=second), int(part.sign[0]), condition
 
     def _solve(self, block: Block, t: float, guess: Array, towards: float) -> Array | None:
@@ -273,7 +275,7 @@ class _Walk:
         steps = [here]
         for t in np.linspace(begin, end, _STEPS + 1)[1:].tolist():
             h = t - here.t
-            guess = here.x + h * here.first + 0.5 * h * h * here.second
+            guess = here.x + h * here.first + 0.5 * h * h * here.second  # eq. (17)
             x_new = self._solve(block, t, guess, begin)
             if x_new is None or not np.abs((x_new - guess) / weights).max() <= _OFF:
                 return None
@@ -336,7 +338,7 @@ class _Walk:
         """The crossing of a block near the one that was met first."""
         known = KnownJet(lambda t: self._known(block, t, before.t))
         h = self.near - before.t
-        guess = before.x + h * before.first + 0.5 * h * h * before.second
+        guess = before.x + h * before.first + 0.5 * h * h * before.second  # eq. (17)
         own = before.first + h * before.second
         return locate_crossing(self.solver, number, known, guess, self.near, own)
 

@@ -122,6 +122,7 @@ def prove_path(
     allowance = _Allowance(_MOST + _MOST_EACH * count if most is None else most)
     begins = list(range(0, max(count - 1, 1), _PIECE))
     if anchor is not None:
+        # near the anchor first: beyond a step that is not proved no other one is of use
         begins.sort(key=lambda begin: abs(begin + _PIECE // 2 - anchor))
     found: dict[int, ProvenPath] = {}
     for k, begin in enumerate(begins, start=1):
@@ -190,6 +191,7 @@ def _piece(
     connected &= position.holds[1:] & position.holds[:-1]
     open_ = np.flatnonzero(~connected & position.holds[1:] & position.holds[:-1])
     if len(open_):
+        # a step towards a change point is often proved from its far end only
         back = _take_expansions(places, open_ + 1)
         connected[open_] = _steps(solver, right.take(open_), left.take(open_), near[open_], back)
         open_ = open_[~connected[open_]]
@@ -223,6 +225,7 @@ def _steps(
 
     The inputs are taken from the positions: those of a row may differ from the path's by rounding.
     """
+    # the factor covers the rounding of the difference
     input_radius = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
     input_radius += start.input_radius + goal.input_radius
     return steps_connected(start.v, goal.v, reach(solver, start.v, input_radius, places), near)
@@ -348,7 +351,7 @@ def _between(
     proofs take from them.
     """
     h = (right.t - left.t)[:, None]
-    guess = 0.5 * (left.v + right.v) + 5.0 / 32.0 * h * (left.first - right.first)
+    guess = 0.5 * (left.v + right.v) + 5.0 / 32.0 * h * (left.first - right.first)  # eq. (21)
     guess += h * h / 64.0 * (left.second + right.second)
     t = 0.5 * (left.t + right.t)
     guess[:, solver.unknowns :] = path.at(t)

@@ -55,7 +55,7 @@ class _ProvedTrial:
     def attempt(self, here: Node, t: float) -> Attempt[Node]:
         """Predict, correct, prove the position and the step to it."""
         solver = self.solver
-        guess = predict(here, t)
+        guess = predict(here, t)  # eq. (17)
         guess[solver.unknowns :] = self.path.at(t)
         found = solver.solve(guess[None, :])
         if found.status[0] != CONVERGED:
@@ -64,7 +64,9 @@ class _ProvedTrial:
         proof = self._proof(found.v)
         input_radius = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
         reached = reach(solver, here.v[None, :], input_radius + 2.0 * known)
+        # the error of either end counts, and both belong to known inputs
         both = np.maximum(proof.error_bound, self.here.error_bound)
+        # eq. (33)
         if not (proof.holds[0] and steps_connected(here.v[None, :], found.v, reached, both)[0]):
             return Attempt(None)
         self.here = proof

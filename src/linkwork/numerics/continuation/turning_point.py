@@ -79,6 +79,7 @@ def turning_points(leads: Parametrizations, curve: Curve) -> Iterator[TurningPoi
         if leg.led.lead == leads.parameter:
             continue
         place = leg.led.place(leads.parameter)
+        # where t and its second derivative rest, the arc keeps one input: no dead point
         still = _RESTING * leads.scale[leads.parameter] / leads.scale[leg.led.lead]
         level = _LEVEL * still / leads.scale[leg.led.lead]
         for k, (a, b) in enumerate(itertools.pairwise(leg.nodes)):
@@ -215,6 +216,7 @@ def _refine_turn(
         bracket = (min(edges[0], t), max(edges[1], t))
     else:
         off = float(proof.error_bound[place])
+        # outwards, so that the rounding of t ± off cannot shut out the dead point
         bracket = (math.nextafter(t - off, -math.inf), math.nextafter(t + off, math.inf))
     return TurningPoint(
         t=t,
@@ -236,15 +238,16 @@ def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
     best = here = low if abs(low.first[place]) < abs(high.first[place]) else high
     sharp = replace(led.solver.options, equation_tolerance=EPSILON)
     for _ in range(60):
-        step = -here.first[place] / here.second[place] if here.second[place] else np.inf
+        step = -here.first[place] / here.second[place] if here.second[place] else np.inf  # eq. (36)
         if abs(step) <= 4.0 * EPSILON * max(1.0, abs(here.t)):
             break
         s = here.t + step
         edges = sorted((low.t, high.t))
         if not edges[0] < s < edges[1]:
+            # Newton has left the sign change: halve it
             s = 0.5 * (low.t + high.t)
             step = s - here.t
-        guess = here.v + step * here.first + 0.5 * step * step * here.second
+        guess = here.v + step * here.first + 0.5 * step * step * here.second  # eq. (17)
         guess[-1] = s
         found = led.solver.solve(guess[None, :], sharp)
         if found.status[0] != CONVERGED:
@@ -272,6 +275,7 @@ def _polish_node(led: Parametrization, here: Node) -> Node:
     for block, part in zip(solver.blocks, solver.linearise(here.v[None, :]), strict=True):
         n, own = len(block.unknowns), block.variables
         residual = block.system.exact_residual(here.v[own])[0]
+        # the corrections of earlier blocks move this one's known variables
         residual = residual + part.jacobian[0, :, n:] @ change[own[n:]]
         change[block.unknowns] = -part.inverse[0] @ residual
     if not np.isfinite(change).all():

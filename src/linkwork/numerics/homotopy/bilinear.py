@@ -70,6 +70,7 @@ class BilinearSystem:
         count, m, loops = len(x), self.size, self.loops
         u, v = _with_one(x[:, :m]), _with_one(x[:, m:])
         p, q, p1, q1 = self.rows
+        # eq. (45)
         f = np.concatenate(
             [u @ self.left.T, v @ self.right.T, u[:, p] * v[:, q] - u[:, p1] * v[:, q1]], axis=1
         )
@@ -139,6 +140,7 @@ def prove_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prove
     y_max, z_max = PROOF_SLACK * y.max(axis=1), PROOF_SLACK * z.sum(axis=2).max(axis=1)
     omega = PROOF_SLACK * (size[:, :, m:] @ system._curvature).max(axis=1)
     holds, exists, unique, _ = radii(y_max, z_max, omega, np.zeros_like(omega))
+    # a real root has V = conj(U), so it is its own mirror image
     mirrored = np.concatenate([x[:, m:], x[:, :m]], axis=1).conj()
     gap = np.abs(x - mirrored).max(axis=1, initial=0.0)
     apart = True
@@ -147,7 +149,7 @@ def prove_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prove
         apart &= bool((away > (exists[k + 1 :] + exists[k]) * PROOF_SLACK)[holds[k + 1 :]].all())
     return ProvedRoots(
         holds=holds,
-        real=holds & (gap + exists < unique),
+        real=holds & (gap + exists < unique),  # eq. (52)
         unreal=holds & (gap > 2.0 * exists * PROOF_SLACK),
         apart=apart,
     )

@@ -130,7 +130,7 @@ class StartHomotopy(_Patched):
         left += z * t[:, :, None] * a[:, 1:]
         right = y * (u[:, p, None] * nv[q, 1:] - u[:, p1, None] * nv[q1, 1:])
         right += z * s[:, :, None] * b[:, 1:]
-        return x * g + (1.0 - x) * f, np.concatenate([left, right], axis=2), g - f
+        return x * g + (1.0 - x) * f, np.concatenate([left, right], axis=2), g - f  # eq. (47)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -213,7 +213,7 @@ class ParameterHomotopy(_Patched):
         under = 1.0 / (x * (self.pole - 1.0) + 1.0)
         z = np.ones((count, 2, m // 2 + 1, 1), dtype=complex)
         z[:, :, 1:, 0] = w.reshape(count, 2, m // 2)
-        n = self.base - (self.wide * (x * under)[:, :, None, :]) @ self.kernel
+        n = self.base - (self.wide * (x * under)[:, :, None, :]) @ self.kernel  # eq. (48)
         both = n @ z  # (B, 2, 2M, 1): the factors of every product
         rate = -(self.wide @ ((under * under)[:, :, :, None] * (self.kernel @ z)))
         others = both[:, ::-1]

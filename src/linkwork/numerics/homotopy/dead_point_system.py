@@ -36,7 +36,7 @@ Slot = tuple[int, int, int, float, float]
 
 def most_dead_points(own: int, size: int) -> int:
     """2 own C(2L + 1, L) for ``own`` loops of a block and ``size`` = 2L + 1 unknowns."""
-    return 2 * own * math.comb(size, size // 2)
+    return 2 * own * math.comb(size, size // 2)  # eq. (53)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -108,6 +108,7 @@ class DeadPointSystem:
         t[e, p1, v.start + q1] -= 1.0
         for column, factor, number, weight, mirrored in self.slots:
             r = rates.start + number
+            # eq. (53)
             t[count : count + own, u.start + factor, r] += weight * self.left[-own:, column]
             t[count + own :, v.start + factor, r] += mirrored * self.right[-own:, column]
         both: ComplexArray = t + t.transpose(0, 2, 1)

@@ -190,6 +190,7 @@ def _close_paths(
     """Solutions added until closed paths of systems lead to no new ones."""
     quiet = tries = 0
     while quiet < _LOOPS and tries < _TRIES and len(known.x) and not family.complete(len(known.x)):
+        # a closed path of systems permutes the solutions: what is missing may come back
         away = family.random(rng)
         there = _follow_paths(family, known, away, rng, CAREFUL)
         back = _Generic(system=away, x=_distinct(there.x[there.regular]))
@@ -324,6 +325,8 @@ def _on_a_curve(system: PolynomialSystem, x: ComplexArray) -> bool:
     """Whether a singular solution can move: a step along the null direction leads to others."""
     reach = 1e-2
     with np.errstate(all="ignore"):
+        # singular ends are known roughly: Gauss-Newton finds the curve again, at half the distance
+        # a step
         x = nearest_solution(system, x, 30)
         _, jacobian = system.residual_and_jacobian(x[None])
         _, _, rows = np.linalg.svd(jacobian[0])
