@@ -158,7 +158,7 @@ def _covering(
     track = track_to(solver, path, anchor, [low, high], care, report.tracked)
     if not drive.free:
         return track
-    # the other way around, from where the track stands there already
+    # the other way around, from the end of the track there
     if track.above is not None and track.below is None:
         goal = float((t - _turns_above(t, track.last_t) * FULL_TURN).min())
         if goal < track.first_t:
@@ -259,7 +259,7 @@ class _RowSolver:
 def _mark_missing(
     rows: SolvedRows, track: Track, t: Array, missing: BoolArray, ends: tuple[BranchEnd, ...]
 ) -> None:
-    """Rows that are nowhere on the track say what was met on the straight way to them."""
+    """Give rows that are nowhere on the track the status of the limit on the way to them."""
     if not ends:
         return
     lower = ends[0] if track.below is not None else ends[-1]

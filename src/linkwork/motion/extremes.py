@@ -32,7 +32,7 @@ def check_quantities(model: Model, names: str | Iterable[str]) -> tuple[str, ...
     UnknownNameError
         With the names that exist.
     InputError
-        For what is no name.
+        For values that are no names.
     """
     if not isinstance(names, Iterable):
         raise InputError(f"quantities must be a name or several, got {as_told(names)}")
@@ -86,7 +86,7 @@ def output_limits(drive: Drive, track: Track, name: str) -> list[tuple[float, Ou
 
 
 def output_limit_at(drive: Drive, end: BranchEnd, name: str) -> OutputLimit | None:
-    """A quantity's extreme at a dead point, if it stands still there together with the input.
+    """A quantity's extreme at a dead point, if it rests there together with the input.
 
     The quantity's derivative by the input does not vanish there; that by the variable that leads
     through the dead point does.

@@ -20,7 +20,7 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["guessed_points", "iterates", "pulled_guess"]
 
-_PULLS = 4  # one will do where a point runs on a circle or line
+_PULLS = 4  # one is enough where a point runs on a circle or line
 _STEP = 1e-4  # of an unknown, for central differences
 
 
@@ -67,10 +67,10 @@ def pulled_guess(
     guess: Mapping[str, float] | None = None,
     at: float | Mapping[str, float] | None = None,
 ) -> dict[str, float]:
-    """A guess of which one unknown is changed so that a point comes as near to a place as it can.
+    """A guess with one unknown changed so that a point comes as near to a place as possible.
 
-    Of the unknowns that move the point the one is changed that moves fewest points: that of the
-    link which carries it last. The mechanism need not close.
+    Of the unknowns that move the point that is changed which moves fewest points: that of the
+    last link that carries it. The mechanism need not close.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def guessed_points(model: Model) -> tuple[str, ...]:
 
 
 def _moving(model: Model, v: Array, point: str) -> int:
-    """The unknown that moves a point and fewest others; -1 if there is none."""
+    """The unknown that moves a point and fewest other points; -1 if no unknown moves it."""
     moved = _moved(model, v)
     movers = [k for k, points in enumerate(moved) if point in points]
     return min(movers, key=lambda k: (len(moved[k]), -k), default=-1)
@@ -168,7 +168,7 @@ class _Seen:
         )
 
     def told(self, model: Model, start: Array) -> list[Iterate]:
-        """The iterates by name; ``start`` (N,) is where all other variables stand."""
+        """The iterates by name; ``start`` (N,): values of all other variables."""
         if not self.kept:
             return []
         block, n = self.block, len(self.block.unknowns)

@@ -45,7 +45,7 @@ _TOUCHING = 1e-12  # residual at a located crossing, where Newton-Raphson must n
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BranchEnd:
-    """One end of a branch: what is told of it, and its place if it was found.
+    """One end of a branch: its limit, and its place if it was found.
 
     ``side``: +1 at the upper end, -1 at the lower. ``t``: of the path; ``slack``: how far a value
     that is meant to be this end's may be from it. ``v`` (N,): the position. ``first`` (N,):
@@ -86,7 +86,7 @@ class BranchEnd:
         return self.v is not None and abs(t - self.t) <= self.slack + rounding
 
     def demote(self, standing: Certification) -> BranchEnd:
-        """The end with what the way to its branch is worth, if it is proved on it."""
+        """The end with the certification of the way to its branch, if it is proved on it."""
         if self.certification is not Certification.CERTIFIED:
             return self
         return replace(self, certification=standing)
@@ -185,7 +185,7 @@ def end_at_dead_point(
 
 
 def dead_point_limit(drive: Drive, turn: TurningPoint) -> Limit:
-    """What is told of a dead point, in file units."""
+    """The limit at a dead point, in file units."""
     return _locate_limit(drive, turn, LimitKind.DEAD_POINT, _locking(drive, turn.v))
 
 
@@ -196,7 +196,7 @@ def _locking(drive: Drive, v: Array) -> tuple[int, ...]:
 
 
 def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
-    """What is told of a change point between two curves, in file units."""
+    """The limit at a change point between two curves, in file units."""
     leads = drive.leads
     p = leads.parameter
     rates = []
@@ -284,7 +284,7 @@ class _EndPlace(Protocol):
 
 
 def _locate_limit(drive: Drive, place: _EndPlace, kind: LimitKind, blocks: Sequence[int]) -> Limit:
-    """What is told of it: ``blocks`` are the numbers of those that lock."""
+    """The limit; ``blocks``: the numbers of the blocks that lock."""
     model = drive.model
     low, high = (edge / drive.unit for edge in place.bracket)
     status = Status.OUT_OF_REACH if kind is LimitKind.DEAD_POINT else Status.CHANGE_POINT

@@ -16,7 +16,7 @@ from linkwork.motion.redundancy import FITS, misfit, mobility_by_rank
 __all__ = ["Mobility", "grubler_count", "mobility_of", "pins"]
 
 _LARGEST = 100  # unknowns up to which a singular mechanism is looked at as one matrix
-_BESIDE = 1e-3  # how far beside a position its neighbour is sought, in weighted variables
+_BESIDE = 1e-3  # how far from a position its neighbour is sought, in weighted variables
 _TRIES = 6
 
 
@@ -56,7 +56,7 @@ def grubler_count(linkage: Linkage) -> int:
 
 
 def _why(model: Model, v: Array, count: int, rank: int) -> str:
-    """Why a rank and a count are not the same, from what the rank is beside the position."""
+    """Why a rank and a count are not the same, from the rank at a position near by."""
     if rank < count:
         return "some links have freedoms that do not occur in the equations"
     beside = _rank_beside(model, v)
@@ -82,7 +82,7 @@ def _rank_beside(model: Model, v: Array) -> int | None:
     """The mobility by rank at a position near by, if one is found."""
     compiled = model.compiled
     scale, n = compiled.solver.variable_scale, compiled.solver.unknowns
-    rng = np.random.default_rng(0)  # any direction will do, the same every time
+    rng = np.random.default_rng(0)  # any direction serves; the same every time
     for _ in range(_TRIES):
         guess = v + _BESIDE * scale * rng.uniform(-1.0, 1.0, len(v))
         guess[n:] = v[n:] + _BESIDE * scale[n:] * rng.choice([-1.0, 1.0], len(v) - n)

@@ -25,7 +25,7 @@ def nearest_assembly(
 ) -> NearestAssembly:
     """The position near the guess at which the loops stay open by least.
 
-    Every block of equations in turn is brought as near to zero as a damped iteration gets,
+    Every block of equations in turn is brought as near to zero as a damped iteration gets it,
     min ‖F(q, u)‖², with the blocks before it as they came out.
 
     Parameters

@@ -50,7 +50,7 @@ class Evidence:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SolvedPosition:
-    """A position that was found (or not, as ``status`` tells): variables v (N,) and evidence.
+    """A position, found or not according to ``status``: variables v (N,) and evidence.
 
     ``first`` (N,): derivatives at a dead point or change point, NaN where there are none.
     """

@@ -19,14 +19,14 @@ from linkwork.numerics.proof.position_proof import rounding_of_inputs
 __all__ = ["RowProofs", "inputs_apart", "prove_rows", "unproved", "way_is_proved"]
 
 _FAR_FROM_SINGULAR = 1e5  # condition up to which a track's nodes must be proved
-_TURN = 1e-9  # rad: an input this near to whole turns away from what was asked is the same one
+_TURN = 1e-9  # rad: an input this near to whole turns from the input asked for is the same one
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RowProofs:
     """(B,) codes of :class:`Certification`, radii of existence and of uniqueness (weighted).
 
-    ``up_to_ends`` tells whether the track itself is proved up to where it ends.
+    ``up_to_ends``: whether the track itself is proved up to its ends.
     """
 
     code: StatusArray
@@ -102,7 +102,7 @@ def _nodes_around(track: Track, t: Array) -> list[int]:
 def _path_points(
     solver: BlockSolver, nodes: Sequence[Node], rows: TrackRows, asked: Array, found: IndexArray
 ) -> tuple[PathPoints, IndexArray]:
-    """Nodes and rows sorted along the path; where each of them stands, the nodes first."""
+    """Nodes and rows sorted along the path; the place of each of them, the nodes first."""
     t = np.concatenate([[node.t for node in nodes], rows.t[found]])
     order = np.argsort(t, kind="stable")
 
@@ -143,7 +143,7 @@ def way_is_proved(solver: BlockSolver, path: InputPath, nodes: Sequence[Node]) -
 def inputs_apart(inputs: Array, asked: Array) -> Array:
     """How far the inputs meant may be from some, whole turns aside, (B, p).
 
-    The conversion of units, what a straight line rounds, and 2π, which is no float.
+    From the conversion of units, the rounding of a straight line, and 2π, which is no float.
     """
     gap = np.abs(inputs - asked)
     turns = np.round(gap / (2.0 * np.pi))

@@ -42,7 +42,7 @@ def misfit(equations: LoopEquations, v: Array) -> Array:
 
 
 def lengths_found(equations: LoopEquations, v: Array) -> list[float]:
-    """What the lengths of the redundant links come out as at a position (N,)."""
+    """The lengths of the redundant links at a position (N,)."""
     columns, _ = _redundant(equations)
     return [float(length) for length in v[columns]]
 
@@ -57,12 +57,12 @@ def largest_misfits(equations: LoopEquations, v: Array) -> dict[str, float]:
 
 
 def without_redundant(equations: LoopEquations, proved: Certification) -> Certification:
-    """What a proof of the equations says of the mechanism."""
+    """The certification of the mechanism from that of its equations."""
     return Certification.SUBSET_CERTIFIED if equations.redundant and proved.certified else proved
 
 
 def _redundant(equations: LoopEquations) -> tuple[list[int], Array]:
-    """The columns of redundant lengths, and what was given for them."""
+    """The columns of redundant lengths, and their given values."""
     number = {variable.symbol: k for k, variable in enumerate(equations.variables)}
     columns = [number[canonical(part.variable)] for part in equations.redundant]
     return columns, np.array([part.length for part in equations.redundant])

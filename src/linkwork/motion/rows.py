@@ -19,7 +19,7 @@ __all__ = ["SolvedRows"]
 class SolvedRows:
     """B rows; ``v``, ``first``, ``second`` (B, N) are NaN where there is no position.
 
-    ``inputs`` (B, p): what was asked, in file units. ``branch``, ``limit``: names, or "".
+    ``inputs`` (B, p): the values asked for, in file units. ``branch``, ``limit``: names, or "".
     """
 
     inputs: Array
@@ -68,7 +68,7 @@ class SolvedRows:
         self.radius[where], self.uniqueness_radius[where] = proofs.radius, proofs.uniqueness_radius
 
     def demote(self, standing: Certification) -> None:
-        """Rows that are proved on a branch say what the way to the branch is worth."""
+        """Give rows that are proved on a branch the certification of the way to the branch."""
         self.certification[self.certification == Certification.CERTIFIED.code] = standing.code
 
     def put(self, where: IndexArray, others: SolvedRows) -> None:

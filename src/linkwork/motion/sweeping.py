@@ -54,8 +54,8 @@ def sweep(
 ) -> Motion:
     """The positions at every row of the input's table, on the branch of the guess.
 
-    The branch is followed from the guess's own input value both ways with steps as small as
-    safety asks, whatever the table's step. A row outside its reach is tried a whole turn away,
+    The branch is followed from the input value of the guess both ways with steps as short as
+    safety demands, whatever the table's step. A row outside its reach is tried a whole turn away,
     and kept with its status if it is not there either. Every dead point and change point that is
     met adds a row of its own with the exact value. Long tables are computed by compiled kernels
     where that is quicker: the same to rounding.
@@ -144,9 +144,9 @@ def _span(t: Array) -> tuple[float, float]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Branch:
-    """A branch in its table: which of the table's rows are its own, and what its proofs are worth.
+    """A branch in its table: which of the table's rows are its own, and the worth of its proofs.
 
-    ``standing``: what rows that are proved on it say.
+    ``standing``: the certification of rows that are proved on it.
     """
 
     table: SweepTable
@@ -217,8 +217,8 @@ class _Sweep:
     def _cross(self, first: _Branch, end: BranchEnd, policy: ChangePointPolicy) -> list[NamedEnd]:
         """Rows beyond the change points on one side, as far as the policy leads; the ends met.
 
-        A chosen way goes before the way around through a whole turn. A way on which a redundant
-        link does not fit is none: its rows say so.
+        A chosen way comes before the way around through a whole turn. A way on which a redundant
+        link does not fit is no way: its rows get that status.
         """
         table, name, met = first.table, first.name, []
         for _ in range(_MOST_CROSSINGS):
@@ -276,7 +276,7 @@ class _Sweep:
     def _is_same(self, end: BranchEnd, known: BranchEnd) -> bool:
         """Whether two ends are one place: near each other, at one value as far as it is known.
 
-        Two dead points may lie close together; what tells them apart is how well they are located.
+        Two dead points may lie close together; they are two if their brackets are apart.
         """
         leads = self.drive.leads
         if end.v is None or known.v is None or not coincide(leads, end.v, known.v):
@@ -350,7 +350,7 @@ class _Sweep:
 
 
 def _message(motion: Motion) -> str:
-    """What became of the rows: that of the start if all were found, else every limit once."""
+    """The message of the start if all rows were found, else every limit once."""
     asked = motion.asked
     missing = int((asked & ~motion.found).sum())
     if not missing:

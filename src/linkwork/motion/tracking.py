@@ -39,7 +39,7 @@ def turns_freely(model: Model) -> bool:
     if len(inputs) != 1 or inputs[0].kind != "angle":
         return False
     table = model.compiled.table
-    turns = np.zeros(table.variables)  # what one turn of the input adds to every variable
+    turns = np.zeros(table.variables)  # added to every variable by one turn of the input
     lead = len(model.equations.unknowns)
     turns[lead] = 1.0
     given = np.zeros(table.variables, dtype=bool)
@@ -81,7 +81,7 @@ def track_to(
 ) -> Track:
     """The branch from ``start`` as far towards the smallest and largest goal as it goes.
 
-    ``progress`` is told every value of t that was reached.
+    ``progress`` is called with every value of t that is reached.
     """
 
     def tell(_: Node, after: Node) -> bool:

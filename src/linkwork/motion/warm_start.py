@@ -24,8 +24,8 @@ from linkwork.results.motion import Limit, LimitKind, Motion
 __all__ = ["warm_started"]
 
 _STEPS = 8  # of Newton-Raphson; a neighbour needs three or four
-_NEAR = 0.2  # rad, or of the longest link: what a row may move by from one design to the next
-_NEAR_FOLD = 0.6  # the same from a parabola, beside a dead point
+_NEAR = 0.2  # rad, or of the longest link: the largest change of a row from one design to the next
+_NEAR_FOLD = 0.6  # the same from a parabola, near a dead point
 _GROWTH = 12  # rows by which a dead point may recede from one design to the next
 _SAME_DIRECTION = 1e-9  # rad: a table over a whole turn ends where it begins
 
@@ -34,7 +34,7 @@ def warm_started(model: Model, before: Motion) -> Motion | None:
     """The positions of a design from those of a neighbour, all rows at once.
 
     Newton-Raphson starts every row from the neighbour's. Where dead points bound the motion, rows
-    are lost or won beside them one by one. Nothing is proved, and where a dead point lies is only
+    are lost or won near them one by one. Nothing is proved, and where a dead point lies is only
     estimated.
 
     Parameters
@@ -45,7 +45,7 @@ def warm_started(model: Model, before: Motion) -> Motion | None:
     Returns
     -------
     Motion or None
-        ``None`` where only following the branch anew will do: the neighbour's cycle has another
+        ``None`` where the branch has to be followed anew: the neighbour's cycle has another
         table or ends at more than dead points, rows move far, or dead points do.
     """
     asked = before.asked
@@ -141,12 +141,12 @@ class _Renewal:
         self.condition[here], self.orientation[here] = rates.condition, rates.orientation
 
     def bound(self) -> list[tuple[int, int]] | None:
-        """Keep the rows that hang together with the start, and win those next to them.
+        """Keep the rows that are connected with the start, and win those next to them.
 
         Returns
         -------
         list of (last row found, first row missing) or None
-            The dead points; ``None`` if it cannot be said what hangs together.
+            The dead points; ``None`` if the connected rows cannot be found.
         """
         model = self.model
         start = first_position(model, model.start_inputs, NewtonOptions(), explained=False)
@@ -199,7 +199,7 @@ class _Renewal:
         return ahead % len(self.v) if self._around else None
 
     def _win_row(self, last: int, ahead: int, sign: StatusArray) -> bool:
-        """Whether a row is found from the one beside it."""
+        """Whether a row is found from its neighbour."""
         n = self.model.compiled.solver.unknowns
         step = self.model.rows[ahead, 0] - self.model.rows[last, 0]
         step = 0.0 if abs(ahead - last) > 1 else step  # around: the same place
@@ -232,7 +232,7 @@ class _Renewal:
         )
 
     def solve(self, branch: str) -> SolvedRows:
-        """The rows with what is known of them."""
+        """The rows with their rates and evidence."""
         count, ok = len(self.v), self.found
         blank = SolvedRows.blank(
             self.model.rows_in_file_units, self.v.shape[1], Status.OUT_OF_REACH

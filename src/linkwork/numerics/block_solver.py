@@ -15,7 +15,7 @@ from linkwork.numerics.system import System
 
 __all__ = ["Block", "BlockSolution", "BlockSolver", "Linearised", "Rates", "linearise_block"]
 
-_LARGE = 1e3  # condition up to which nobody asks whether balanced columns would do better
+_LARGE = 1e3  # condition up to which balanced columns are not tried
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -222,7 +222,7 @@ def _inverse(jacobian: Array) -> tuple[Array, StatusArray]:
                 inverse[lane] = np.linalg.inv(matrix)
             except np.linalg.LinAlgError:
                 continue
-    # its sign tells apart the two positions that meet at a dead point
+    # the two positions that meet at a dead point have opposite signs
     sign = np.sign(np.linalg.det(jacobian))
     return np.asarray(inverse, dtype=float), np.where(np.isfinite(sign), sign, 0).astype(np.int8)
 
@@ -241,7 +241,7 @@ def _nearness(condition: Array, s: Array, jacobian: Array, inverse: Array) -> Ar
 
     ‖J⁻¹‖ counts twice in a proof (Newton-Kantorovich): for the size of errors, and for how much the
     equations bend. The latter does not depend on the ratio of the lengths, so that the condition
-    with all columns of J equally long stands for it: within a factor of √n the least that weights
+    with all columns of J equally long is taken for it: within a factor of √n the least that weights
     can bring about (van der Sluis 1969, doi:10.1007/BF02165096). The mean of both is returned.
     """
     scaled = np.abs(jacobian / s[:, None])

@@ -15,7 +15,7 @@ __all__ = ["BlockForm", "block_form"]
 
 @dataclass(frozen=True, kw_only=True)
 class BlockForm:
-    """The square blocks in solving order, and what is not square.
+    """The square blocks in solving order, and the parts that are not square.
 
     ``blocks`` : (equations, unknowns) per block. ``overdetermined`` : equations of the part with
     more equations than unknowns. ``underdetermined`` : unknowns of the part with more unknowns.

@@ -2,7 +2,7 @@
 
 Levenberg-Marquardt (Marquardt 1963, doi:10.1137/0111030) on scaled residuals and variables. Where
 much is missing, its model JᵀJ of the curvature is too poor for more than slow progress; the last
-stretch then goes by Newton's method with all of the curvature, JᵀJ + Σ r_k ∇²r_k.
+stretch then uses Newton's method with all of the curvature, JᵀJ + Σ r_k ∇²r_k.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def nearest_miss(system: System, start: Array, steps: int = 200) -> tuple[Array,
 
 
 def _refine_minimum(system: System, v: Array, f: Array) -> tuple[Array, Array]:
-    """Newton's method for the minimum beside v (1, N); stops where it would lead uphill."""
+    """Newton's method for the minimum near v (1, N); stops where it would lead uphill."""
     n = system.unknowns
     scale, weights = system.equation_scale, system.variable_scale[:n]
     for _ in range(_NEWTON_STEPS):

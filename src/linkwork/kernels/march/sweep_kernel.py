@@ -32,7 +32,7 @@ from linkwork.kernels.program.program import ROLES, registers_read
 
 __all__ = ["LaneRows", "RowsOfOne", "Steps", "SweepKernel"]
 
-_FEW = 16  # designs in a part of which each goes with its rows side by side
+_FEW = 16  # designs, at most, of which each is solved with its rows side by side
 _ROUGHLY = 1e-6  # weighted: a correction behind which a proof corrects once more
 
 
@@ -65,7 +65,7 @@ class Steps:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LaneRows:
-    """Where the march of D designs over R rows leaves what it finds.
+    """The results of the march of D designs over R rows.
 
     ``v`` (n, R, D): unknowns, untouched where not reached. ``radius`` (R, D): of the proof,
     weighted ((0, D) without). ``reached`` (R, D). ``found`` (D,): the start. ``stopped`` (2, D):
@@ -142,7 +142,7 @@ class SweepKernel:
         self.weights = reg.all_of(WEIGHTS)
         self.height = max(programs.height, reg.count)
         self._sections = programs
-        #: The same without proofs, which goes ahead where rows are side by side.
+        #: The same without proofs; it scouts ahead where rows are side by side.
         self.scout = SweepKernel(table, parts, zeros, certified=False) if certified else None
         #: The workspace of the steps asked for last; replaced whole, for threads share a kernel.
         self._blank: tuple[Steps, Array] | None = None
@@ -169,7 +169,7 @@ class SweepKernel:
         elif self._trial is None and execution.pays_compiled(len(self.code)):
             source = self.source()
             if execution.pays(len(self.code)) or is_cached(source):
-                with suppress(InputError):  # nobody asked: the interpreter serves
+                with suppress(InputError):  # compiled code was not required: the interpreter serves
                     self._trial = load_compiled(source, "trial")
 
     def source(self) -> str:
@@ -214,6 +214,7 @@ class SweepKernel:
         def one(part: slice) -> None:
             self._part(ready.part(part), given[:, part], table, steps, found, part)
 
+        # few designs cannot fill the lanes; their rows can
         if count <= _FEW and len(rows) >= LANES:
             self._few(ready, coefficients, given, table, steps, found)
             return
@@ -249,6 +250,7 @@ class SweepKernel:
 
     def _space(self, steps: Steps) -> Array:
         """A workspace with constants and options in place."""
+        # filling constants takes longer than copying a filled workspace
         blank = self._blank
         if blank is None or blank[0] != steps:
             space = self.registers.filled(self.height, LANES)

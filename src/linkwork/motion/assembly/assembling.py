@@ -294,7 +294,7 @@ def _find_distinct(model: Model, v: Array, rows: IndexArray) -> BoolArray:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _BlockRoots:
-    """The real solutions of one system, (R, 2M), with what is known about completeness."""
+    """The real solutions of one system, (R, 2M), with the grade of completeness."""
 
     x: ComplexArray
     multiple: BoolArray
@@ -371,7 +371,7 @@ def _mirror_gap(x: ComplexArray, m: int) -> Array:
 
 
 def _theorem_note(count: PathCount) -> str:
-    """What the list of a block rests on: "a, b: 16 complex solutions, at most 16 by ..."."""
+    """The reason for a block's completeness: "a, b: 16 complex solutions, at most 16 by ..."."""
     who = ", ".join(count.unknowns)
     found = f"{count.finite} complex solution{'' if count.finite == 1 else 's'}"
     return f"{who}: {found}, at most {count.bound} by {count.theorem}"

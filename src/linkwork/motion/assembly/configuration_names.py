@@ -23,7 +23,7 @@ def order_configurations(
     double: BoolArray,
     folded: bool,
 ) -> tuple[list[int], dict[int, str]]:
-    """The documented order of a block's configurations, and what each is called."""
+    """The documented order of a block's configurations, and their names."""
     dyad = form.table.loops.rows == 1
     single = len(form.turning) == 0 or form.rows.shape[1] == 0 or (dyad and folded)
     turns = block.system.is_angle[: len(block.unknowns)]

@@ -1,7 +1,7 @@
 """All curves of positions through given ones: closed curves, and arcs between crossings.
 
-Where two curves cross (a change point) four half-branches leave; each is followed, so that what is
-connected is found as a whole.
+Where two curves cross (a change point) four half-branches leave; each is followed, so that
+everything that is connected is found.
 """
 
 from __future__ import annotations
@@ -187,7 +187,7 @@ def _unit(direction: Array) -> Array:
 
 
 def _beyond(leads: Parametrizations, v: Array, direction: Array, other: Array) -> Array | None:
-    """A position just beyond a crossing along a direction, told from the other curve."""
+    """A position just beyond a crossing along a direction, clearly not on the other curve."""
     speed = np.abs(direction) / leads.scale
     gap = min(float(np.abs((direction - sign * other) / leads.scale).max()) for sign in (1.0, -1.0))
     leader = fastest_leader(leads, v, speed)
@@ -232,7 +232,7 @@ def _branches(
 
 
 def _lies_on(leads: Parametrizations, branch: CurveBranch, seed: Array) -> bool:
-    """Whether a position is the one of a branch at the same value of the parameter.
+    """Whether a position is that of a branch at the same value of the parameter.
 
     The branch's samples are so dense that Newton's method from between two of them stays there.
     """
@@ -275,7 +275,7 @@ def positions_near(leads: Parametrizations, branch: CurveBranch, value: float) -
 
 
 def _rests(leads: Parametrizations, arc: Arc) -> bool:
-    """Whether the parameter stands still all along."""
+    """Whether the parameter is constant along the whole arc."""
     p = leads.parameter
     values = [leg.v[:, p] for walk in arc.walks for leg in walk.curve.legs]
     if not values:

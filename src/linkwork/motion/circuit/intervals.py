@@ -1,6 +1,6 @@
 """Trial input values: one in each interval between neighbouring dead points.
 
-Between them the number of configurations is constant, so each configuration at one value stands for
+Between them the number of configurations is constant, so each configuration at one value represents
 a piece of a circuit over the whole interval.
 """
 
@@ -21,14 +21,14 @@ Interval = tuple[float, ...]
 
 _PLACES = (0.5, 0.45, 0.62, 0.31)  # of an interval; the middle is the furthest from both ends
 _OUTSIDE = (0.5, 0.37, 0.83)  # natural sizes of the input, beyond the outermost values
-_INSIDE = 0.2  # of an interval: how far from its ends a value of one's own stands for it
+_INSIDE = 0.2  # of an interval: how far from its ends its sample value lies
 _NARROW = 1e-12  # relative width: nothing fits between the ends
 
 
 def intervals_between(
     cuts: Array, guess: float | None, scale: float, *, turns: bool
 ) -> list[Interval]:
-    """The intervals between cuts (K,), rising, but for the one that ``guess`` stands for.
+    """The intervals between cuts (K,), rising, without the one that holds ``guess``.
 
     Parameters
     ----------

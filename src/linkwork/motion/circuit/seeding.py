@@ -58,7 +58,7 @@ class Seeding:
                 progress((k + 1) / len(intervals))
 
     def _intervals(self, value: float, sure: bool) -> list[Interval]:
-        """Where to look; a ``value`` whose list is ``sure`` stands for its own interval."""
+        """Where to look; a ``value`` whose list is ``sure`` represents its interval."""
         assert self.dead is not None
         place = self.drive.leads.parameter
         turns, scale = bool(self.drive.leads.is_angle[place]), float(self.drive.leads.scale[place])
@@ -103,7 +103,7 @@ class Seeding:
         return [low + (high - low) * (k + 0.5) / _LOOKED_AT for k in range(_LOOKED_AT)]
 
     def _ends(self) -> str:
-        """What limits circuits."""
+        """The limits of circuits."""
         assert self.dead is not None
         ends = ["all dead points"]
         if self.dead.multiple.any():

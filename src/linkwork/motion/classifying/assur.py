@@ -1,8 +1,8 @@
 """Assur groups: links that are determined together, and the names of such groups.
 
-Every driven joint is held. What is left has no freedom, and falls apart in one way only into parts
-of no freedom that have no such part themselves: the Assur groups, in the order in which they are
-determined.
+Every driven joint is held. The remaining chain has no freedom, and falls apart in one way only
+into parts of no freedom that have no such part themselves: the Assur groups, in the order in which
+they are determined.
 
 References
 ----------
@@ -133,7 +133,7 @@ class _Rows:
     ) -> list[tuple[Joint, tuple[str, ...]]]:
         """The simple joints of a block, each with the links of the block that it joins.
 
-        A pin that is known before the block joins each of its links to what is known; a new one
+        A pin that is known before the block joins each of its links to the known links; a new one
         joins them to one another. A link known before has its condition in an earlier block.
         """
         own = set(links)
@@ -165,7 +165,7 @@ def _group(
 
     A dyad has class II. Otherwise the class is the largest number of joints of a closed contour:
     of a link's own joints, or of a loop of links inside the group. The order is the number of
-    joints with which it stands on what is known.
+    joints with which it is attached to known links.
     """
 
     def told(name: str, class_number: int | None = None, order: int | None = None) -> AssurGroup:

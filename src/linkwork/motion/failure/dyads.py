@@ -25,7 +25,7 @@ _TOUCHING = 1e-14  # relative: a gap of rounding closes, once
 
 @dataclass
 class _Sums:
-    """The terms of the loop by what they turn with and are multiplied by; keys are unknowns."""
+    """The terms of the loop, sorted by their angle and their length; keys are unknowns."""
 
     known: complex = 0j
     turning: dict[int, complex] = field(default_factory=dict)
@@ -46,7 +46,7 @@ class Dyad:
 
 
 def dyad_of(block: Block, v: Array) -> Dyad | None:
-    """The dyad that a block is, for the known variables among v (N,); ``None`` if it is none."""
+    """The block as a dyad, for the known variables among v (N,); ``None`` if it is no dyad."""
     table = block.system
     if not isinstance(table, LoopTable) or table.unknowns != 2 or table.loops.rows != 1:
         return None

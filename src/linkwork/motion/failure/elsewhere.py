@@ -40,14 +40,13 @@ class Elsewhere:
     names: tuple[str, ...] = ()
 
 
-#: What tells the positions that exist for given inputs (p,), internal units; ``None``: not looked
-#: for.
+#: Finds the positions that exist for given inputs (p,), internal units; ``None``: not searched.
 ElsewhereAt = Callable[[Model, Array], Elsewhere | None]
 
 
 def positions_elsewhere(model: Model, inputs: Array) -> Elsewhere | None:
     """The positions of a mechanism for the inputs (p,): its configurations where they can be
-    listed, else what Newton-Raphson finds from many starts, block by block.
+    listed, else those that Newton-Raphson finds from many starts, block by block.
     """
     solver = model.compiled.solver
     if len(solver.blocks) > _MOST_BLOCKS:

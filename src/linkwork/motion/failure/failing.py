@@ -48,8 +48,8 @@ def no_position(
 ) -> tuple[Status, Failure]:
     """Why Newton-Raphson from v (N,), inputs included, did not solve one block.
 
-    Blocks before it are solved first. If the block has no position, that is told with its gap and
-    what would help; otherwise why Newton-Raphson missed those that exist.
+    Blocks before it are solved first. If the block has no position, the failure names its gap and
+    remedies; otherwise the reason why Newton-Raphson missed the existing positions.
     """
     with np.errstate(all="ignore"):
         return _explain(model, v, status, failed_block, options)
@@ -89,9 +89,9 @@ def _explain(
 
 
 def without_start(model: Model, failure: Failure, inputs: Array) -> Failure:
-    """A failure at the guess's own inputs, told to who asked for others (p,).
+    """A failure at the inputs of the guess, explained for other inputs (p,) that were asked for.
 
-    What exists is looked for at the inputs asked; a nearest input is told only if nothing does.
+    Positions are searched at the inputs asked for; the nearest input is named if there are none.
     """
     here = _failure(model, inputs, what="")
     nearest = failure if not here.configurations else here
@@ -113,7 +113,7 @@ def without_start(model: Model, failure: Failure, inputs: Array) -> Failure:
 
 
 def without_circuit(model: Model, found: Array) -> Failure:
-    """What to say of a position (N,) from which no circuit could be followed: it is singular."""
+    """The failure at a position (N,) from which no circuit could be followed: it is singular."""
     solver = model.compiled.solver
     inputs = found[solver.unknowns :]
     where = _inputs_text(model, inputs)
@@ -126,7 +126,7 @@ def without_circuit(model: Model, found: Array) -> Failure:
 
 
 def another_root(model: Model, found: Array) -> Failure | None:
-    """What to say of a position (N,) that is another one than the one beside the guess."""
+    """The failure at a position (N,) that is not the position next to the guess."""
     solver = model.compiled.solver
     here = found.copy()
     here[: solver.unknowns] = model.equations.start[: solver.unknowns]
@@ -152,14 +152,14 @@ def beyond_reach(
     status: Status,
     limits: tuple[Limit, ...],
 ) -> Failure:
-    """Why the branch of a start v (N,) does not lead to a value of its path, and what does.
+    """Why the branch of a start v (N,) does not lead to a value of its path, and which one does.
 
     Parameters
     ----------
     place : (path, lead, asked)
         The path, the number of the input that measures it, and the value asked for.
     limits
-        What was met on the way.
+        The limit that was met on the way.
     """
     path, lead, asked = place
     near = None
@@ -184,7 +184,7 @@ def beyond_reach(
 
 
 def _nearest_by_turns(value: float, asked: float, turn: float) -> float:
-    """A value as near to the one asked as whole turns bring it; exactly itself without any."""
+    """A value moved by whole turns as near to the value asked for as possible."""
     turns = round((asked - value) / turn)
     return value + turns * turn if turns else value
 
@@ -235,7 +235,7 @@ def _stays_at(model: Model, block: Block, miss: Miss) -> str:
 
 
 def _cannot_close(model: Model, block: Block, number: int, here: Array, miss: Miss) -> Failure:
-    """Which loop, how large the gap, which lengths would help, what can be reached."""
+    """The loop, the size of the gap, lengths that would help, inputs that can be reached."""
     solver = model.compiled.solver
     inputs = here[solver.unknowns :]
     count = _loops_in(model, block)

@@ -18,7 +18,7 @@ from linkwork.numerics.newton import NewtonOptions, newton
 __all__ = ["Miss", "miss_of", "root_beside_guess", "trouble_of"]
 
 _CLOSED = 1e-10  # scaled residual of a position
-_FLAT = 1e-8  # of its natural size: a slope or curvature that is none
+_FLAT = 1e-8  # of its natural size: a slope or curvature that is zero
 _ASIDE = 0.5  # of the way from the root to the guess, where the bending is compared
 
 
@@ -39,7 +39,7 @@ class Miss:
 
 
 def miss_of(block: Block, v: Array) -> Miss:
-    """The block as near to closing as a damped iteration from v (N,) gets."""
+    """The block as near to closure as a damped iteration from v (N,) gets."""
     nearest, f = nearest_miss(block.system, v[block.variables])
     closed = np.isfinite(f).all() and np.abs(f / block.system.equation_scale).max() <= _CLOSED
     return Miss(v=nearest, f=f, closed=bool(closed))
@@ -53,7 +53,7 @@ def trouble_of(
     - stopped where J is singular: an extremum if F lies across the range of J and bends there,
       else a singular derivative;
     - the damped iteration is held where Jᵀ F = 0, F ≠ 0: a local extremum;
-    - it finds a root beside which the equations bend both ways, and Newton's steps grew: an
+    - it finds a root near which the equations bend both ways, and Newton's steps grew: an
       inflection.
     """
     iterates: list[Array] = []

@@ -30,7 +30,7 @@ def remedies_of(model: Model, number: int, v: Array) -> tuple[Remedy, ...]:
     number : int
         The block that cannot be closed.
     v : (N,)
-        The blocks before it solved, itself as near to closing as it comes.
+        With the earlier blocks solved, and this block as near to closure as possible.
 
     Notes
     -----

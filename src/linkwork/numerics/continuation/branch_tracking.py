@@ -1,4 +1,4 @@
-"""Following one branch of solutions along a path of inputs, with steps as small as safety asks.
+"""Following one branch of solutions along a path of inputs, with steps as short as safety demands.
 
 Predictor: second-order Taylor. Corrector: Newton-Raphson. A step is taken only if the corrector
 contracts fast, stays near the prediction, keeps the sign of det J in every block, and arrives with
@@ -138,7 +138,7 @@ class Track:
         return self.nodes[-1].t
 
 
-#: Told every step's two nodes; the track is finished where it returns true.
+#: Called with both nodes of every step; the track is finished where it returns true.
 Watch = Callable[[Node, Node], bool]
 
 
@@ -198,7 +198,7 @@ def follow(
 
 
 class _Trial:
-    """A step by second-order Taylor and Newton-Raphson, taken only if nothing speaks against it."""
+    """A step by second-order Taylor and Newton-Raphson, taken only if all its checks succeed."""
 
     def __init__(self, solver: BlockSolver, path: InputPath, options: TrackOptions) -> None:
         self.solver, self.path, self.options = solver, path, options

@@ -24,7 +24,7 @@ __all__ = [
     "tangents_behind_kink",
 ]
 
-_SHARES = 17  # in which rates are led around a kink
+_SHARES = 17  # steps in which rates are moved across a kink
 _FAR = 1e-3  # ratio of a block's singular values from which on it is far from a singular position
 _UNFOLDED = 1e-13  # |β| beyond which the branches pass each other without touching
 
@@ -34,7 +34,7 @@ class ChangePoint:
     """A crossing of two branches on a path.
 
     ``t`` with ``bracket``; ``v`` (N,) the position; ``onward`` and ``other`` (N,): derivative by t
-    of the branch that was followed and of the one that crosses it (NaN if that one keeps t);
+    of the branch that was followed and of the branch that crosses it (NaN if t is constant on it);
     ``directions`` (2, N): both as weighted unit vectors, zero where a block takes no part;
     ``block`` the number of the block that becomes singular; ``located`` whether it was found to
     rounding.
@@ -133,19 +133,19 @@ def tangents_behind_kink(
     before: tuple[Array, Array, Array],
     after: tuple[Array, Array, Array],
 ) -> tuple[Array, Array] | None:
-    """The rates (n,) of the branch followed and of the other one, where what is known has a kink.
+    """The rates (n,) of both branches, the followed one first, at a kink of the known variables.
 
     Parameters
     ----------
     point : ChangePoint
         Of a block, at the kink.
     before, after : y, y', y'' (p,) each
-        What the block takes as known, on both sides of the kink.
+        The block's known variables, on both sides of the kink.
 
     Notes
     -----
-    The rates of what is known are led from one side to the other, and both tangents with them:
-    straight on where both rest for a moment.
+    The rates of the known variables are moved from one side to the other in small steps, and both
+    tangents with them; where both rest for a moment they are extrapolated.
     """
     block = solver.blocks[point.block]
     weights = block.system.variable_scale[: len(block.unknowns)]
@@ -160,7 +160,7 @@ def tangents_behind_kink(
         w = np.linalg.svd(crossing.linear(x, point.t)[1])[0][:, -1]
         found = crossing.tangents(x, point.t, w)
         if found is None:
-            continue  # what is known rests
+            continue  # the known variables rest
         both = np.stack([_rate(z) for z in found])
         if not np.isfinite(both).all():
             return None

@@ -29,7 +29,7 @@ _STEPS = 12
 
 @dataclass(frozen=True)
 class KnownJet:
-    """What some equations take as known as a motion: y, y', y'' by t, (p,) each."""
+    """The motion of the known variables of some equations: y, y', y'' by t, (p,) each."""
 
     at: Callable[[float], tuple[Array, Array, Array]]
 
@@ -95,7 +95,7 @@ class CrossingSystem:
             - self.system.second_directional_derivative(lanes, a - b)
         )
         matrix: Array = (values / self.scale @ w).reshape(size, size)
-        if second.any():  # what is known does not move at a constant rate
+        if second.any():  # known variables that do not move at a constant rate
             slope = self.system.jacobian(v)[0, :, self.n :]
             matrix[self.n, self.n] += float(w @ (slope @ second / self.scale))
         return matrix

@@ -79,7 +79,7 @@ class Leg:
 class Curve:
     """Legs in the order traced and why the curve ends.
 
-    ``passes``: the positions (N,) at which the parameter came by its starting value, whole turns
+    ``passes``: the positions (N,) at which the parameter passed its starting value, whole turns
     aside, each with the number of the leg that it ends. ``crossing``: the change point that it ends
     at, as the last leg's leader sees it.
     """
@@ -120,7 +120,7 @@ def trace(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Pass:
-    """A piece of a step in which the parameter goes one way and comes by a value."""
+    """A piece of a step in which the parameter is monotonic and passes a value."""
 
     value: float
     low: Node
@@ -138,7 +138,7 @@ class _Tracer:
         self.crossing: ChangePoint | None = None
         self.legs: list[Leg] = []
         self.passes: list[tuple[int, Array]] = []
-        # a value to be passed on which the curve stands, so that it is not passed again at once
+        # the starting value, on which the curve is now: it does not count as passed again at once
         self.leaving: float | None = float(start[leads.parameter])
         own = self._own()
         if own is None:

@@ -55,7 +55,7 @@ def prove_dead_point(led: Parametrization, v: Array, place: int) -> FoldProof | 
     v : (N,)
         The position, in the solver's order, at which the parameter's rate is zero to rounding.
     place : int
-        Where the parameter stands in the solver's order.
+        The index of the parameter in the solver's order.
 
     Returns
     -------

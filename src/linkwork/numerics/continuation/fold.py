@@ -1,6 +1,6 @@
 """Where a family of systems begins to have solutions: the fold between none and two.
 
-At a fold F(x, p) = 0 and dF/dx has the left and right null vectors w and z; beside it, on the side
+At a fold F(x, p) = 0 and dF/dx has the left and right null vectors w and z; near it, on the side
 where -2 (wᵀF_p)(p - p0) / wᵀD²F[z, z] > 0, there are two solutions x + a z ± ..., beyond it none.
 The singularity is measured by bordering (Griewank & Reddien 1984, doi:10.1093/imanum/4.3.295).
 """
@@ -31,7 +31,7 @@ class FoldFamily:
     """Systems with a parameter p and the same unknowns; ``inputs`` are their known variables.
 
     ``low``, ``high``: the systems at two values ``step`` apart, for derivatives by p; they need
-    not lie at the p in question, since lengths stand in loops as factors.
+    not lie at the p in question, since loops are linear in lengths.
     ``size``: the natural size of a change of p.
     """
 

@@ -57,7 +57,7 @@ class Parametrization:
         return node_at(self.solver, self.path, float(v[self.lead]), v[self.order])
 
     def place(self, variable: int) -> int:
-        """Where a variable of the whole stands in the solver's order."""
+        """The index of a variable of the whole in the solver's order."""
         return int(np.flatnonzero(self.order == variable)[0])
 
     def whole(self, part: Array) -> Array:

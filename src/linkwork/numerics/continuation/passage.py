@@ -1,7 +1,7 @@
 """Across change points, block by block: each on its own side, driven by the blocks before it.
 
 Where several loops can close in two ways at one input, the equations as a whole lose more than one
-rank, but each block only one: with what it takes as known given as a motion y(t), a block is a
+rank, but each block only one: with its known variables given as a motion y(t), a block is a
 small system of its own, whose crossing is located as if it stood alone. Its motion on the chosen
 branch then drives the blocks behind it. So any number of crossings can lie at one input or next to
 each other.
@@ -84,7 +84,7 @@ def pass_change_points(
     Returns
     -------
     Passage or None
-        ``None`` where a block cannot be told to be on the side that was asked.
+        ``None`` where it is not certain that a block is on the side that was asked for.
     """
     for half in _HALVES:
         begin, end = near - side * half * path.size, near + side * half * path.size
@@ -217,7 +217,7 @@ class _Walk:
             waiting = [point for point in waiting if point not in same]
 
     def _lead_block(self, number: int, block: Block) -> list[_Piece] | None:
-        """The pieces of a block's motion from one kink of what drives it to the next."""
+        """The pieces of a block's motion, each from one kink of its known variables to the next."""
         x = self.start.v[block.unknowns]
         pieces: list[_Piece] = []
         kinks = list(self.kinks)
@@ -288,7 +288,7 @@ class _Walk:
     def _across(
         self, number: int, block: Block, kinks: Sequence[float], x: Array
     ) -> list[_Piece] | None:
-        """The block led across the change point ahead: to the next kink, or the one behind it."""
+        """Lead the block across the change point ahead, to the next kink or the kink after that."""
         begin, end = kinks[0], kinks[1]
         before, _, condition = self._step(block, begin, x, end)
         point = self._locate(number, block, before) if condition < _REGULAR else None
@@ -315,7 +315,7 @@ class _Walk:
     def _at_kink(
         self, block: Block, before: _Step, point: ChangePoint, kink: float, end: float
     ) -> list[_Piece] | None:
-        """The block led across a change point at a kink of what drives it: both at one input."""
+        """Lead the block across a change point that lies at a kink of its known variables."""
         if not _is_at(point, kink):
             return None  # so near to each other that nothing is resolved in between
         sides = (before.t, end)
@@ -335,7 +335,7 @@ class _Walk:
         ]
 
     def _locate(self, number: int, block: Block, before: _Step) -> ChangePoint | None:
-        """The crossing of a block near the one that was met first."""
+        """The crossing of a block near the crossing that was met first."""
         known = KnownJet(lambda t: self._known(block, t, before.t))
         h = self.near - before.t
         guess = before.x + h * before.first + 0.5 * h * h * before.second  # eq. (17)
@@ -343,7 +343,7 @@ class _Walk:
         return locate_crossing(self.solver, number, known, guess, self.near, own)
 
     def _ways(self, onward: Array, other: Array) -> tuple[Array, Array]:
-        """The rates of the branch that was chosen, and of the one that is left."""
+        """The rates of the branch that was chosen, and of the other branch."""
         return (other, onward) if self.turn else (onward, other)
 
     def _keep(self, point: ChangePoint) -> None:

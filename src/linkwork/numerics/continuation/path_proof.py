@@ -262,7 +262,7 @@ class _Open:
 class _Halving:
     """Steps of a path (K,) halved as often as their proof needs.
 
-    ``proved``, ``given_up`` (K,): what became of them. ``pieces`` (K,): how many positions were
+    ``proved``, ``given_up`` (K,): their outcome. ``pieces`` (K,): how many positions were
     solved in between.
     """
 
@@ -292,7 +292,7 @@ class _Halving:
             queue = self._halve(queue.take(slice(None, now))).with_(queue.take(slice(now, None)))
 
     def _of_use(self, queue: _Open) -> _Open:
-        """What may still be proved, nearest to the anchor first."""
+        """The steps that may still be proved, nearest to the anchor first."""
         hopeful = self.proved[queue.owner]
         if self.anchor is None:
             return queue if hopeful.all() else queue.take(np.flatnonzero(hopeful))
@@ -306,7 +306,7 @@ class _Halving:
         return queue.take(keep[np.argsort(away, kind="stable")])
 
     def _halve(self, lanes: _Open) -> _Open:
-        """What is left to be proved of some steps after one more halving."""
+        """Halve some steps once more; return the halves that are not proved."""
         solver = self.solver
         np.add.at(self.pieces, lanes.owner, 1)
         middle, found, places = _between(solver, self.path, lanes.left, lanes.right)
@@ -347,8 +347,8 @@ def _concatenate_points(a: PathPoints, b: PathPoints) -> PathPoints:
 def _between(
     solver: BlockSolver, path: InputPath, left: PathPoints, right: PathPoints
 ) -> tuple[PathPoints, BoolArray, list[Expansion | None]]:
-    """Positions halfway in t, started from the quintic through both ends; which were found; what
-    proofs take from them.
+    """Positions halfway in t, started from the quintic through both ends; which were found; their
+    expansions for proofs.
     """
     h = (right.t - left.t)[:, None]
     guess = 0.5 * (left.v + right.v) + 5.0 / 32.0 * h * (left.first - right.first)  # eq. (21)

@@ -1,4 +1,4 @@
-"""Steps of a curve divided so that a variable goes one way in each piece."""
+"""Steps of a curve divided so that a variable is monotonic in each piece."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def share_at(place: int, low: Node, high: Node, value: float) -> float:
     """The fraction of a step at which the cubic through a variable has a value."""
     h = high.t - low.t
     ends = (low.v[place], low.first[place], high.v[place], high.first[place])
-    # the cubic goes one way in a divided step, so bisection finds its only value
+    # the cubic is monotonic in a divided step, so bisection finds the only place
     rising = ends[2] > ends[0]
     s0, s1 = 0.0, 1.0
     for _ in range(60):
@@ -113,7 +113,7 @@ def divide_step(
 
     The cubic through the variable's rates and their derivatives at both ends is compared with the
     rate halfway. The step is halved until that cubic, give or take its error, is zero at most once;
-    what turns back and forth within the rounding of the rate is not seen.
+    reversals within the rounding of the rate are not seen.
     """
     h = b.t - a.t
     ends = (a.first[place], a.second[place], b.first[place], b.second[place])

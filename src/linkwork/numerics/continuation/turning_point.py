@@ -182,7 +182,7 @@ def _follow_to_turn(options: TrackOptions) -> _Following:
 def _first_turn(
     leads: Parametrizations, led: Parametrization, node: Node, sign: float, follow_leg: _Following
 ) -> TurnAhead | None:
-    """The first dead point on the way that the leader goes in a direction."""
+    """The first dead point ahead, with the leader moving in a direction."""
     place = led.place(leads.parameter)
     turned: list[tuple[Node, Node]] = []
 
@@ -267,15 +267,15 @@ def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
 def _polish_node(led: Parametrization, here: Node) -> Node:
     """The same node after one step of Newton-Raphson with residuals that are rounded once.
 
-    Where branches nearly cross, a residual that counts as none still moves the dead point. What a
-    block's own correction is goes into those of the blocks behind before anything is rounded.
+    Where branches nearly cross, a residual within the tolerance still moves the dead point. The
+    correction of a block enters those of later blocks before anything is rounded.
     """
     solver = led.solver
     change = np.zeros_like(here.v)
     for block, part in zip(solver.blocks, solver.linearise(here.v[None, :]), strict=True):
         n, own = len(block.unknowns), block.variables
         residual = block.system.exact_residual(here.v[own])[0]
-        # the corrections of earlier blocks move this one's known variables
+        # the corrections of earlier blocks move the known variables
         residual = residual + part.jacobian[0, :, n:] @ change[own[n:]]
         change[block.unknowns] = -part.inverse[0] @ residual
     if not np.isfinite(change).all():

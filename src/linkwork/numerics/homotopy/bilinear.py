@@ -2,7 +2,7 @@
 
 Unknowns U and V, M = 2L complex numbers each, satisfy L linear equations each and M products:
 
-    left · (U, 1) = 0,     right · (V, 1) = 0,     U_p V_q = U_p' V_q'     (index M stands for 1).
+    left · (U, 1) = 0,     right · (V, 1) = 0,     U_p V_q = U_p' V_q'     (index M: the 1).
 
 With U = e^{iθ} and V = e^{-iθ}: U_k V_k = 1 for an angle, U_z = V_z for a length along a fixed
 direction, U_z V_a = U_a V_z for one along a turning direction (Wampler 2001, J. Mech. Des. 123,
@@ -87,7 +87,7 @@ class BilinearSystem:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProvedRoots:
-    """What is proved of each root, (R,): ``holds``, and ``real`` or ``complex``.
+    """The proofs of roots, (R,): ``holds``, and ``real`` or ``unreal``.
 
     A root is neither if that could not be decided. ``apart``: no two proved roots are the same.
     """

@@ -43,7 +43,7 @@ def _patch(rng: np.random.Generator, size: int) -> ComplexArray:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Patched:
-    """What both homotopies share: patches, null spaces, and the products of a bilinear system."""
+    """The common part of both homotopies: patches, null spaces, products of a bilinear system."""
 
     rows: IndexArray
     patches: tuple[ComplexArray, ComplexArray]

@@ -1,6 +1,6 @@
-"""Columns of closure matrices as sums of free coefficients: what families of mechanisms share.
+"""Columns of closure matrices as sums of free coefficients: the structure of a family.
 
-A link with three joints stands in the loops with a, b and a + b, a link that a loop does not pass
+A link with three joints enters the loops with a, b and a + b, and loops that do not pass it
 with 0. Which coefficients of a column are zero, and which are sums of others, is the same for all
 mechanisms of one structure; the free coefficients are their dimensions.
 """

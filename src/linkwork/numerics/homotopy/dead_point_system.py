@@ -6,7 +6,7 @@ and lengths, the input among them:
     left · (U, 1) = 0,     right · (V, 1) = 0,     U_p V_q = U_p' V_q',
 
 as in :mod:`linkwork.numerics.homotopy.bilinear`. The block locks where its own unknowns have rates
-ρ ≠ 0 while everything it depends on and the input stand still. With directions t = e^{iθ} and
+ρ ≠ 0 while all variables it depends on and the input rest. With directions t = e^{iθ} and
 lengths z along them, t' = iωt and z' = i(ωz + σt), so its own loops give
 
     Σ left_lk ω_k t_k + Σ left_lj (ω_a z_j + σ_j t_a) = 0
@@ -72,7 +72,7 @@ class DeadPointSystem:
 
     @property
     def parts(self) -> tuple[slice, slice, slice]:
-        """Where (U, 1), (V, 1) and ρ stand in the homogeneous vector X."""
+        """The slices of (U, 1), (V, 1) and ρ in the homogeneous vector X."""
         m = self.size + 1
         return slice(0, m), slice(m, 2 * m), slice(2 * m, 2 * m + 2 * self.own)
 
@@ -116,7 +116,7 @@ class DeadPointSystem:
 
     @cached_property
     def _affine(self) -> IndexArray:
-        """Where the unknowns x stand in X."""
+        """The indices of the unknowns x in X."""
         one = [part.stop - 1 for part in self.parts[:2]]
         return np.delete(np.arange(self.parts[2].stop), one)
 

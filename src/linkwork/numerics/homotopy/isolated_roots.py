@@ -190,7 +190,7 @@ def _close_paths(
     """Solutions added until closed paths of systems lead to no new ones."""
     quiet = tries = 0
     while quiet < _LOOPS and tries < _TRIES and len(known.x) and not family.complete(len(known.x)):
-        # a closed path of systems permutes the solutions: what is missing may come back
+        # a closed path of systems permutes the solutions, and so may lead to missing ones
         away = family.random(rng)
         there = _follow_paths(family, known, away, rng, CAREFUL)
         back = _Generic(system=away, x=_distinct(there.x[there.regular]))
@@ -238,7 +238,7 @@ def _follow_paths(
 
 
 def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) -> _Ends:
-    """Ends of paths in the system's unknowns, sorted by what they are."""
+    """Ends of paths in the system's unknowns: regular, infinite, singular or failed."""
     (x, scale), (_, before) = homotopy.points(paths.w), homotopy.points(paths.near)
     singular = paths.state == SINGULAR
     infinite = (paths.state == ARRIVED) & (scale < _FINITE)

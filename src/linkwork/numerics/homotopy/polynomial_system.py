@@ -1,4 +1,4 @@
-"""Square systems of polynomial equations: what following their solutions needs to know of them."""
+"""Square systems of polynomial equations, as the tracking of their solutions sees them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class PolynomialSystem(Protocol):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Roots:
-    """Isolated solutions of one system and what became of every path.
+    """Isolated solutions of one system, and the outcome of every path.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ def quadratic_roots(system: BilinearSystem) -> Roots:
     (a, b), (c, d) = forms
     quadratic = np.array([_det(a, c), _det(a, d) + _det(b, c), _det(b, d)])  # eq. (46)
     everywhere = np.abs(quadratic).max() <= _NOTHING * size
-    if everywhere:  # any û has its v̂: what one of them is like tells what the curve is like
+    if everywhere:  # any û has its v̂: one of them shows whether the curve is finite
         ways, double = [np.array([0.6, 0.8j])], False
     else:
         ways, double = _zeros(quadratic)

@@ -53,7 +53,7 @@ class Bounds:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Radii:
-    """What was proved, (B,): ``holds``; a solution within ``existence_radius``, no other within
+    """Results of proofs, (B,): ``holds``; a solution within ``existence_radius``, no other within
     ``uniqueness_radius``.
 
     ``error_bound`` (B, n): a bound of every unknown's error in its own unit, never larger than
@@ -72,7 +72,7 @@ class Radii:
 class Expansion:
     """A system at B positions, seen through an approximate inverse A of its Jacobian.
 
-    All that a proof takes from there, whatever is known of the p known variables.
+    All data that a proof needs, whatever the uncertainty of the p known variables.
 
     ``residual`` (B, n): |A F| with its rounding. ``defect`` (B, n, n): |I - A J|. ``slope``
     (B, n, p): |A F_k| by the known variables; ``lines`` (B, n, p): the part of linear rows.
@@ -207,7 +207,7 @@ class Majorant:
         return rows
 
     def cubic(self, x: Array) -> Array:
-        """What M(x, x) grows by where unknown lengths have changed by x (B or 1, n), (B, n)."""
+        """The growth of M(x, x) where unknown lengths have changed by x (B or 1, n), (B, n)."""
         if not self.lengths.size:
             return np.zeros_like(self.y)
         own = x @ self.turning
@@ -227,7 +227,7 @@ class Majorant:
     def fit_weights(self, scale: Array) -> Array:
         """Weights (B, n) in which the proof nearly always succeeds where there are any such.
 
-        An unknown's weight is how far it may move: y, or what the others bring about. With
+        An unknown's weight is how far it may move: y, or the effect of the others. With
         w ≥ y, w ≥ c M(w, w) and w ≥ d Z w the rows of the proof are balanced, whatever the ratio
         of the lengths; a long link that hardly turns does not spoil the proof of a short one.
 

@@ -37,11 +37,11 @@ __all__ = [
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Proof:
-    """What is proved at B positions with K blocks.
+    """Proofs of B positions with K blocks.
 
     ``holds`` (B,): all blocks proved. ``existence_radius``, ``uniqueness_radius`` (B, K): radii per
     block, weighted. ``error_bound`` (B, N): how far every variable may be from its value, in its
-    own unit; for the inputs what was given.
+    own unit; for the inputs the given radius.
     """
 
     holds: BoolArray
@@ -63,7 +63,7 @@ class Proof:
 
 
 def rounding_of_inputs(v: Array, unknowns: int) -> Array:
-    """How far an input may be from the value it stands for, (B, p): conversion of units."""
+    """How far an input may be from its exact value, (B, p): conversion of units."""
     # a degree in a file is a rounded number of radians: one rounding of π, one of the product
     input_radius: Array = 2.0 * UNIT_ROUNDOFF * np.abs(v[:, unknowns:])
     return input_radius
@@ -76,7 +76,7 @@ def expansions(
     *,
     exact: bool = False,
 ) -> list[Expansion | None]:
-    """What proofs take from positions v (B, N), block by block.
+    """The data that proofs need of positions v (B, N), block by block.
 
     ``exact``: see :func:`~linkwork.numerics.proof.kantorovich.expansion`. ``None`` for a block
     without a curvature bound (function rows).
@@ -142,7 +142,7 @@ def prove(
 
 
 def prove_block(block: Block, part: Linearised, v: Array, error_bound: Array) -> Radii:
-    """Prove one block at v (B, N) for all values of what it takes as known.
+    """Prove one block at v (B, N) for all values of its known variables.
 
     Parameters
     ----------
