@@ -151,6 +151,7 @@ class March:
         self.zeros = zero_coefficients(designs, self.coefficients)
         self.kernel = kernel_of(model, frozenset(self.zeros), certify, execution.device)
         self.kernel.shift(execution)
+        # NaN: the march leaves such designs out
         self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # else not found
         self.start = designs.start[:, n + path.lead].copy()
         self._enter(designs, np.flatnonzero(fine & ~served))
@@ -190,10 +191,12 @@ class March:
             return np.ones(len(rows.found), dtype=bool), reached
         done: BoolArray = np.logical_and.reduce(reached, axis=0)
         stopped = np.flatnonzero(rows.found & ~done)
+        # with several inputs no dead point is proved here: such designs are swept one at a time
         if not len(stopped) or len(self.path.rate) > 1:
             return done, reached
         limits = np.repeat([[-np.inf], [np.inf]], len(stopped), axis=1)
         self._limit(limits, rows.take(stopped), stopped)
+        # a row beyond a dead point may lie on the branch a turn away
         around = (-1, 1) if self.free else ()
         for turns in around:
             self._wind(t, turns, v, radius, reached, stopped, limits)
@@ -220,6 +223,7 @@ class March:
         steps = Steps() if smallest is None else Steps(smallest=smallest)
         found = LaneRows.over(v, radius, self.kernel)
         coefficients = {name: values[where] for name, values in self.coefficients.items()}
+        # a new array: the family's own must not change
         coefficients["u0.spread"] = coefficients["u0.spread"] + apart
         self.kernel.run(
             coefficients,
@@ -292,6 +296,7 @@ class March:
         """Designs of which no row is missing that lies within their limits, (S,)."""
         low, high = limits
         settled: BoolArray = np.logical_not(np.isnan(limits).any(axis=0))
+        # turns that can bring a row of the table between two limits
         most = int((t[-1] - t[0]) / FULL_TURN) + 2 if self.free else 0
         for turns in range(-most, most + 1):
             moved = t[:, None] + turns * FULL_TURN

@@ -114,6 +114,7 @@ def rows_of_branch(
     ``passage`` that led to the anchor the branch is followed onwards only.
     """
     provable = all(block.system.has_curvature_bound for block in drive.solver.blocks)
+    # without proofs nothing would show that a bold track has left its branch
     tries = (BOLD, None) if certify and provable else (None,)
     for care in tries:
         track = _covering(drive, anchor, asked.t, care, report, passage)
@@ -125,6 +126,7 @@ def rows_of_branch(
         if care is None or not _doubtful(rows, placed, to_ends):
             break
     ends = ends_of(drive, track, certify)
+    # the dead points were found from the last nodes, which are not proved to be on this branch
     if not to_ends:
         ends = tuple(end.demote(Certification.MOTION_NOT_PROVED) for end in ends)
     fill_last_rows(drive, track, ends, asked.t, placed, rows)
@@ -187,6 +189,7 @@ def _place_rows(track: Track, t: Array, free: bool) -> Array:
     """Where on the track each row lies, whole turns apart if need be; NaN if nowhere."""
     moved = t
     if free:
+        # up to the lower end or down to the upper one, whichever is needed: never both
         turns = _turns_above(track.first_t, t) - _turns_above(t, track.last_t)
         moved = t + turns * FULL_TURN
     return np.where((moved >= track.first_t) & (moved <= track.last_t), moved, np.nan)
@@ -206,6 +209,7 @@ class _RowSolver:
     def solve(self) -> tuple[SolvedRows, bool]:
         """All rows that lie on the track, and whether the track is proved up to its ends."""
         there = np.flatnonzero(~np.isnan(self.placed))
+        # in the order of the path: proofs join neighbours
         there = there[np.argsort(self.placed[there], kind="stable")]
         if by_kernels.kernels_pay(self.drive.model, len(there), self.certify):
             quickly = self._by_kernels(there)
@@ -239,6 +243,7 @@ class _RowSolver:
         """Solve some rows, in the order of the track; whether that is proved up to its ends."""
         solver, path, track = self.drive.solver, self.drive.path, self.track
         pieces: list[TrackRows] = []
+        # chunks keep the interpolation of long tables in the cache, and progress moves
         for begin in range(0, len(there), _CHUNK):
             chunk = there[begin : begin + _CHUNK]
             rows = rows_on_track(solver, path, track, self.placed[chunk])

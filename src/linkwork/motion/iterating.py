@@ -103,12 +103,14 @@ def pulled_guess(
     for _ in range(_PULLS if moving >= 0 else 0):
         here, rate = _moved_by(model, v, moving, point)
         if unknowns[moving].kind == "angle":
+            # the point moves at rate = i (here - centre) per radian
             centre = here + 1j * rate  # of the circle on which it runs
             change = float(np.angle((wanted - centre) / (here - centre)))
         else:
             change = float(((wanted - here) * rate.conjugate()).real) / abs(rate) ** 2
         trial = v.copy()
         trial[moving] += change
+        # no longer nearer: where the path is no circle one pull can overshoot
         if abs(wanted - _moved_by(model, trial, moving, point)[0]) >= abs(wanted - here):
             break
         v = trial
@@ -138,6 +140,7 @@ def _moved(model: Model, v: Array) -> list[set[str]]:
     found = _points(model, rows)
     own = {name: complex(*place) for name, place in found[-1].items()}
     first = next(iter(own.values()), 0j)
+    # points that the step moves by rounding only do not count
     size = 1e-6 * _STEP * (max((abs(place - first) for place in own.values()), default=0.0) or 1.0)
     return [
         {name for name, place in found[k].items() if abs(complex(*place) - own[name]) > size}
@@ -176,6 +179,7 @@ class _Seen:
         scales = [model.units.scale(Kind(u.kind)) for u in unknowns]
         x = np.stack([v[:n] for _, v, _, _ in self.kept])
         whole = np.repeat(start[None, :], len(x), axis=0)
+        # all other variables as they were when this block was iterated
         whole[:, block.unknowns] = x
         jacobians = block.system.jacobian(whole[:, block.variables])[:, :, :n]
         named = _named(model, whole)

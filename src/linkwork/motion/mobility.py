@@ -85,10 +85,12 @@ def _rank_beside(model: Model, v: Array) -> int | None:
     rng = np.random.default_rng(0)  # any direction serves; the same every time
     for _ in range(_TRIES):
         guess = v + _BESIDE * scale * rng.uniform(-1.0, 1.0, len(v))
+        # inputs are moved clearly: the rank at another input is wanted
         guess[n:] = v[n:] + _BESIDE * scale[n:] * rng.choice([-1.0, 1.0], len(v) - n)
         done = compiled.solver.solve(guess[None, :])
         near = np.abs((done.v[0] - v) / scale).max() < 100.0 * _BESIDE
         if done.status[0] == Status.CONVERGED.code and near:
+            # this neighbour is no position of the mechanism with all its links
             if misfit(model.equations, done.v)[0] > FITS:
                 return None
             return _by_rank(model, done.v[0])
@@ -110,6 +112,7 @@ def _by_rank(model: Model, v: Array) -> int | None:
         full &= _rank_of(j * system.variable_scale[:n] / system.equation_scale[:, None]) == n
     if full:
         return len(model.equations.variables) - solver.unknowns
+    # singular values of one large matrix would take seconds
     if solver.unknowns > _LARGEST:
         return None
     return mobility_by_rank(model.compiled, v)

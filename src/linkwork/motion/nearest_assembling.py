@@ -49,6 +49,7 @@ def nearest_assembly(
     with np.errstate(all="ignore"):
         for block in solver.blocks:
             nearest, _ = nearest_miss(block.system, v[block.variables])
+            # later blocks start from this position, though it may not close
             v[block.unknowns] = nearest[: len(block.unknowns)]
         f = model.compiled.table.residual(v[None, :])[0]
     none = np.zeros((1, len(v)))

@@ -95,6 +95,7 @@ def _nodes_around(track: Track, t: Array) -> list[int]:
     return [
         k
         for k, node in enumerate(track.nodes)
+        # nodes beyond the rows are proved too where that is easy, so that ends can be certified
         if low <= node.t <= high or node.nearness < _FAR_FROM_SINGULAR
     ]
 
@@ -150,6 +151,7 @@ def inputs_apart(inputs: Array, asked: Array) -> Array:
     rest = np.abs(gap - turns * (2.0 * np.pi)) + UNIT_ROUNDOFF * 2.0 * (
         np.abs(inputs) + np.abs(asked)
     )
+    # a gap that is no whole turn counts in full
     turned = (turns > 0) & (rest < _TURN)
     apart: Array = rounding_of_inputs(inputs, 0) + np.where(turned, rest, gap)
     return apart

@@ -87,6 +87,7 @@ def check_redundancy(compiled: Compiled, where: str) -> None:
     found = done.v[0, columns]
     freedoms, inputs = mobility_by_rank(compiled, done.v[0]), len(equations.inputs)
     fits = misfit(equations, done.v)[0] <= FITS
+    # several inputs may also be given values that do not belong together
     if not fits and (freedoms >= inputs or inputs < 2):
         wanted = ", ".join(
             f"{part.link} needs the length {length:.10g}, not {part.length:.10g}"
@@ -111,6 +112,7 @@ def mobility_by_rank(compiled: Compiled, v: Array) -> int:
     table, equations = compiled.table, compiled.equations
     scaled = table.jacobian(v[None, :])[0] * table.variable_scale / table.equation_scale[:, None]
     columns, _ = _redundant(equations)
+    # a redundant length is no freedom: it has to keep its value
     scaled = np.delete(scaled, columns, axis=1)
     if not scaled.size:
         return int(scaled.shape[1])

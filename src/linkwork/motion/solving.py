@@ -130,8 +130,10 @@ def _other_root(model: Model, found: Array) -> Failure | None:
     for block in solver.blocks:
         both = np.stack([here, found])[:, block.variables]
         slopes = block.system.jacobian(both)[:, :, : len(block.unknowns)]
+        # the guess and the position lie on different sides of a dead point
         if np.prod(np.sign(np.linalg.det(slopes))) <= 0.0:
             return why.another_root(model, found)
+        # the next block is compared with its known variables as solved
         here[block.unknowns] = found[block.unknowns]
     return None
 

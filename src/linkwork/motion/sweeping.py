@@ -172,6 +172,7 @@ class _Sweep:
 
     def run(self, anchor: Node, entered: bool, asked: Asked, policy: ChangePointPolicy) -> None:
         """The table of the start's branch, and of those beyond change points if asked."""
+        # nothing on the path can be worth more than the way onto it
         standing = Certification.CERTIFIED if entered else Certification.MOTION_NOT_PROVED
         found = self._branch(anchor, asked, self.model.branch, standing)
         span = _span(asked.t)
@@ -249,6 +250,7 @@ class _Sweep:
         track = self.branches[0].found.track
         anchor = track.nodes[track.start]
         if self.branches[0].found.proved_to_ends or not self.certify:
+            # a regular start: the circuit is traced from there, and a dead point cannot lead it
             anchor = min(track.nodes, key=self._steepness)
         around = further_branches(self.drive, anchor.v, asked, self.report, self.certify)
         self.circuit = around.end
@@ -270,6 +272,7 @@ class _Sweep:
         self.ends += fresh
         self.limits += [end.limit for end in fresh]
         beyond = table.rows.status == Status.OUT_OF_REACH.code
+        # of a closed circuit all branches are known, so other inputs are outside of it
         beyond &= around.leaves_out(asked.t, self.drive.free)
         table.rows.status[beyond] = Status.OUT_OF_CIRCUIT.code
 
@@ -314,6 +317,7 @@ class _Sweep:
                     places.append(here)
                     table.put(row, here)
         at_ends = [output_limit_at(self.drive, end, name) for end in self.ends]
+        # a quantity can be extreme at the dead point itself, where both rates vanish
         self.output_limits += dict.fromkeys(extreme for extreme in at_ends if extreme is not None)
 
     def _whole_track(self, branch: _Branch) -> Track:
@@ -329,6 +333,7 @@ class _Sweep:
         table, track = branch.table, branch.found.track
         path, scale = self.drive.path, self.model.input_scale
         inputs = path.at(np.array([t]))
+        # the row is computed on the track and named by its place in the table
         turns = round((here - t) / FULL_TURN) + table.turns_at(here)
         in_file_units = inputs / scale + turns * path.rate * (FULL_TURN / scale)
         asked = Asked(t=np.array([t]), inputs=inputs, in_file_units=in_file_units)

@@ -29,6 +29,7 @@ def leading_scale(model: Model, lead: int) -> float:
     solver = model.compiled.solver
     if model.equations.inputs[lead].kind == "number":
         span = float(np.ptp(model.rows[:, lead]))
+        # a plain number has no natural size, and a table of one row no span
         return span / 10.0 or float(solver.variable_scale[solver.unknowns + lead])
     return float(solver.variable_scale[solver.unknowns + lead])
 
@@ -49,10 +50,12 @@ def turns_freely(model: Model) -> bool:
         if not left:
             continue
         free = np.flatnonzero((weights != 0.0) & table.is_angle & ~given)
+        # an angle that would turn by a fraction does not come back after one turn of the input
         whole = [k for k in free.tolist() if (left / weights[k]).is_integer()]
         if not whole:
             return False
         turns[whole[0]] = -left / weights[whole[0]]
+        # later rows must not turn these angles otherwise
         given[weights != 0.0] = True
     return table.repeats_after(turns)
 

@@ -95,8 +95,10 @@ class _Fold:
     def moved(self, step: float) -> Array:
         """By how much the unknowns change with the input; at most as far as to the dead point."""
         a, b = self._fastest
+        # without a second derivative there is no parabola: straight on
         if not a or not b:
             return step * self.first
+        # the root of u(dx) = step that vanishes with the step, cut off at the dead point
         dx = a * a / b * (1.0 - math.sqrt(max(0.0, 1.0 - 2.0 * b * step / a)))
         bend = (self.second * a - self.first * b) / a**3
         return np.asarray(self.first / a * dx + 0.5 * bend * dx * dx)
@@ -131,6 +133,7 @@ class _Renewal:
         options = replace(solver.options, max_steps=_STEPS, largest_turn=math.inf)
         done = solver.solve(self.v[here], options)
         moved = np.abs((done.v - self.v[here]) / solver.variable_scale).max(axis=1)
+        # a row that moves far has probably found another configuration
         good = (done.status == Status.CONVERGED.code) & (moved <= near)
         here = here[good]
         self.found[here] = True
@@ -154,6 +157,7 @@ class _Renewal:
         if not start.status.ok or origin is None:
             return None
         sign = model.compiled.solver.rates(start.v[None, :], self.rate).orientation[0]
+        # rows on the other side of a dead point belong to another branch
         self.found &= (self.orientation == sign).all(axis=1)
         if not self.found[origin]:
             return None
@@ -164,6 +168,7 @@ class _Renewal:
             last, won = origin, 0
             while (ahead := self._next(last, way)) not in (None, origin):
                 if not self.found[ahead]:
+                    # a dead point that recedes so far is better found by following the branch
                     if won == _GROWTH:
                         return None
                     if not self._win_row(last, ahead, sign):
@@ -221,6 +226,7 @@ class _Renewal:
         upwards = (ahead > last) == (abs(ahead - last) == 1)  # not so around the table's end
         beyond = here + (step if upwards else -step)
         place = here + self._fold(last).distance / float(self.model.input_scale[0])
+        # the parabola is only an estimate: the limit lies between the two rows in any case
         if not min(here, beyond) < place < max(here, beyond):
             place = 0.5 * (here + beyond)
         return Limit(

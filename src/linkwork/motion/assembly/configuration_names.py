@@ -31,6 +31,7 @@ def order_configurations(
     names = []
     for k in range(len(v)):
         own = v[k, block.unknowns]
+        # an angle that is zero but for rounding is sorted as zero, not as a full turn
         angle = np.mod(own + _ROUND, 2.0 * np.pi)
         values = np.round(np.where(turns, angle, own) / _ROUND).tolist()
         name = "" if single else "number"

@@ -31,6 +31,7 @@ def turned_slides(model: Model) -> tuple[TurnedSlide, ...]:
     found = []
     for block in model.compiled.solver.blocks:
         own = set(block.unknowns.tolist())
+        # an angle in a linear row determines other angles: turning it around moves them
         for angle in sorted(own - tied):
             if table.is_angle[angle]:
                 lengths = _directed(tables, angle)

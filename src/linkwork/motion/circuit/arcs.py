@@ -83,6 +83,7 @@ class Explorer:
 
         The curve is followed if it is new, with everything that branches off at change points.
         """
+        # positions that walks have passed at the starting value: the cheapest test comes first
         for v, number in self._passed:
             if same_position(self.leads, v, seed):
                 return number
@@ -167,9 +168,11 @@ class Explorer:
                 )
             )
         scaled = came_from / self.leads.scale
+        # directions are compared by their angle, not by their size
         scaled = scaled / np.linalg.norm(scaled)
         best = max(
             ((k, sign) for k in (0, 1) for sign in (1.0, -1.0)),
+            # the half-branch that points back to where the walk came from
             key=lambda which: (
                 which[1]
                 * float(
@@ -203,6 +206,7 @@ def _beyond(leads: Parametrizations, v: Array, direction: Array, other: Array) -
         found = led.whole(done.v[0])
         moving = speed > 0.0
         off = float(np.abs((found - guess) / leads.scale)[moving].max())
+        # much nearer to this tangent than to the other: a smaller stride separates them better
         if off <= CLOSER_TANGENT * stride * gap and led.node(found).nearness < REGULAR_CONDITION:
             return found
     return None
@@ -240,6 +244,7 @@ def _lies_on(leads: Parametrizations, branch: CurveBranch, seed: Array) -> bool:
     if own is None:
         return False
     for guess in positions_near(leads, branch, float(seed[leads.parameter])):
+        # far from the branch: Newton-Raphson could only come back to it
         if np.abs(apart(leads, guess, seed) / leads.scale).max() > _NEAR:
             continue
         done = own.solver.solve(guess[own.order][None, :])
@@ -268,6 +273,7 @@ def positions_near(leads: Parametrizations, branch: CurveBranch, value: float) -
             k = int(np.clip(np.searchsorted(t, here, side="right") - 1, 0, len(t) - 2))
             width = t[k + 1] - t[k]
             s = (here - t[k]) / width if width else 0.0
+            # samples are dense: a line between two of them lies in the basin of the branch
             guess = (1.0 - s) * branch.v[order[k]] + s * branch.v[order[k + 1]]
             guess[p] = here
             found.append(guess)

@@ -169,6 +169,7 @@ class _Search:
         if roots.continuum:
             self._grade_curves(form, roots.curves)
         real = _real(form, roots.x, ALMOST_REAL)
+        # multiple solutions are known to the square root of rounding: a wider tolerance
         double = _real(form, _sharpen_roots(form, roots.multiple), ALMOST_DOUBLE)
         start = self.model.equations.start
         self.values += self._wrap_angle(form.positions(real, start)[:, -1].tolist())
@@ -229,7 +230,9 @@ class _Search:
             for value in values:
                 gaps = np.abs([value - old for old, many in kept if many == multiple])
                 if turns:
+                    # -π and π are one value
                     gaps = np.minimum(gaps, 2.0 * np.pi - gaps)
+                # several positions lock at one input where blocks have several configurations
                 if not (gaps <= same * scale).any():
                     kept.append((value, multiple))
         kept.sort()

@@ -39,6 +39,7 @@ def intervals_between(
     if not len(cuts):
         return []
     if turns:
+        # around the circle the last cut is followed by the first one
         ends = [*cuts, cuts[0] + FULL_TURN]
         if guess is not None:
             guess = float(cuts[0] + np.remainder(guess - cuts[0], FULL_TURN))
@@ -58,6 +59,7 @@ def _open(ends: Sequence[float] | Array, guess: float | None) -> Iterable[tuple[
         width = b - a
         if width <= _NARROW * max(1.0, abs(a), abs(b)):
             continue
+        # a guess too near to an end may see a double configuration there
         inside = _INSIDE * width
         if guess is None or not a + inside <= guess <= b - inside:
             yield float(a), float(b)

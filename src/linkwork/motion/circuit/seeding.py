@@ -42,6 +42,7 @@ class Seeding:
         model = self.model
         start = first_position(model, model.start_inputs, NewtonOptions())
         self.start = start
+        # at a dead point the input cannot lead; the circuit is found from other inputs
         if start.status.ok and self._regular(start.v, TrackOptions().largest_condition):
             self.explorer.visit(start.v)
         value = float(model.start_inputs[self.drive.lead])
@@ -65,6 +66,7 @@ class Seeding:
         cuts = self.dead.cuts
         found = intervals_between(cuts, value if sure else None, scale, turns=turns)
         if not len(cuts) and not sure:
+            # without a cut one value serves for all: not the guess, whose list was not sure
             found = [(value + 0.1 * scale, value - 0.17 * scale)]
         if not self.dead.cover_all:
             found += [(further,) for further in self._further_inputs(value)]

@@ -49,6 +49,7 @@ def assur_groups(linkage: Linkage, chain: Chain) -> list[FoundGroup] | None:
         pair = (which.link or "", which.relative_to or GROUND)
         if joint is None:
             held.append(pair)
+        # the input holds one pair of the links on that pin
         elif which.link is not None:
             welds.append(pair)  # a pin of more links drives only these two
         else:
@@ -182,7 +183,9 @@ def _group(
     elements = {link: {j.name for j, ends in joints if link in ends} for link in links}
     inner = [(link, joint.name) for joint, ends in joints if len(ends) == 2 for link in ends]
     moving = contours(dict.fromkeys(inner))
+    # Artobolevskii: the largest closed contour gives the class
     number = max([len(own) for own in elements.values()] + moving)
+    # a triad has a central link and three legs; four links around a contour are a tetrad
     if len(links) == 4 and not moving:
         return told(f"triad {_triad(links, joints)}", number, outer)
     if len(links) == 4:

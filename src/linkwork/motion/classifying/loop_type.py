@@ -111,6 +111,7 @@ def _parallelogram_as_sketched(loop: FourLinkLoop, linkage: Linkage) -> str:
     With signs it is that of the parallelogram on ground and driven link, or none where two sides
     cross each other. A configuration asked for by name may be the other one.
     """
+    # the start is another configuration than the sketch, perhaps
     if linkage.configuration:
         return _PARALLELOGRAM_OR_ANTI
     before, behind, far, near = (linkage.sketched(joint.name) for joint in loop.joints)

@@ -78,6 +78,7 @@ def _sums(table: LoopTable, v: Array) -> _Sums | None:
         value, angle = complex(coefficient), None
         for e in np.flatnonzero(loops.phase_term == t):
             variable, weight = int(loops.phase_variable[e]), float(loops.phase_weight[e])
+            # known variables come behind the two unknowns: they become part of the coefficient
             if variable >= 2:
                 value *= cmath.exp(1j * weight * float(v[variable]))
             elif weight == 1.0 and angle is None:
@@ -113,6 +114,7 @@ def _two_links(known: complex, first: complex, second: complex) -> Dyad:
         return replace(_dyad("RRR", gap, size, []), all_roots=gap > _TOUCHING * size)
     # the first link makes the angle ±ε with the vector -K that both have to span
     cosine = (d * d + (a - b) * (a + b)) / (2.0 * d * a)  # eq. (54) without cancellation
+    # only rounding can leave [-1, 1] where the gap is none; other roots are dropped by the gap
     swing = math.acos(max(-1.0, min(1.0, cosine)))
     roots = []
     for side in (1.0, -1.0) if swing not in (0.0, math.pi) else (1.0,):
@@ -155,6 +157,7 @@ def _turning_line(known: complex, arm: complex, along: complex) -> Dyad | None:
 
 def _two_slides(known: complex, first: complex, second: complex) -> Dyad | None:
     area = (first.conjugate() * second).imag
+    # parallel lines meet nowhere or everywhere
     if abs(area) <= _TOUCHING * abs(first) * abs(second):
         return None
     s = -(known * second.conjugate()).imag / (first * second.conjugate()).imag

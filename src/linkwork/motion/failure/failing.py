@@ -61,15 +61,18 @@ def _explain(
     solver = model.compiled.solver
     here = solver.solve(v[None, :], options).v[0]
     block = solver.blocks[failed_block]
+    # its own guess again: the failed iteration has moved it
     here[block.unknowns] = v[block.unknowns]
     miss = miss_of(block, here)
     exists = miss.closed
     if not exists and miss.known:
         exists = bool(len(block_positions(block, here)[0]))
+    # equations without a loop have no length that could close them
     if not exists and miss.known and _loops_in(model, block):
         here[block.unknowns] = miss.v[: len(block.unknowns)]
         return Status.CANNOT_CLOSE, _cannot_close(model, block, failed_block, here, miss)
     trouble = trouble_of(block, here, status, miss, options)
+    # the damped iteration is held everywhere where there is no position
     if trouble is NewtonTrouble.LOCAL_EXTREMUM and not exists:
         trouble = None
     what = status.value if trouble is None else f"{_head(status)}: {trouble.value}"
@@ -255,6 +258,7 @@ def _cannot_close(model: Model, block: Block, number: int, here: Array, miss: Mi
         f"least {size:.6g} {unit} remains"
     )
     reach, reachable = None, True
+    # a circuit of a large mechanism would take longer than anybody waits for an explanation
     if len(inputs) and solver.unknowns <= MOST_UNKNOWNS:
         lead, rate = lock_step(model.rows)
         path = InputPath(origin=inputs - rate * inputs[lead], rate=rate)
@@ -308,6 +312,7 @@ def _failure(
     scales = np.array([model.units.scale(Kind(u.kind)) for u in model.equations.unknowns])
     turns = np.array([u.kind == "angle" for u in model.equations.unknowns], dtype=bool)
     x = everywhere[:, :n]
+    # angles within half a turn, so that lists of positions can be compared
     x = np.where(turns, np.angle(np.exp(1j * np.where(turns, x, 0.0))), x) / scales
     if found is None or not found.names:
         x = np.array(sorted(x.tolist(), key=lambda row: [round(value, 6) for value in row]))

@@ -127,6 +127,7 @@ def _given(linkage: Linkage) -> Iterator[ChangeableLength]:
     """Lengths that are plain numbers; a ground distance moves the point."""
     ground = set(linkage.links[GROUND])
     for key, number in linkage.lengths.items():
+        # the distance of two ground points is changed by moving one of them, see _ground
         if isinstance(number, str) or set(key.split()) <= ground:
             continue
 

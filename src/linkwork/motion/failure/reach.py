@@ -61,6 +61,7 @@ def assembled_near(model: Model, path: InputPath, lead: int, v: Array) -> Array 
     locked = ParametrizedTable(model.compiled.table, path, lead).table
     n = model.compiled.solver.unknowns
     scale = locked.variable_scale.copy()
+    # small weights make a change of the input expensive
     scale[n:] *= _HELD
     free = replace(locked, unknowns=locked.variables, variable_scale=scale)
     tries = _TRIES if turns_freely(model) else 1
@@ -93,6 +94,7 @@ def reach_towards(
     period = _TURN if turns_freely(model) else None
     away = asked - float(v[leads.parameter])
     if period is not None:
+        # the shorter way around
         away = math.remainder(away, period)
     walks = _circuit(leads, v, math.copysign(1.0, away))
     if not walks:
@@ -142,6 +144,7 @@ def _in_file_units(model: Model, path: InputPath, lead: int, edge: _Edge, turns:
     inputs: Array = path.at(edge.t) / model.input_scale
     value = edge.t / scale
     if edge.bracket is not None:
+        # a short number if it lies within the proved bracket
         short = round(value, 9)
         value = short if edge.bracket[0] / scale <= short <= edge.bracket[1] / scale else value
     inputs[lead] = value + (turns * model.units.angle.turn if turns else 0.0) + 0.0
@@ -181,6 +184,7 @@ def _off_dead_point(leads: ParametrizedTable, v: Array, care: TrackOptions) -> T
     table = leads.table
     slope = table.jacobian(v[None, :])[0] * table.variable_scale / table.equation_scale[:, None]
     speed = np.abs(np.linalg.svd(slope)[2][-1])
+    # the parameter is fast enough to lead from here
     if speed.max() <= _FAST * speed[leads.parameter]:
         return None
     lead = int(np.argmax(speed))
