@@ -104,6 +104,7 @@ class Path:
         march = self.march(designs, certify, threads, execution)
         t = self.model.rows[:, self.lead]
         way = slice(None, None, -1 if self.falling else 1)
+        # the march needs rising values; a falling table is written backwards through views
         whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
         self._note(found, reached[way], whole, certify)
         for rows, which, turns in march.wound:
@@ -126,6 +127,7 @@ class Path:
             found.status[:], found.certification[:] = Status.CONVERGED.code, proof.code
             return
         found.clear(~reached, certify)
+        # rows beyond the dead points of designs whose every other row was found
         found.status[:, whole] = Status.OUT_OF_REACH.code
         np.copyto(found.status, Status.CONVERGED.code, where=reached)
         np.copyto(found.certification, proof.code, where=reached)

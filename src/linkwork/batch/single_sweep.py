@@ -26,6 +26,7 @@ __all__ = ["message_single", "sweep_single"]
 def _at_shared_inputs(designs: Designs, k: int) -> Model:
     """A design by itself with the family's table, should its own depend on what varies."""
     base, model = designs.base, designs.design(k)
+    # a range given by formulas of dimensions can differ from design to design
     if np.array_equal(model.rows_in_file_units, base.rows_in_file_units):
         return model
     inputs = tuple(_with_plain_range(base, which) for which in base.description.inputs)

@@ -106,6 +106,7 @@ class JoinedBlocks:
         """F, (B, n), and dF/dv, (B, n, N)."""
         whole = self._whole(v)
         order = self.order
+        # columns of the whole in this system's order
         place = np.full(self.solver.variables, -1)
         place[order] = np.arange(len(order))
         residual, jacobian = [], np.zeros((len(v), self.unknowns, len(order)))

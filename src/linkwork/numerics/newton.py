@@ -115,6 +115,7 @@ class _Iteration:
         self.live = np.arange(count)
         self.last = np.full(count, np.inf)  # weighted size of each live row's latest correction
         self.weights = system.variable_scale[:n]
+        # steps are shortened by angles only: lengths have no natural limit
         turns = system.is_angle[:n]
         self.turns = turns if turns.any() and not math.isinf(options.largest_turn) else None
 

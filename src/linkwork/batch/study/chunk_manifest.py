@@ -101,6 +101,7 @@ def _sum(path: Path) -> list[int] | None:
     size = total = 0
     try:
         with path.open("rb") as file:
+            # piece by piece: a file may be larger than memory
             while piece := file.read(1 << 20):
                 size += len(piece)
                 total = zlib.crc32(piece, total)

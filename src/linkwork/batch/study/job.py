@@ -120,12 +120,14 @@ def compute_part(job: Job, values: Mapping[str, Array | float]) -> Part:
     arrays |= {passes_name(name): values for name, values in passes.items()}
     arrays |= {name: measured.value(str(call)) for name, call in job.reductions.items()}
     for name in job.keep:
+        # designs that do not pass are left out, so that the store compresses
         arrays[name] = np.where(passed[:, None], measured[name], np.nan)
     if job.keep:
         arrays["status"] = motion.status
     return Part(arrays=arrays, rows=_rows(motion.status[built]), problems=_problems(family))
 
 
+# a worker gets many parts of one study, and a model takes long to build
 @lru_cache(maxsize=2)
 def _model(description: Description) -> Model:
     return as_described(description)

@@ -125,6 +125,7 @@ def _crew(
     """The parts of all tasks by whoever is to compute them."""
     if workers is None:
         workers = 1 if study.job.device == "gpu" else cores()
+    # more processes than chunks would only load Linkwork
     count = min(workers, chunks)
     if scheduler is not None:
         yield from cluster_crew(study.job, tasks, scheduler)

@@ -203,7 +203,11 @@ class _Trial:
     def __init__(self, solver: BlockSolver, path: InputPath, options: TrackOptions) -> None:
         self.solver, self.path, self.options = solver, path, options
         self.quick = replace(
-            solver.options, max_steps=6, largest_turn=math.inf, solution_tolerance=_NODE_TOLERANCE
+            # a prediction that needs more steps was too far: halving costs less
+            solver.options,
+            max_steps=6,
+            largest_turn=math.inf,
+            solution_tolerance=_NODE_TOLERANCE,
         )
 
     def room(self, here: Node, sign: float) -> float:
@@ -335,6 +339,7 @@ def _interpolate(track: Track, t: Array) -> tuple[Array, IndexArray]:
     times = np.array([node.t for node in nodes])
     if len(nodes) == 1:
         return np.repeat(nodes[0].v[None, :], len(t), axis=0), np.zeros(len(t), dtype=np.intp)
+    # the last node belongs to the last step
     left = np.clip(np.searchsorted(times, t, side="right") - 1, 0, len(nodes) - 2)
     v = np.stack([node.v for node in nodes])
     d1 = np.stack([node.first for node in nodes])

@@ -291,6 +291,7 @@ def _ratios(solver: BlockSolver, v: Array) -> list[float]:
         n = len(block.unknowns)
         system, here = block.system, v[block.variables]
         j = system.jacobian(here[None, :])[0, :, :n]
+        # a column that is about to vanish must not be blown up to size 1
         sizes = np.maximum(
             np.abs(j / system.equation_scale[:, None]).max(axis=0), _near(system, here)
         )

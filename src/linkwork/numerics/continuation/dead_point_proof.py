@@ -92,6 +92,7 @@ def _turns_within(led: Parametrization, v: Array, place: int, width: float) -> F
     box = reach(solver, v[None, :], np.full((1, 1), whole), at_v)
     if not box.holds[0]:
         return None
+    # first-order guesses of both ends, then solved
     ends = solver.rates(v[None, :], led.path.rate).first * np.array([[-width], [width]]) + v
     # exactly there: the product above has rounded them
     ends[:, -1] = v[-1] + np.array([-width, width])

@@ -132,6 +132,7 @@ def locate_fold(family: FoldFamily, x: Array, p: float) -> Fold | None:
         try:
             here = _At(family, x, p)
             slope = float(here.w @ here.f_p) * family.size
+            # the length does not change the gap: it is no remedy
             if abs(slope) < 1e-9:
                 return None
             p -= float(here.w @ here.f) / slope * family.size
@@ -148,6 +149,7 @@ def _refine_fold(family: FoldFamily, x: Array, p: float) -> tuple[Array, float] 
         if not np.isfinite(step).all():
             return None
         size = max(float(np.abs(step[:-1]).max()), abs(float(step[-1])) / family.size)
+        # far from the fold the Newton step of a singular system is too long
         step *= min(1.0, _LONGEST / size) if size else 1.0
         x = x + step[:-1] * here.weights[: here.n]
         p += float(step[-1])

@@ -94,6 +94,7 @@ def fastest_leader(
         led = leads.with_parameter(lead) if lead != avoid and speed[lead] > 0.0 else None
         if led is not None:
             node = led.node(v)
+            # a leader with a singular Jacobian determines nothing
             if np.isfinite(node.second).all():
                 return led, node
     return None
@@ -129,6 +130,7 @@ def same_position(leads: Parametrizations, a: Array, b: Array) -> bool:
     if own is None or gap.max() > _NEAR or gap[p] > _ON_VALUE or not leads.repeats_after(turns):
         return False
     size = 1.0 + np.abs(near / leads.scale).max()
+    # equal numbers need no proof
     if gap.max() <= _ROUNDINGS * EPSILON * size:
         return True
     # both at exactly one value of the parameter, so that only one branch is compared with the other

@@ -220,6 +220,7 @@ class _Walk:
         """The pieces of a block's motion, each from one kink of its known variables to the next."""
         x = self.start.v[block.unknowns]
         pieces: list[_Piece] = []
+        # a copy: crossings found on the way add kinks for later blocks only
         kinks = list(self.kinks)
         while len(kinks) > 1:
             steps = self._follow(block, kinks[0], kinks[1], x)
@@ -367,6 +368,7 @@ class _Walk:
         apart = float(np.abs((chosen - left) / weights).max())
         gap = abs(h) * apart if np.isfinite(apart) else abs(h)
         after, _, condition = self._step(block, end, x, t)
+        # the position may have jumped to the branch that was left
         close = bool(float(np.abs((x - guess) / weights).max()) <= CLOSER_TANGENT * gap)
         return after if close and condition < _REGULAR else None
 
@@ -384,5 +386,6 @@ def _is_at(point: ChangePoint, t: float) -> bool:
 
 def _less_sharp(point: ChangePoint) -> ChangePoint:
     low, high = point.bracket
+    # its known variables come from a polynomial through solved positions
     more = _DRIVEN * max(1.0, abs(point.t))
     return replace(point, bracket=(low - more, high + more))

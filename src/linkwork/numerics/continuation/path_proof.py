@@ -312,7 +312,9 @@ class _Halving:
         middle, found, places = _between(solver, self.path, lanes.left, lanes.right)
         proof = prove(solver, middle.v, middle.input_radius, places)
         good = found & proof.holds
+        # no number is left between the ends
         good &= (lanes.left.t < middle.t) & (middle.t < lanes.right.t)
+        # a step that has shrunk to nothing is not going to be proved
         good &= (lanes.right.t - lanes.left.t) > self.width[lanes.owner] * 2.0**-_ROUNDS
         lost = np.unique(lanes.owner[~good])
         if len(lost):

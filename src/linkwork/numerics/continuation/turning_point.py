@@ -91,6 +91,7 @@ def turning_points(leads: Parametrizations, curve: Curve) -> Iterator[TurningPoi
             chain = divide_step(leg.led, place, a, b)
             for low, high in itertools.pairwise(chain):
                 if _rises(low, place) is not _rises(high, place):
+                    # one sign change per piece: divide_step has separated them
                     yield _within(leads, leg.led, low, high, (number, k))
 
 

@@ -166,6 +166,7 @@ class ParameterHomotopy(_Patched):
         turns = np.exp(1j * rng.uniform(0.0, 2.0 * np.pi, 2))
         pairs = ((start.left, goal.left), (start.right, goal.right))
         if nearest:
+            # the phase that makes the scalar product of both matrices real and positive
             turns = np.array([np.exp(1j * np.angle(np.vdot(a, b))) for a, b in pairs])
         p, q, p1, q1 = goal.rows
         signs = np.ones((2 * goal.size, 1))

@@ -79,6 +79,7 @@ def real_motion(
 def _kernel(matrix: ComplexArray | Array) -> ComplexArray:
     """A basis (n, k) of the null space of a matrix (m, n), rounding allowed for."""
     _, sizes, rows = np.linalg.svd(matrix)
+    # the rank with rounding allowed for
     rank = int((sizes > _FREE * sizes[0]).sum())
     basis: ComplexArray = rows[rank:].conj().T.astype(complex)
     return basis
@@ -92,6 +93,8 @@ class RealPoints:
         self.system, self.lead = system, lead
         self.turning = np.ones(rates, dtype=bool)
         for _, _, number, weight, mirrored in system.slots:
+            # rates of angles are mirrored with the same sign, those of lengths with the opposite
+            # one
             self.turning[number] &= weight == mirrored
         one = np.eye(m)
         self.basis = np.zeros((2 * m + rates, 2 * m + rates), dtype=complex)

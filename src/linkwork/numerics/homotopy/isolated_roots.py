@@ -145,6 +145,7 @@ def isolated_roots(system: S, family: RootFamily[S]) -> Roots:
         care = CAREFUL if attempt else BOLD if expected <= _FEW else PathOptions()
         ends = _follow_paths(family, generic, system, rng, care, nearest=not attempt)
         if best is None or _quality(ends) >= _quality(best):
+            # two independent sets of paths that agree: missing solutions are at infinity
             agreed = best is not None and _agree(ends, best)
             best = ends
             if ends.regular.all() or (agreed and not ends.failed.any()):
@@ -241,6 +242,7 @@ def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) 
     """Ends of paths in the system's unknowns: regular, infinite, singular or failed."""
     (x, scale), (_, before) = homotopy.points(paths.w), homotopy.points(paths.near)
     singular = paths.state == SINGULAR
+    # on its patch a path to infinity ends regularly, with a vanishing homogenising coordinate
     infinite = (paths.state == ARRIVED) & (scale < _FINITE)
     infinite |= singular & (scale < _FADING * before)
     finite = (paths.state == ARRIVED) & ~infinite
@@ -249,6 +251,7 @@ def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) 
         with np.errstate(all="ignore"):
             better, steps = polish_roots(system, x[finite])
         moved = np.abs(better - x[finite]).max(axis=1) < 1e-3 * (1 + np.abs(better).max(axis=1))
+        # slow convergence marks a multiple solution, a long way another one
         regular[finite] = (steps > 0) & (steps <= 6) & moved
         x[np.flatnonzero(finite)[regular[finite]]] = better[regular[finite]]
     for k in np.flatnonzero(finite & ~regular):

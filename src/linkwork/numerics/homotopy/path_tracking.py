@@ -125,6 +125,7 @@ class _Tracker:
         s = h[:, None] / g
         # a polynomial in s with ends at -1 (before) and 0 (here), slopes per σ downwards
         a, rise = g * slope, here - before
+        # Hermite's cubic in s, with both slopes scaled to the last step
         c = g * slope_before + a + 2.0 * rise
         cubic: ComplexArray = here - s * (a + s * (c + a + rise + s * c))
         first = self.gone == 0.0
@@ -134,6 +135,7 @@ class _Tracker:
 
     def _advance(self) -> None:
         evaluate, h = self.homotopy.evaluate, np.minimum(self.step, self.sigma)
+        # exactly 0: the last system is the one that was asked for
         goal = np.where(self.sigma <= self.step, 0.0, self.sigma - h)
         guess = self._predict(h)
         f, jacobian, _ = evaluate(guess, goal)
@@ -147,6 +149,7 @@ class _Tracker:
         size = 1.0 + np.abs(w).max(axis=1)
         e1, e2 = np.abs(first).max(axis=1) / size, np.abs(second).max(axis=1) / size
         aim = self.options.error
+        # quadratic convergence: the second correction must be much smaller than the first
         near = np.minimum(self.options.contraction * e1, np.where(goal == 0.0, _ARRIVAL, aim))
         good = (e1 < 4.0 * aim) & (e2 <= np.maximum(near, _ROUNDING))
         factor = _CAUTION * (aim / np.maximum(e1, 1e-12)) ** 0.25  # eq. (50)

@@ -67,6 +67,7 @@ def polish_roots(system: PolynomialSystem, x: ComplexArray) -> tuple[ComplexArra
         x[live] -= change
         size = np.abs(change).max(axis=1, initial=0.0)
         size /= 1.0 + np.abs(x[live]).max(axis=1, initial=0.0)
+        # no longer quadratic: what remains is rounding
         done = (size <= 1e-13) | ((size <= 1e-8) & (size > 0.25 * last))  # rounding is all
         steps[live[done]] = k + 1
         stay = ~done & np.isfinite(size)

@@ -36,6 +36,7 @@ def quadratic_roots(system: BilinearSystem) -> Roots:
     curve = everywhere
     for k, u in enumerate(ways):
         w1, w2 = u[0] * a + u[1] * b, u[0] * c + u[1] * d
+        # both are parallel; the longer one is rounded less
         w = w1 if np.linalg.norm(w1) >= np.linalg.norm(w2) else w2
         length = float(np.linalg.norm(w))
         free = length <= _NOTHING * np.sqrt(size)  # any v̂ will do
