@@ -7,11 +7,11 @@ from functools import cached_property
 
 import numpy as np
 
-from linkwork.batch.single_rows import SingleRows
 from linkwork.foundation.aligned import allocate_aligned
 from linkwork.foundation.arrays import Array, BoolArray, StatusArray, TurnArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
+from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["DesignRows"]
 
@@ -23,7 +23,7 @@ class DesignRows:
     ``v`` (n, R, D): unknowns, NaN where there is no position. ``status``, ``certification``
     (R, D): codes. ``radius`` (R, D): of the proof, weighted, NaN without one; (0, D) if none is
     asked for. ``limits`` (2, D): where the branch ends below and above, and ``limit_kinds`` (2, D)
-    what ends it, see :func:`linkwork.batch.single_rows.ends_as_limits`; NaN without a position.
+    what ends it, see :func:`linkwork.batch.limits.ends_as_limits`; NaN without a position.
     ``alone`` (D,): designs that were computed one at a time; ``own``: what they say themselves.
     """
 
@@ -34,7 +34,7 @@ class DesignRows:
     limits: Array
     limit_kinds: StatusArray
     alone: BoolArray
-    own: dict[int, SingleRows] = field(default_factory=dict)
+    own: dict[int, SolvedRows] = field(default_factory=dict)
 
     @classmethod
     def blank(
