@@ -14,9 +14,15 @@ from linkwork.foundation.status import Status
 
 __all__ = ["UNKNOWN", "SolvedRows"]
 
-#: A column that has not been computed: empty.
-UNKNOWN: Any = np.empty(0)
-UNKNOWN.flags.writeable = False
+
+class _Unknown(np.ndarray):
+    """An empty array that compares by identity, so that it serves as a default."""
+
+    __hash__ = object.__hash__  # type: ignore[assignment]
+
+
+#: A column that has not been computed.
+UNKNOWN: Any = np.empty(0).view(_Unknown)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -78,8 +84,8 @@ class SolvedRows:
     limit: AnyArray = UNKNOWN
 
     def __post_init__(self) -> None:
-        for column in vars(self).values():
-            column.flags.writeable = False
+        for column in self.columns.values():
+            column.setflags(write=False)
 
     def __len__(self) -> int:
         return len(self.v)

@@ -88,8 +88,8 @@ BOLD = TrackOptions(
 class Node:
     """A solved position on a track with its derivatives by t; ``v`` etc. are (N,).
 
-    ``condition``, ``nearness``: see :class:`SolvedRows`. ``iterations``: of Newton-Raphson in the step
-    that arrived here.
+    ``condition``, ``nearness``: see :class:`SolvedRows`. ``iterations``: of Newton-Raphson in the
+    step that arrived here.
     """
 
     t: float
