@@ -129,13 +129,10 @@ class SolvedRows:
 
     @classmethod
     def concatenate(cls, parts: Sequence[SolvedRows]) -> SolvedRows:
-        """Rows one behind the other, with the columns of the first part."""
-        return cls(
-            **{
-                name: np.concatenate([getattr(part, name) for part in parts])
-                for name in parts[0].columns
-            }
-        )
+        """Rows one behind the other, with the columns that all parts have."""
+        columns = [part.columns for part in parts]
+        names = [name for name in columns[0] if all(name in other for other in columns)]
+        return cls(**{name: np.concatenate([c[name] for c in columns]) for name in names})
 
     def put(self, where: IndexArray, others: SolvedRows) -> SolvedRows:
         """The rows with some replaced by others one by one; columns unknown of those stay."""
