@@ -12,6 +12,7 @@ from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.foundation.disjoint_sets import DisjointSets
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import canonical
 from linkwork.foundation.rounding import REGULAR_CONDITION
@@ -109,22 +110,14 @@ class _Circuits:
     def _groups(self) -> list[_Group]:
         """Arcs joined by the change points they share, in the order found."""
         arcs, crossings = [a for a in self.explorer.arcs if self._fits(a)], self.explorer.crossings
-        owner = list(range(len(arcs)))
-
-        def root(k: int) -> int:
-            while owner[k] != k:
-                k = owner[k]
-            return k
-
+        joined = DisjointSets(len(arcs))
         first: dict[int, int] = {}
         for k, arc in enumerate(arcs):
             for crossing in arc.crossings:
-                other = first.setdefault(crossing, k)
-                a, b = sorted((root(k), root(other)))
-                owner[b] = a
+                joined.unite(k, first.setdefault(crossing, k))
         groups: dict[int, list[int]] = {}
         for k in range(len(arcs)):
-            groups.setdefault(root(k), []).append(k)
+            groups.setdefault(joined.root(k), []).append(k)
         return [
             _Group(
                 arcs=tuple(arcs[k] for k in members),

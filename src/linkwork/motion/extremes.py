@@ -17,7 +17,7 @@ from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import RowValues
 from linkwork.numerics.continuation.branch_tracking import Track, rows_on_track
 from linkwork.results.limit import OutputLimit
-from linkwork.results.quantities.registry import Group
+from linkwork.results.quantities.asked import Group
 
 __all__ = ["check_quantities", "output_limit_at", "output_limits"]
 

@@ -22,19 +22,18 @@ from linkwork.kernels.march.march_programs import WEIGHTS, march_programs
 from linkwork.kernels.march.one_design import Ready, RowsOfOne, SingleDesign
 from linkwork.kernels.march.start_positions import begin
 from linkwork.kernels.march.step_trial import Topology
+from linkwork.kernels.march.thread_shares import share_of_threads
 from linkwork.kernels.march.work_arrays import InputTable, MarchResult, Tasks
 from linkwork.kernels.program.code_cache import is_cached, load_compiled
 from linkwork.kernels.program.execution import Execution
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.printing import trial_source
-from linkwork.kernels.program.program import ROLES, SOURCES, Op, Program
+from linkwork.kernels.program.program import ROLES, registers_read
 
 __all__ = ["LaneRows", "RowsOfOne", "Steps", "SweepKernel"]
 
 _FEW = 16  # designs in a part of which each goes with its rows side by side
-_PART = 4096  # designs that one thread works on at a time, at most
 _ROUGHLY = 1e-6  # weighted: a correction behind which a proof corrects once more
-_LEAST = 2  # times LANES: designs in a part where threads share them, at least
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -178,7 +177,7 @@ class SweepKernel:
         sections = self._sections
         ordered = [sections.predict, *sections.begin, *sections.prove, sections.judge]
         after = [*sections.iterate, *sections.prove, sections.judge]
-        kept = {*self.nodes[0].tolist(), *self.noted.tolist(), *_registers_read(after)}
+        kept = {*self.nodes[0].tolist(), *self.noted.tolist(), *registers_read(after)}
         return trial_source(
             [section.code for section in ordered],
             self.nodes.shape[1],
@@ -218,7 +217,7 @@ class SweepKernel:
         if count <= _FEW and len(rows) >= LANES:
             self._few(ready, coefficients, given, table, steps, found)
             return
-        parts = _parts(count, threads)
+        parts = share_of_threads(count, threads)
         share_out(one, parts, min(threads, len(parts)))
 
     def guess_nodes(self, guess: Array, start: Array) -> Array:
@@ -375,38 +374,9 @@ class SweepKernel:
         )
 
 
-def _parts(count: int, threads: int) -> list[slice]:
-    """Whole lanes of designs. Of several threads each takes half of its share of what is left, so
-    that the last parts are small and none waits long for the others.
-    """
-    parts, first = list[slice](), 0
-    while first < count:
-        size = _PART
-        if threads > 1:
-            lanes = -(-(count - first) // (LANES * 2 * threads))
-            size = min(_PART, max(_LEAST, lanes) * LANES)
-        parts.append(slice(first, min(first + size, count)))
-        first += size
-    return parts
-
-
 def _march_part(
     ready: Ready, space: Array, node: Array, begun: BoolArray, table: InputTable, kept: MarchResult
 ) -> None:
     tasks = Tasks.room(2 * len(begun), len(node))
     many = in_step(ready.topology, space, ready.design, node, begun, table, tasks, kept)
     march(ready.topology, space, ready.design, table, tasks, many, kept)
-
-
-def _registers_read(programs: Sequence[Program]) -> set[int]:
-    """Registers that programs read before they write them."""
-    read, written = set[int](), set[int]()
-    for program in programs:
-        for number, target, *sources in program.code.tolist():
-            op = Op(number)
-            count = SOURCES[op]
-            read.update(set(sources[:count]) - written)
-            if op in (Op.KEEP, Op.LESS):
-                read.update({target} - written)
-            written.update({target, sources[2]} if op is Op.SIN else {target})
-    return read
