@@ -18,7 +18,7 @@ __all__ = ["DesignRows"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DesignRows:
-    """D designs over R rows of inputs, internal units.
+    """D designs over R rows of inputs, internal units; written by the march, then frozen.
 
     ``v`` (n, R, D): unknowns, NaN where there is no position. ``status``, ``certification``
     (R, D): codes. ``radius`` (R, D): of the proof, weighted, NaN without one; (0, D) if none is
@@ -60,6 +60,13 @@ class DesignRows:
     def turns(self) -> TurnArray:
         """How many whole turns further the position of a row was found, (R, D)."""
         return np.zeros(self.status.shape, dtype=np.int32)
+
+    def freeze(self) -> DesignRows:
+        """The rows, read-only from here on."""
+        for array in vars(self).values():
+            if isinstance(array, np.ndarray):
+                array.setflags(write=False)
+        return self
 
     def clear(self, where: BoolArray, certify: bool) -> None:
         """No position in some rows (R, D); no status in any of them."""
