@@ -98,7 +98,7 @@ def _branch(table: LoopTable, v: Array, length: float) -> Array | None:
 def beads_of(solver: BlockSolver, v: Array) -> SolvedRows:
     """Positions as points along their own input."""
     apart = rounding_of_inputs(v, solver.unknowns)
-    return replace(solver.rates(v, PATH.rate), t=v[:, solver.unknowns], input_radius=apart)
+    return solver.rates(v, PATH.rate).with_columns(t=v[:, solver.unknowns], input_radius=apart)
 
 
 def _true_step(

@@ -6,7 +6,6 @@ The referee itself lives in ``tests/campaigns``; ``scripts/campaign`` runs it on
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -499,7 +498,7 @@ def test_every_reason_for_a_missing_certificate_is_reached(monkeypatch: pytest.M
     places[1] = four_bar_at(FOLDING, t[1:2], -1)[1][0]
     status = np.array([Status.CONVERGED.code] * 4, dtype=np.int8)
     status[2] = Status.LOST.code
-    doctored = replace(solver.rates(places, PATH.rate), t=t, status=status)
+    doctored = solver.rates(places, PATH.rate).with_columns(t=t, status=status)
     proofs, _ = prove_rows(solver, PATH, track, doctored, t[:, None])
     reasons = [Certification.of_code(int(code)) for code in proofs.certification]
     proved = np.isfinite(proofs.radius) & np.isfinite(proofs.uniqueness_radius)

@@ -261,4 +261,4 @@ def _mark_missing(
     status = rows.status.copy()
     status[missing & (t < track.first_t)] = lower.limit.status.code
     status[missing & (t > track.last_t)] = upper.limit.status.code
-    return replace(rows, status=status)
+    return rows.with_columns(status=status)

@@ -232,9 +232,8 @@ class _Circuits:
         inputs = v[:, solver.unknowns :] / model.input_scale
         rates = solver.rates(v, self.drive.path.rate)
         singular = ~(rates.nearness < REGULAR_CONDITION)
-        rates = replace(
-            rates.set(singular, first=np.nan, second=np.nan), residual=solver.residual(v)
-        )
+        rates = rates.set(singular, first=np.nan, second=np.nan)
+        rates = rates.with_columns(residual=solver.residual(v))
         blank = SolvedRows.blank(inputs, solver.variables, Status.CONVERGED)
         rows, begin = blank.put(np.arange(len(v)), rates), 0
         for branch, named in zip(pieces, names, strict=True):

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
@@ -108,8 +107,7 @@ def _row_at(drive: Drive, v: Array, certify: bool) -> tuple[SolvedRows, Proof | 
     solver, here = drive.solver, v[None, :]
     bounded = all(block.system.has_curvature_bound for block in solver.blocks)
     why = Certification.POSITION_NOT_PROVED if bounded else Certification.NO_BOUND
-    row = replace(
-        solver.rates(here, drive.path.rate),
+    row = solver.rates(here, drive.path.rate).with_columns(
         status=np.array([Status.CONVERGED.code], dtype=np.int8),
         residual=solver.residual(here),
         certification=np.array([(why if certify else Certification.NOT_ASKED).code], dtype=np.int8),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -77,7 +76,7 @@ def _unproved(rows: SolvedRows, why: Certification) -> SolvedRows:
     """The rows without proofs, all for one reason."""
     unknown = np.full(len(rows), np.nan)
     code = np.full(len(rows), why.code, dtype=np.int8)
-    return replace(rows, certification=code, radius=unknown, uniqueness_radius=unknown)
+    return rows.with_columns(certification=code, radius=unknown, uniqueness_radius=unknown)
 
 
 def _nodes_around(track: Track, t: Array) -> list[int]:
@@ -97,7 +96,7 @@ def _path_points(
     """Nodes and rows sorted along the path; the place of each of them, the nodes first."""
     apart = inputs_apart(rows.v[found][:, solver.unknowns :], asked[found])
     points = SolvedRows.concatenate(
-        [_points_of(solver, nodes), replace(rows.take(found), input_radius=apart)]
+        [_points_of(solver, nodes), rows.take(found).with_columns(input_radius=apart)]
     )
     order = np.argsort(points.t, kind="stable")
     place = np.empty(len(order), dtype=np.intp)
@@ -107,7 +106,7 @@ def _path_points(
 
 def _points_of(solver: BlockSolver, nodes: Sequence[Node]) -> SolvedRows:
     points = rows_of_nodes(nodes)
-    return replace(points, input_radius=rounding_of_inputs(points.v, solver.unknowns))
+    return points.with_columns(input_radius=rounding_of_inputs(points.v, solver.unknowns))
 
 
 def way_is_proved(solver: BlockSolver, path: InputPath, nodes: Sequence[Node]) -> bool:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NoReturn, dataclass_transform
 
 import numpy as np
 
@@ -15,18 +14,28 @@ from linkwork.foundation.status import Status
 __all__ = ["UNKNOWN", "SolvedRows"]
 
 
-class _Unknown(np.ndarray):
-    """An empty array that compares by identity, so that it serves as a default."""
-
-    __hash__ = object.__hash__  # type: ignore[assignment]
+#: A column that has not been computed: empty.
+UNKNOWN: Any = np.empty(0)
 
 
-#: A column that has not been computed.
-UNKNOWN: Any = np.empty(0).view(_Unknown)
+@dataclass_transform(kw_only_default=True, frozen_default=True)
+class _Columns:
+    """Columns given by name, read-only; a column that is not given keeps its class's default.
+
+    A data class would set each of twenty columns one by one, which takes longer than a step of
+    Newton-Raphson on a small block.
+    """
+
+    def __init__(self, **columns: AnyArray) -> None:
+        for column in columns.values():
+            column.setflags(write=False)
+        vars(self).update(columns)
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise TypeError("solved rows are read-only: make others with set, put or with_columns")
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class SolvedRows:
+class SolvedRows(_Columns):
     """B positions of one mechanism in internal units; every column is read-only.
 
     A step of the solution computes some columns; the others are ``UNKNOWN``.
@@ -83,10 +92,6 @@ class SolvedRows:
     branch: AnyArray = UNKNOWN
     limit: AnyArray = UNKNOWN
 
-    def __post_init__(self) -> None:
-        for column in self.columns.values():
-            column.setflags(write=False)
-
     def __len__(self) -> int:
         return len(self.v)
 
@@ -121,11 +126,15 @@ class SolvedRows:
     @property
     def columns(self) -> dict[str, AnyArray]:
         """The columns that have been computed, by name."""
-        return {name: column for name, column in vars(self).items() if column is not UNKNOWN}
+        return dict(vars(self))
+
+    def with_columns(self, **columns: AnyArray) -> SolvedRows:
+        """The rows with some columns added or replaced."""
+        return SolvedRows(**(vars(self) | columns))
 
     def take(self, where: IndexArray | slice) -> SolvedRows:
         """Some rows, in the order of ``where``."""
-        return SolvedRows(**{name: column[where] for name, column in self.columns.items()})
+        return SolvedRows(**{name: column[where] for name, column in vars(self).items()})
 
     @classmethod
     def concatenate(cls, parts: Sequence[SolvedRows]) -> SolvedRows:

@@ -290,7 +290,7 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
         residual[row] = solver.residual(arrived.v[None, :])[0]
     if doubtful.any():
         rates = solver.rates(v, path.rate)
-    return replace(rates, t=t, status=status, iterations=iterations, residual=residual)
+    return rates.with_columns(t=t, status=status, iterations=iterations, residual=residual)
 
 
 def _nearest(track: Track, left: int, t: float) -> Node:
