@@ -29,9 +29,9 @@ from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import motion_of_rows
 from linkwork.motion.redundancy import FITS, misfit
-from linkwork.motion.rows import SolvedRows
 from linkwork.numerics.continuation.change_point import Crossing
 from linkwork.numerics.continuation.local_parametrization import same_position
+from linkwork.numerics.rows import SolvedRows
 from linkwork.results.circuits import Branch, Circuit, Circuits
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Motion
@@ -230,19 +230,19 @@ class _Circuits:
         model, solver = self.model, self.model.compiled.solver
         v = np.concatenate([branch.v for branch in pieces])
         inputs = v[:, solver.unknowns :] / model.input_scale
-        rows = SolvedRows.blank(inputs, solver.variables, Status.CONVERGED)
         rates = solver.rates(v, self.drive.path.rate)
-        rows.v[:] = v
-        regular = rates.nearness < REGULAR_CONDITION
-        rows.first[regular], rows.second[regular] = rates.first[regular], rates.second[regular]
-        rows.residual[:], rows.condition[:] = solver.residual(v), rates.condition
-        begin = 0
+        singular = ~(rates.nearness < REGULAR_CONDITION)
+        rates = rates.set(singular, first=np.nan, second=np.nan)
+        rates = rates.with_columns(residual=solver.residual(v))
+        blank = SolvedRows.blank(inputs, solver.variables, Status.CONVERGED)
+        rows, begin = blank.put(np.arange(len(v)), rates), 0
         for branch, named in zip(pieces, names, strict=True):
             here = slice(begin, begin + len(branch.v))
             begin += len(branch.v)
-            rows.branch[here], rows.limit[here] = named.name, branch.limits
             code = Certification.CERTIFIED if named.certified else Certification.MOTION_NOT_PROVED
-            rows.certification[here] = (code if self.certify else Certification.NOT_ASKED).code
+            code = code if self.certify else Certification.NOT_ASKED
+            limits = np.array(branch.limits, dtype=object)
+            rows = rows.set(here, branch=named.name, limit=limits, certification=code.code)
         return motion_of_rows(model, rows, "", np.zeros(len(v), dtype=bool))
 
 

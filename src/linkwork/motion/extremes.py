@@ -127,9 +127,8 @@ class _Search:
         model = self.drive.model
         rows = rows_on_track(self.drive.solver, self.drive.path, self.track, t)
         good = rows.status == Status.CONVERGED.code
-        rates = rows.rates
-        series = RowValues(model, rows.v, rates.first, rates.second, good).series(self.name)
-        return series.value, series.first, series.second, rows.rates.condition
+        series = RowValues(model, rows.v, rows.first, rows.second, good).series(self.name)
+        return series.value, series.first, series.second, rows.condition
 
     def between(self, low: float, high: float, rate: float) -> tuple[float, float]:
         """Where the derivative is zero, and how far from it that may be."""

@@ -24,7 +24,6 @@ from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import fitting, motion_of_rows
 from linkwork.motion.path_entry import enter_path
 from linkwork.motion.redundancy import FITS, misfit
-from linkwork.motion.rows import SolvedRows
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.sweep_table import NamedEnd, SweepTable
 from linkwork.motion.tracking import track_to
@@ -32,6 +31,7 @@ from linkwork.numerics.continuation.branch_tracking import Node, Track
 from linkwork.numerics.continuation.local_parametrization import coincide, whole_turns
 from linkwork.numerics.continuation.passage import Passage
 from linkwork.numerics.newton import NewtonOptions
+from linkwork.numerics.rows import SolvedRows
 from linkwork.results.motion import Limit, Motion, OutputLimit
 
 __all__ = ["sweep", "sweep_rows"]
@@ -196,9 +196,8 @@ class _Sweep:
         passage: Passage | None = None,
     ) -> BranchRows:
         found = rows_of_branch(self.drive, anchor, asked, self.report, self.certify, passage)
-        found.rows.demote(standing)
-        found.rows.branch[found.converged] = name
-        return found
+        rows = found.rows.demote(standing).set(found.converged, branch=name)
+        return replace(found, rows=rows)
 
     def _keep(
         self,
@@ -257,7 +256,7 @@ class _Sweep:
         placed: list[BranchEnd] = []
         for branch in around.branches:
             found, name = branch.found, branch.name
-            found.rows.branch[found.converged] = name
+            found = replace(found, rows=found.rows.set(found.converged, branch=name))
             windows = (branch.window, _span(asked.t))
             table = SweepTable(self.drive, branch.asked, found, windows, False)
             self.tables.append(table)
@@ -274,7 +273,7 @@ class _Sweep:
         beyond = table.rows.status == Status.OUT_OF_REACH.code
         # of a closed circuit all branches are known, so other inputs are outside of it
         beyond &= around.leaves_out(asked.t, self.drive.free)
-        table.rows.status[beyond] = Status.OUT_OF_CIRCUIT.code
+        table.rows = table.rows.set(beyond, status=Status.OUT_OF_CIRCUIT.code)
 
     def _is_same(self, end: BranchEnd, known: BranchEnd) -> bool:
         """Whether two ends are one place: near each other, at one value as far as it is known.
@@ -311,7 +310,7 @@ class _Sweep:
                 ]
                 for here in mine:
                     row = self._branch_row(branch, t, here)
-                    row.limit[0] = f"{extreme.kind} of {name}"
+                    row = row.set(limit=f"{extreme.kind} of {name}")
                     if here == mine[0]:
                         self.output_limits.append(extreme.named(float(row.inputs[0, lead])))
                     places.append(here)

@@ -30,7 +30,7 @@ from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.printing import trial_source
 from linkwork.kernels.program.program import ROLES, registers_read
 
-__all__ = ["LaneRows", "RowsOfOne", "Steps", "SweepKernel"]
+__all__ = ["RowsOfOne", "Steps", "SweepKernel"]
 
 _FEW = 16  # designs, at most, of which each is solved with its rows side by side
 _ROUGHLY = 1e-6  # weighted: a correction behind which a proof corrects once more
@@ -60,52 +60,6 @@ class Steps:
             first=size * self.first,
             largest=size * self.largest,
             smallest=size * self.smallest,
-        )
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class LaneRows:
-    """The results of the march of D designs over R rows.
-
-    ``v`` (n, R, D): unknowns, untouched where not reached. ``radius`` (R, D): of the proof,
-    weighted ((0, D) without). ``reached`` (R, D). ``found`` (D,): the start. ``stopped`` (2, D):
-    the last value of t downwards and upwards where a design could go no further, NaN where it went
-    through; ``last`` (2, S, D): the node there, see :meth:`SweepKernel.last_nodes`.
-    """
-
-    v: Array
-    radius: Array
-    reached: BoolArray
-    found: BoolArray
-    stopped: Array
-    last: Array
-
-    @classmethod
-    def over(cls, v: Array, radius: Array, kernel: SweepKernel) -> LaneRows:
-        """Nothing found yet; ``v`` and ``radius`` are written to."""
-        _, rows, count = v.shape
-        return cls(
-            v=v,
-            radius=radius,
-            reached=np.zeros((rows, count), dtype=bool),
-            found=np.zeros(count, dtype=bool),
-            stopped=np.full((2, count), np.nan),
-            last=np.empty((2, 2 * kernel.nodes.shape[1], count)),
-        )
-
-    def at(self, first: int) -> MarchResult:
-        """As the march sees it, designs from one on."""
-        return MarchResult(first, self.v, self.radius, self.reached, self.stopped, self.last)
-
-    def take(self, where: IndexArray) -> LaneRows:
-        """Some of the designs."""
-        return LaneRows(
-            v=self.v[:, :, where],
-            radius=self.radius[:, where],
-            reached=self.reached[:, where],
-            found=self.found[where],
-            stopped=self.stopped[:, where],
-            last=self.last[:, :, where],
         )
 
 
@@ -192,9 +146,9 @@ class SweepKernel:
         start: Array,
         rows: Array,
         steps: Steps,
-        found: LaneRows,
+        found: MarchResult,
         threads: int = 1,
-    ) -> None:
+    ) -> BoolArray:
         """March D designs through R rows.
 
         Parameters
@@ -205,21 +159,37 @@ class SweepKernel:
             Of the unknowns, at ``start`` (D,).
         rows : (R,)
             Increasing values of t.
-        found : LaneRows
-            Filled.
+        found : MarchResult
+            Filled, see :meth:`result`.
+
+        Returns
+        -------
+        (D,)
+            Designs whose start was found.
         """
         count, given = len(start), self.guess_nodes(guess, start)
         ready, table = self._ready(coefficients, count), self._table(rows, steps)
-
-        def one(part: slice) -> None:
-            self._part(ready.part(part), given[:, part], table, steps, found, part)
-
         # few designs cannot fill the lanes; their rows can
         if count <= _FEW and len(rows) >= LANES:
-            self._few(ready, coefficients, given, table, steps, found)
-            return
+            return self._few(ready, coefficients, given, table, steps, found)
+        begun = np.zeros(count, dtype=bool)
+
+        def one(part: slice) -> None:
+            own = found._replace(first=part.start)
+            begun[part] = self._part(ready.part(part), given[:, part], table, steps, own)
+
         parts = share_of_threads(count, threads)
         share_out(one, parts, min(threads, len(parts)))
+        return begun
+
+    def result(self, v: Array, radius: Array) -> MarchResult:
+        """Room for a march: unknowns v (n, R, D) and radii (R, D), (0, D) without proofs, are
+        written to where positions are found.
+        """
+        _, rows, count = v.shape
+        reached, end = np.zeros((rows, count), dtype=bool), np.full((2, count), np.nan)
+        last = np.empty((2, 2 * self.nodes.shape[1], count))
+        return MarchResult(0, v, radius, reached, end, last)
 
     def guess_nodes(self, guess: Array, start: Array) -> Array:
         """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""
@@ -227,13 +197,13 @@ class SweepKernel:
         node[: self.table.unknowns], node[-1] = guess, start
         return node
 
-    def last_nodes(self, found: LaneRows, way: int, where: IndexArray) -> LastNodes:
+    def last_nodes(self, found: MarchResult, way: int, where: IndexArray) -> LastNodes:
         """The nodes at which some designs stopped, downwards (0) or upwards (1)."""
         n, last = self.table.unknowns, found.last[way][:, where]
         w, s, x = (last[k * n : (k + 1) * n] for k in range(3))
         q, p = (last[self.nodes.shape[1] :][k * n : (k + 1) * n] for k in range(2))
         errors = x if self.certified else np.zeros_like(w)
-        return LastNodes(t=found.stopped[way, where], w=w, s=s, q=q, p=p, x=errors)
+        return LastNodes(t=found.end[way, where], w=w, s=s, q=q, p=p, x=errors)
 
     def _coefficient_registers(
         self, coefficients: Mapping[str, Array], count: int
@@ -275,14 +245,13 @@ class SweepKernel:
         given: Array,
         table: InputTable,
         steps: Steps,
-        found: LaneRows,
-        part: slice,
-    ) -> None:
+        found: MarchResult,
+    ) -> BoolArray:
         """Designs side by side."""
         space = self._space(steps)
         node, begun = self.start_nodes(ready, space, given)
-        found.found[part] = begun
-        _march_part(ready, space, node, begun, table, found.at(part.start))
+        _march_part(ready, space, node, begun, table, found)
+        return begun
 
     def _table(self, rows: Array, steps: Steps) -> InputTable:
         sizes = np.array([steps.first, steps.largest, steps.smallest])
@@ -295,20 +264,21 @@ class SweepKernel:
         given: Array,
         table: InputTable,
         steps: Steps,
-        found: LaneRows,
-    ) -> None:
+        found: MarchResult,
+    ) -> BoolArray:
         """One design after the other, its rows side by side; then those that this is not for."""
         alone, n = self._prepare_single(ready, coefficients, table, steps), self.table.unknowns
         counts = np.zeros(len(table.rows), dtype=np.int64)
+        done = np.zeros(given.shape[1], dtype=bool)
         for k in range(given.shape[1]):
             guess = np.append(given[:n, k], given[-1, k])
-            found.found[k] = alone.with_design(k).run(guess, found.at(k), counts)
-        left = ~found.found
-        if left.any():
-            space = self._space(steps)
-            node, begun = self.start_nodes(ready, space, given)
-            found.found[left] = begun[left]
-            _march_part(ready, space, node, begun & left, table, found.at(0))
+            done[k] = alone.with_design(k).run(guess, found._replace(first=k), counts)
+        if done.all():
+            return done
+        space = self._space(steps)
+        node, begun = self.start_nodes(ready, space, given)
+        _march_part(ready, space, node, begun & ~done, table, found)
+        return done | begun
 
     def prepare_single(
         self,
