@@ -108,6 +108,7 @@ def run_study(
         left = [k for k in range(study.chunks) if k not in target.done]
         tasks = ((k, study.values(k)) for k in left)
         if left:
+            # closing ends the workers also when the store fails
             with closing(_crew(study, tasks, len(left), workers, scheduler)) as parts:
                 for k, part in parts:
                     target.write(k, part)
@@ -144,6 +145,7 @@ def _teller(
     def designs() -> int:
         return sum(len(study.designs_of(k)) for k in done)
 
+    # designs of an earlier run do not count in the rate
     before = designs()
 
     def tell() -> None:

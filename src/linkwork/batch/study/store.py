@@ -151,6 +151,7 @@ def _take_away(path: Path) -> None:
     """The store is there or not: a part of it that is left would be gone on with."""
     aside = path.with_name(f".{path.name}.{os.getpid()}.old{PARTIAL}")
     with _lock_store(path):
+        # renamed before it is deleted: an interruption leaves no half store under its name
         os.rename(path, aside)
     shutil.rmtree(aside)
 
@@ -177,6 +178,7 @@ def _differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> Iterator[
             continue
         if key == "mechanism":
             old, new = _first_change(old, new)
+        # other names: the values are of no interest then
         elif key == "dimensions" and [n for n, _ in old] != [n for n, _ in new]:
             old, new = ([name for name, _ in each] for each in (old, new))
         elif key in ("dimensions", "input", "reductions", "filters"):
