@@ -1,4 +1,4 @@
-"""How fast a loop table bends: exact bounds of its second derivatives, seen through a matrix.
+"""How fast a loop table bends: exact bounds of its second derivatives, multiplied by a matrix.
 
 Terms with the same phase turn together, so their complex coefficients are added before a modulus is
 taken: with α = A_re - i A_im the row i of A·D²F along unit directions is at most
@@ -7,7 +7,7 @@ taken: with α = A_re - i A_im the row i of A·D²F along unit directions is at 
 
 where C_lg sums c·s and D_ljg sums c over the terms of loop l with phase g (and variable length j).
 Linear rows do not bend. A row Σ a v - f(Σ w v) bends along its own sum, |A_ir| sup|f''| |w|²; such
-rows count as further phases behind those of the loops. Rows of any formula have no bound.
+rows count as further phases after those of the loops. Rows of any formula have no bound.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ __all__ = ["Curvature", "PhaseGroups"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Curvature:
-    """Moduli of second derivatives behind a matrix A with n rows, for B positions.
+    """Moduli of second derivatives multiplied by a matrix A with n rows, for B positions.
 
     ``loop_rows``: how many of the m equations belong to loops; other rows follow.
-    ``phase`` (B, n, G): |Σ_l α_il C_lg|, behind those of loops |A_ir| sup|f''| of the laws;
+    ``phase`` (B, n, G): |Σ_l α_il C_lg|, after those of loops |A_ir| sup|f''| of the laws;
     ``loop_phases`` of them belong to loops. ``slide`` (B, n, P): |Σ_l α_il D_lp| for every
     pair p of a variable length and a phase. ``weights`` (N, G): |W|. ``pair_length``,
     ``pair_group`` (P,): the pair's variable and phase. ``rounding`` (B, m): bounds of the error of
@@ -123,7 +123,7 @@ class PhaseGroups:
 
     @cached_property
     def _pair_size(self) -> Array:
-        """Sums of moduli behind the pairs' coefficients, (R, P)."""
+        """Sums of moduli in the pairs' coefficients, (R, P)."""
         rows, (lengths, groups, d) = self.rows, self.pairs
         size = np.zeros(d.shape)
         for p, (j, g) in enumerate(zip(lengths, groups, strict=True)):

@@ -59,7 +59,7 @@ class LawRow:
         return second
 
     def repeats_after(self, turns: Array) -> bool:
-        """Whether ``variables`` (k,) moved by so many whole turns satisfy the same equation."""
+        """Whether ``variables`` (k,) moved by this many whole turns satisfy the same equation."""
         straight, bulk = self.weights @ turns, np.abs(self.weights) @ np.abs(turns)
         inner, size = self.inner @ turns, np.abs(self.inner) @ np.abs(turns)
         if self.law.periodic:

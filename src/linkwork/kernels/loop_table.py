@@ -39,7 +39,7 @@ class FunctionRow(Protocol):
         """Second derivative along d, (B,)."""
 
     def repeats_after(self, turns: Array) -> bool:
-        """Whether ``variables`` (k,) moved by so many whole turns are known to satisfy the same."""
+        """Whether ``variables`` (k,) moved by these whole turns are known to satisfy the same."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,12 +60,12 @@ class LinearRows:
 
 @dataclass(frozen=True, kw_only=True)
 class LoopTable:
-    """All equations over n unknowns and the inputs behind them.
+    """All equations over n unknowns and the inputs after them.
 
     Parameters
     ----------
     unknowns : int
-        n; the variables behind are inputs.
+        n; the variables after them are inputs.
     loops : PhasorRows
         L complex rows over all N variables.
     linear : LinearRows
@@ -157,7 +157,7 @@ class LoopTable:
         return np.concatenate(parts, axis=1)
 
     def repeats_after(self, turns: Array) -> bool:
-        """Whether variables (N,) moved by so many whole turns each satisfy the same equations.
+        """Whether variables (N,) moved by this many whole turns each satisfy the same equations.
 
         Not so for a phase that they change by a fraction of a turn, nor for a linear row that they
         change at all.
@@ -200,13 +200,13 @@ class LoopTable:
         return PhaseGroups(rows=self.loops)
 
     def curvature(self, v: Array, matrix: Array) -> Curvature:
-        """Bounds of the second derivatives seen through a matrix.
+        """Bounds of the second derivatives multiplied by a matrix.
 
         Parameters
         ----------
         v : (B, N)
         matrix : (B, n, m or more)
-            The rows A; columns behind the table's m equations are ignored.
+            The rows A; columns after the table's m equations are ignored.
         """
         count = self.loops.rows
         alpha = matrix[:, :, :count] - 1j * matrix[:, :, count : 2 * count]

@@ -25,7 +25,7 @@ N = TypeVar("N", bound=_AtParameter)
 @dataclass(frozen=True)
 class Attempt(Generic[N]):
     """One attempted step: the node reached, ``None`` if it is refused, and the factor by which the
-    next step should be larger or smaller, ``None`` if nothing is known of that.
+    next step should be larger or smaller, ``None`` if unknown.
     """
 
     node: N | None

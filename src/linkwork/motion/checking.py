@@ -21,7 +21,7 @@ __all__ = ["check"]
 
 
 def check(model: Model) -> CheckReport:
-    """Report what was understood of a mechanism and try its start position."""
+    """Report loops, unknowns, blocks and mobility of a mechanism; try its start position."""
     description, equations = model.description, model.equations
     start = first_position(model, model.start_inputs, NewtonOptions())
     seen = as_linkage(model)

@@ -189,7 +189,7 @@ class _Circuits:
         return ""
 
     def _solve_branch(self, branch: CurveBranch, value: float) -> list[Array]:
-        """The positions of a branch at a value of the parameter, whole turns aside."""
+        """The positions of a branch at a value of the parameter, modulo whole turns."""
         own = self.leads.with_parameter(self.leads.parameter)
         found = []
         for guess in positions_near(self.leads, branch, value):

@@ -39,7 +39,7 @@ class TracedCurve:
 def trace_with_proof(
     leads: Parametrizations, start: Array, heading: float | Array, certify: bool
 ) -> TracedCurve:
-    """Trace a curve boldly; with care where the bold one cannot be proved, or is not to be."""
+    """Trace a curve with bold steps; with careful ones if these are not proved or not to be."""
     best: TracedCurve | None = None
     own = leads.with_parameter(leads.parameter)
     proves = certify and own is not None and own.provable

@@ -147,7 +147,7 @@ def _dead_end(drive: Drive, last: Node, ahead: TurnAhead, side: float, certify: 
     begin = leg.led.whole(leg.nodes[0].v)
     joined = ahead.located and own is not None and same_solution(own, leg.led, begin)
     turn = ahead.turn
-    if not ahead.located:  # nothing says that it is this branch's: it ended at the last node
+    if not ahead.located:  # not known to be on this branch, which ended at the last node
         edges = sorted((last.t, *turn.bracket))
         turn = replace(turn, proof=None, bracket=(edges[0], edges[-1]))
     end = end_at_dead_point(drive, turn, leg.led, certify, joined)

@@ -23,7 +23,7 @@ def enter_path(drive: Drive, start: Start, t: Array, certify: bool) -> tuple[Nod
     solver, path = drive.solver, drive.path
     own = drive.model.start_inputs
     here = float(own[drive.lead])
-    # one input is always on its path; several may have a guess beside it
+    # one input is always on its path; the guess of several may lie off it
     if np.allclose(path.at(here), own, rtol=0, atol=1e-12 * path.size):
         return node_at(solver, path, here, start.v), True
     weights = solver.variable_scale[solver.unknowns :]

@@ -64,7 +64,7 @@ class SolvedPosition:
 
 
 def found_message(status: Status, condition: float, failure: Failure | None = None) -> str:
-    """The sentence for a status or its explanation; a position too near to singular says so."""
+    """The sentence for a status, its explanation, or that of a position too near to singular."""
     # such a position counts as found, but its derivatives are noise
     if status.ok and condition > _HOPELESS:
         return _SINGULAR

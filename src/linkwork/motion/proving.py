@@ -119,7 +119,7 @@ def way_is_proved(solver: BlockSolver, path: InputPath, nodes: Sequence[Node]) -
 
 
 def inputs_apart(inputs: Array, asked: Array) -> Array:
-    """How far the inputs meant may be from some, whole turns aside, (B, p).
+    """How far the intended inputs may be from given ones, modulo whole turns, (B, p).
 
     From the conversion of units, the rounding of a straight line, and 2π, which is no float.
     """

@@ -237,7 +237,7 @@ class SweepTable:
         return bool(own[beside].any())
 
     def _inputs(self, end: BranchEnd, here: float) -> Array:
-        """Everyday inputs at an end, shifted by the whole turns to ``here``, (1, p)."""
+        """The inputs at an end as short numbers, shifted by the whole turns to ``here``, (1, p)."""
         scale, path = self.drive.model.input_scale, self.drive.path
         in_file_units = np.array([short_number(x) for x in path.at(end.t) / scale])
         in_file_units[self.drive.lead] = end.limit.input

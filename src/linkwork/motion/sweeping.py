@@ -144,7 +144,7 @@ def _span(t: Array) -> tuple[float, float]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Branch:
-    """A branch in its table: which of the table's rows are its own, and the worth of its proofs.
+    """A branch in its table: which of the table's rows are its own, and how its proofs are graded.
 
     ``standing``: the certification of rows that are proved on it.
     """
@@ -172,7 +172,7 @@ class _Sweep:
 
     def run(self, anchor: Node, entered: bool, asked: Asked, policy: ChangePointPolicy) -> None:
         """The table of the start's branch, and of those beyond change points if asked."""
-        # nothing on the path can be worth more than the way onto it
+        # no row of the path is graded higher than the way onto it
         standing = Certification.CERTIFIED if entered else Certification.MOTION_NOT_PROVED
         found = self._branch(anchor, asked, self.model.branch, standing)
         span = _span(asked.t)

@@ -82,7 +82,7 @@ def track_to(
     options: TrackOptions | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Track:
-    """The branch from ``start`` as far towards the smallest and largest goal as it goes.
+    """The branch from ``start`` towards the smallest and the largest goal, or to its ends.
 
     ``progress`` is called with every value of t that is reached.
     """

@@ -68,7 +68,7 @@ class BlockSolver:
     ) -> SolvedRows:
         """Newton-Raphson block by block from each row of ``start`` (B, N), inputs included.
 
-        A row whose block fails keeps its guess in the blocks behind.
+        A row whose block fails keeps its guess in all later blocks.
         """
         v = start.copy()
         count = len(v)
@@ -125,7 +125,7 @@ class BlockSolver:
         input_rate : (p,)
             u' of the inputs; u'' = 0.
         linear : list of Linearised, optional
-            ``linearise(v)``, if it is there already.
+            ``linearise(v)``, if computed already.
 
         Returns
         -------

@@ -25,7 +25,7 @@ def nearest_miss(system: System, start: Array, steps: int = 200) -> tuple[Array,
     Parameters
     ----------
     start : (N,)
-        Guess of the unknowns with the inputs behind.
+        Guess of the unknowns followed by the inputs.
 
     Returns
     -------

@@ -29,7 +29,7 @@ class NewtonOptions:
     solution_tolerance : float
         ε_s: stop when every weighted change is at most this.
     max_steps : int
-        m: stop without a solution after so many steps.
+        m: stop without a solution after this many steps.
     largest_turn : float
         A step that turns an angle further than this [rad] is shortened as a whole; ``inf`` gives
         the plain textbook method.
@@ -63,7 +63,7 @@ def newton(
     ----------
     system : System
     start : (B, N)
-        Guesses of the unknowns with the inputs behind.
+        Guesses of the unknowns followed by the inputs.
     options : NewtonOptions
     watch : callable, optional
         Called as ``watch(k, v, residual, change)`` at every iterate, for showing a single start.

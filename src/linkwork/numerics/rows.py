@@ -43,7 +43,7 @@ class SolvedRows(_Columns):
     Parameters
     ----------
     v : (B, N)
-        Unknowns with the inputs behind, NaN where there is no position.
+        Unknowns followed by the inputs, NaN where there is no position.
     t : (B,)
         Values of the path's parameter.
     status, iterations, residual : (B,)
@@ -61,7 +61,7 @@ class SolvedRows(_Columns):
     orientation : (B, blocks)
         Sign of det J, 0 where J is singular.
     input_radius : (B, p)
-        How far the inputs that are meant may be from those in v.
+        How far the intended inputs may be from those in v.
     certification, radius, uniqueness_radius : (B,)
         Codes of :class:`Certification`; a true position lies within the one radius, no other
         within the other (weighted), NaN without a proof.
@@ -138,7 +138,7 @@ class SolvedRows(_Columns):
 
     @classmethod
     def concatenate(cls, parts: Sequence[SolvedRows]) -> SolvedRows:
-        """Rows one behind the other, with the columns that all parts have."""
+        """Rows one after the other, with the columns that all parts have."""
         columns = [part.columns for part in parts]
         names = [name for name in columns[0] if all(name in other for other in columns)]
         return cls(**{name: np.concatenate([c[name] for c in columns]) for name in names})

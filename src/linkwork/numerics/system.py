@@ -54,7 +54,7 @@ class System(SmallSystem, Protocol):
         """Whether :meth:`curvature` knows a bound."""
 
     def curvature(self, v: Array, matrix: Array) -> Curvature:
-        """Moduli of the second derivatives behind a matrix (B, n, m)."""
+        """Moduli of the second derivatives multiplied by a matrix (B, n, m)."""
 
 
 class Curvature(Protocol):
@@ -69,11 +69,11 @@ class Curvature(Protocol):
 
     @property
     def loop_phases(self) -> int:
-        """How many of the phases belong to loops; those behind bend along one sum each."""
+        """How many of the phases belong to loops; later ones bend along one sum each."""
 
     @property
     def phase(self) -> Array:
-        """(B, n, G) second derivatives behind the matrix: |coefficients| of the phases."""
+        """(B, n, G) second derivatives multiplied by the matrix: |coefficients| of the phases."""
 
     @property
     def slide(self) -> Array:

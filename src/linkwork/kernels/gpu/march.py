@@ -240,7 +240,7 @@ def follow(
     times = cuda.local.array(NODES, "float64")
     spacing = cuda.local.array(NODES, "float64")
     for k in range(NODES):
-        spacing[k] = math.inf  # like no other
+        spacing[k] = math.inf  # equal to no spacing, so that weights are computed
     row, known, h = _first_row(rows, w[size - 1], way), 1, steps[0]
     while 0 <= row < rows.shape[0]:
         goal, before = rows[row], w[2 * size - 1]

@@ -51,7 +51,7 @@ def march(design, options, node, begun, rows, steps, v, radius, reached, end, la
 
 @dataclass(frozen=True, kw_only=True)
 class ThreadState:
-    """Which registers a thread keeps, and where; as :mod:`device_march` says.
+    """The registers that a thread keeps, laid out as in :class:`linkwork.kernels.gpu.march.Shape`.
 
     Parameters
     ----------

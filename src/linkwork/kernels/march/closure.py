@@ -207,7 +207,7 @@ class Closure:
         return x, y
 
     def known(self) -> list[int]:
-        """The variables behind the block's unknowns that its equations contain."""
+        """The known variables that the block's equations contain."""
         found: set[int] = set()
         for k in self.loops:
             for term in self.terms[k]:

@@ -232,7 +232,7 @@ class _Runner:
         return out
 
     def proved_in(self, parts: int) -> BoolArray:
-        """Whether so many parts prove the arcs, (D,)."""
+        """Whether this many parts prove the arcs, (D,)."""
         programs = self.programs
         proved = np.zeros(self.given.shape[1], dtype=bool)
         live, good, along = self.registers.all_of(["live", "good", "along"])

@@ -175,7 +175,7 @@ def march(
     count: int,
     found: MarchResult,
 ) -> None:
-    """Go all ways that are asked for.
+    """Work through all tasks.
 
     Parameters
     ----------

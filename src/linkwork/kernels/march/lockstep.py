@@ -105,7 +105,7 @@ def _address(array: Array, j: int, row: int, first: int) -> int:
 
 @njit_no_refcount
 def _prefetch_row(first: int, width: int, row: int, table: InputTable, found: MarchResult) -> None:
-    """The places of a row are brought near while the row is computed."""
+    """Prefetch the places of a row into the cache while the row is computed."""
     target = found.unknowns
     for j in range(table.unknowns):
         place = _address(target, j, row, first)

@@ -92,7 +92,7 @@ class MarchPrograms:
         )
 
     def turned(self, moves: int) -> tuple[Program, ...]:
-        """The sections when roles have moved on so many times: the trial is one further down."""
+        """The sections when roles have moved on this many times: the trial is one further down."""
         place = np.arange(self.height, dtype=np.uint32)
         for role in range(ROLES):
             place[self.nodes[role]] = self.nodes[(role - moves) % ROLES]

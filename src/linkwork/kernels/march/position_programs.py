@@ -38,7 +38,7 @@ def at_places(
         Unknowns; NaN gives NaN.
     inputs : (R, p)
     turns : (R, D)
-        How many whole turns the first input of a position is further than the row says.
+        Whole turns by which the first input of a position exceeds the row's.
 
     Returns
     -------

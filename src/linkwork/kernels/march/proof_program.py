@@ -117,7 +117,7 @@ class BlockProof:
         ]
 
     def _group_terms(self) -> None:
-        """Sort terms by phase; second derivatives along each phase, seen through the inverse."""
+        """Sort terms by phase; second derivatives along each phase, multiplied by the inverse."""
         closure = self.closure
         groups: dict[Phase, list[tuple[int, int]]] = {}
         pairs: dict[tuple[int, Phase], list[tuple[int, int]]] = {}

@@ -3,7 +3,7 @@
 Block by block, as in ``numerics.block_solver``:  J x' = -F_u u',  J x'' = -D²F[(x', u'), (x', u')]
 with the rates of all variables that a block knows. Registers by name:
 
-``v<k>``             variables, the inputs behind the unknowns
+``v<k>``             variables, the inputs after the unknowns
 ``u<j>.rate``        rate of an input by the leading one
 ``scale<k>``         weights of variables that are lengths
 ``length``           scale of the residuals of equations of lengths

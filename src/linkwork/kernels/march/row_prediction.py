@@ -81,7 +81,7 @@ def predict_from_nodes(
 
 @compiled
 def choose_knots(width: int) -> CountArray:
-    """The lanes of so many rows from which the next rows are predicted, the last one first."""
+    """The lanes of this many rows from which the next rows are predicted, the last one first."""
     count = min(KNOTS, width)
     knots = np.empty(count, np.int64)
     for j in range(count):

@@ -46,7 +46,7 @@ _STRIDE = 0.6  # of the largest step: as far reach rows that are computed togeth
 _VECTOR = 8  # lanes that a processor computes at once
 _FEWEST = 4  # with fewer the march is as quick
 _ANY = 1 << 30  # nodes: as many as the way takes
-_CLOSE = 0.1  # a guess that is as near needs no care
+_CLOSE = 0.1  # a guess this near needs no small steps
 _BEND = 0.1  # without proofs, from row to row: a change of rates times the distance,
 _ROUGH = 0.03  # and the change that rates do not explain, part of the way and of a largest step
 

@@ -33,7 +33,7 @@ from linkwork.kernels.program.program import ROLES, registers_read
 __all__ = ["RowsOfOne", "Steps", "SweepKernel"]
 
 _FEW = 16  # designs, at most, of which each is solved with its rows side by side
-_ROUGHLY = 1e-6  # weighted: a correction behind which a proof corrects once more
+_ROUGHLY = 1e-6  # weighted: the tolerance where a proof corrects once more
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,7 +54,7 @@ class Steps:
     most_drift: float = 0.5
 
     def times(self, size: float) -> Steps:
-        """For a path whose natural step is so many times longer: a length for lengths."""
+        """For a path whose natural step is this many times longer: a length for lengths."""
         return replace(
             self,
             first=size * self.first,

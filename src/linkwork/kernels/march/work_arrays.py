@@ -35,7 +35,7 @@ class Tasks(NamedTuple):
 
     @classmethod
     def room(cls, count: int, size: int) -> Tasks:
-        """For so many tasks with nodes of S numbers."""
+        """For this many tasks with nodes of S numbers."""
         return cls(np.empty(count, np.int64), np.empty(count, np.int64), np.empty((size, count)))
 
 

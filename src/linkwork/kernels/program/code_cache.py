@@ -69,7 +69,7 @@ def _folder() -> Path:
 
 
 def _name(source: str) -> str:
-    """By the text and all that it is compiled with."""
+    """The name of a module: a digest of its text and of the modules it is compiled with."""
     digest = hashlib.sha256(source.encode())
     for module in _WITH:
         digest.update((_LINKWORK / module).read_bytes())
@@ -77,7 +77,7 @@ def _name(source: str) -> str:
 
 
 def _write(path: Path, source: str) -> None:
-    """All or nothing, whoever else writes the same."""
+    """Write the file whole or not at all, also while other processes write it."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(

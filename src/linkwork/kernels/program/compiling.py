@@ -54,7 +54,7 @@ class Compiling(Protocol):
 
 
 def compiled_for(signature: object) -> Compiling:
-    """Compiled when the module is loaded, for arrays as the signature says; ``None``: at the first
+    """Compiled when the module is loaded, for arrays of the signature; ``None``: at the first
     call, for the arrays that are met.
     """
     compiling: Compiling = _njit(

@@ -25,10 +25,10 @@ class Execution:
     Parameters
     ----------
     specialised : bool, optional
-        Asked for; by default it is whatever takes less time for so many ``positions``.
+        Asked for; by default it is whatever takes less time for this many ``positions``.
     positions : int
     device : str
-        Where it runs, one of :data:`DEVICES`; a graphics card runs nothing but what is compiled.
+        Where it runs, one of :data:`DEVICES`; a graphics card runs compiled programs only.
 
     Raises
     ------
@@ -52,7 +52,7 @@ class Execution:
             )
 
     def pays(self, instructions: int) -> bool:
-        """Whether compiling programs of so many instructions in all turns saves time."""
+        """Whether compiling programs of this many instructions in all turns saves time."""
         return self.positions >= _PAYS and instructions <= ROLES * _LONGEST
 
     def pays_compiled(self, instructions: int) -> bool:

@@ -2,7 +2,7 @@
 
 Registers are rows of a workspace (R, LANES). A pass over one row is a loop of known length over
 contiguous numbers, which the compiler turns into vector instructions; choosing the operation costs
-little beside it. So no mechanism needs a compilation of its own.
+little in comparison. So no mechanism needs a compilation of its own.
 """
 
 from __future__ import annotations

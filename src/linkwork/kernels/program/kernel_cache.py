@@ -42,8 +42,8 @@ def _indices() -> Iterator[Path]:
 
 
 def _is_of_this_source(index: Path) -> bool:
-    """By the digest that numba keeps in it, for the times of files tell nothing in a copy; without
-    one, as before numba 0.68, by them.
+    """Whether an index belongs to this source: by its digest, since copied files have new
+    times; by the times before numba 0.68, which keeps no digest.
     """
     if hashlib.sha256(_LAST.read_bytes()).digest() in index.read_bytes():
         return True
@@ -51,7 +51,7 @@ def _is_of_this_source(index: Path) -> bool:
 
 
 def say_that_it_compiles() -> None:
-    """Tell users why they wait, if they will: a warning in the log ``linkwork``."""
+    """Warn in the log ``linkwork`` that compiling takes time, if it will."""
     if not kernels_are_compiled():
         logging.getLogger("linkwork").warning(
             "compiling Linkwork's kernels, once after an installation: one or two minutes"

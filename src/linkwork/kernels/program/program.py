@@ -65,7 +65,7 @@ SOURCES = {op: 1 if op in _ONE else 3 if op in _THREE else 2 for op in Op}
 class Registers:
     """Where named values and constants live; shared by the programs of one mechanism.
 
-    ``count``: how many there are so far, scratch registers of every program behind.
+    ``count``: how many there are so far, the scratch registers of every program follow.
     """
 
     named: dict[str, int] = field(default_factory=dict)

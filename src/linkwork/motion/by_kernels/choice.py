@@ -21,7 +21,7 @@ def are_served(model: Model) -> bool:
 
 
 def kernels_pay(model: Model, rows: int, certify: bool) -> bool:
-    """Whether kernels take less time for so many rows of one mechanism than plain NumPy.
+    """Whether kernels take less time for this many rows of one mechanism than plain NumPy.
 
     Nothing is compiled for that: before the first family is solved, they do not.
     """

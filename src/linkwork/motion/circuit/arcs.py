@@ -35,7 +35,7 @@ _STILL = 1e-5  # weighted change of the parameter along an arc on which it rests
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Arc:
-    """A curve followed as far as it goes.
+    """A curve, followed until it closes or ends.
 
     ``up``: the walk that began forwards; ``down``: the one backwards, if the first did not close.
     ``crossings``: numbers of the change points at its ends. ``branches``: in the order start's own,
@@ -256,7 +256,7 @@ def _lies_on(leads: Parametrizations, branch: CurveBranch, seed: Array) -> bool:
 
 
 def positions_near(leads: Parametrizations, branch: CurveBranch, value: float) -> list[Array]:
-    """Interpolated positions (N,) of a branch at a value of the parameter, whole turns aside."""
+    """Interpolated positions (N,) of a branch at a value of the parameter, modulo whole turns."""
     p = leads.parameter
     low, high = branch.range(p)
     shifts = [0.0]

@@ -72,7 +72,7 @@ def _four_bar(loop: FourLinkLoop, linkage: Linkage) -> LoopType:
     if turning is not None and loop.driven is not None:
         full = turning and loop.links[lengths.index(shortest)] in loop.driven.links
     if not at_ground:
-        code = ""  # the letter says which link is driven
+        code = ""  # the letter names the driven link
     return LoopType(
         links=loop.links,
         name=name,

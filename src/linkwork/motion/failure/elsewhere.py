@@ -25,7 +25,7 @@ _MOST_BLOCKS = 8
 _MOST_LOOPS = 4  # coupled, whose configurations are listed: more take seconds
 _MOST = 64  # positions; a chain of dyads has 2^blocks
 _SAME_POSITION = 1e-6  # weighted
-_REACH = 2.0  # lengths are looked for within so many times the longest link around the guess
+_REACH = 2.0  # lengths are looked for within this many times the longest link around the guess
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -150,7 +150,7 @@ def _recurrence_root(n: int) -> float:
 
 
 def distance(block: Block, a: Array, b: Array) -> float:
-    """How far apart two positions (n,) of a block are, weighted, whole turns aside."""
+    """How far apart two positions (n,) of a block are, weighted, modulo whole turns."""
     n = len(block.unknowns)
     gap = within_half_a_turn(b - a, block.system.is_angle[:n])
     return float(np.abs(gap / block.system.variable_scale[:n]).max(initial=0.0))

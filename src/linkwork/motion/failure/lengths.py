@@ -69,7 +69,7 @@ def _dimensions(description: Description, used: set[str]) -> Iterator[Changeable
 
 
 def _linkage_names(linkage: Linkage) -> set[str]:
-    """The dimensions behind lengths, coordinates and offsets."""
+    """The dimensions in formulas of lengths, coordinates and offsets."""
     numbers: list[Number] = [*linkage.lengths.values()]
     numbers += [number for pair in linkage.points.values() for number in pair]
     numbers += [slider.offset for slider in linkage.sliders]

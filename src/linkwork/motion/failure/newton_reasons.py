@@ -99,7 +99,7 @@ def _is_extremum(block: Block, v: Array) -> bool:
 
 
 def _bends_both_ways(block: Block, root: Array, guess: Array) -> bool:
-    """Whether J⁻¹ D²F[d, d] points to opposite sides before and behind the root on the line d."""
+    """Whether J⁻¹ D²F[d, d] points to opposite sides before and after the root on the line d."""
     system, n = block.system, len(block.unknowns)
     d = np.zeros_like(root)
     d[:n] = guess[:n] - root[:n]

@@ -26,7 +26,7 @@ _CLOSED = 1e-9  # relative gap of a position that was found with the input free
 _HELD = 0.1  # weight of the input relative to the unknowns: it moves as little as possible
 _TRIES = 8  # input values around the circle from which an assembled position is looked for
 _TURN = 2.0 * np.pi
-_FAST = 6.0  # where a variable moves so many times faster than the input, a dead point is near
+_FAST = 6.0  # where a variable moves this many times faster than the input, a dead point is near
 _ASIDE = 0.2  # weighted: how far from it a circuit is begun
 _MOST_LEGS = 200
 _CARES = (replace(BOLD, most_steps=2000), TrackOptions(most_steps=4000))  # until one is proved
@@ -118,7 +118,7 @@ def reach_towards(
 
 
 def _nearest(low: float, high: float, asked: float, period: float | None) -> tuple[str, int] | None:
-    """Which end of an interval, so many periods on, is nearest; ``None`` if it holds the value."""
+    """Which end of an interval moved by some periods is nearest; ``None`` if it holds the value."""
     slack = 1e-12 * max(1.0, abs(asked))
     if period is None:
         shifts = [0]

@@ -43,7 +43,7 @@ class OutOfReach:
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _PlaceOnTrack:
     """Where on a track the position lies; ``asked`` (p,): the input values meant there, file
-    units, whole turns aside.
+    units, modulo whole turns.
     """
 
     path: InputPath

@@ -24,7 +24,7 @@ _OPTIONS = CurveOptions(most_turns=60, most_legs=200, track=replace(BOLD, most_s
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Laps:
-    """``inputs`` (p,), in file units: values so many laps nearer to the start; ``gain`` (N,): the
+    """``inputs`` (p,), in file units: values this many laps nearer to the start; ``gain`` (N,): the
     change of the variables over all laps left out; ``proved``: that a lap leads back to its start.
     """
 

@@ -42,7 +42,7 @@ class ProvenCurve:
 
 
 def prove_curve(leads: Parametrizations, curve: Curve) -> ProvenCurve:
-    """Prove every step of a curve, as far as it goes; with very many steps only its beginning."""
+    """Prove every step of a curve; of very many steps only the first ones."""
     legs = np.zeros(len(curve.legs), dtype=bool)
     junctions = np.zeros(max(len(curve.legs) - 1, 0), dtype=bool)
     steps = 0
@@ -117,7 +117,7 @@ def same_solution(one: Parametrization, other: Parametrization, v: Array) -> boo
 
 
 def _meets(leads: Parametrizations, own: Parametrization, start: Array, end: Array) -> bool:
-    """Whether two proved positions at one value of the parameter are one, whole turns aside."""
+    """Whether two proved positions at one value of the parameter are one, modulo whole turns."""
     if not leads.repeats_after(whole_turns(leads, start, end)):
         return False
     gap = apart(leads, start, end)

@@ -38,9 +38,9 @@ _LEG = 8.0  # natural sizes of the leader, after which a leg ends if nothing els
 class CurveOptions:
     """When another variable takes the lead, and when a curve is given up.
 
-    ``fast``: the leader is replaced where another variable moves so many times faster [weighted].
-    ``slow``: the parameter leads again where nothing moves faster than so many times its rate.
-    ``far``: a length so many times the mechanism's own has run to infinity.
+    ``fast``: the leader is replaced where another variable moves this many times faster [weighted].
+    ``slow``: the parameter leads again where nothing moves faster than this many times its rate.
+    ``far``: a length this many times the mechanism's own has run to infinity.
     ``most_turns``: of the parameter, after which the curve counts as never closing.
     """
 
@@ -79,9 +79,9 @@ class Leg:
 class Curve:
     """Legs in the order traced and why the curve ends.
 
-    ``passes``: the positions (N,) at which the parameter passed its starting value, whole turns
-    aside, each with the number of the leg that it ends. ``crossing``: the change point that it ends
-    at, as the last leg's leader sees it.
+    ``passes``: the positions (N,) at which the parameter passed its starting value modulo
+    whole turns, each with the number of the leg that it ends. ``crossing``: the change point that
+    it ends at, as the last leg's leader sees it.
     """
 
     legs: tuple[Leg, ...]
@@ -170,7 +170,7 @@ class _Tracer:
                 self.crossing = _crossing_ahead(leg)
                 if self.crossing is not None:
                     return self._end_trace(CircuitEnd.CHANGE_POINT)
-                # another leader may pass where this one could not; twice stuck is singular
+                # another leader may pass where this one could not; if it cannot, J is singular
                 stuck = 0 if moved else stuck + 1
                 avoid = led.lead
                 if stuck > 1:
@@ -248,7 +248,7 @@ class _Tracer:
         return 2.0 * np.pi if self.leads.is_angle[self.leads.parameter] else np.inf
 
     def _next_plane(self, t: float, sign: float, leaving: float | None) -> float:
-        """The next value of the parameter that equals the starting one, whole turns aside.
+        """The next value of the parameter that equals the starting one, modulo whole turns.
 
         ``leaving``: one of them that does not count.
         """
@@ -267,7 +267,7 @@ class _Tracer:
     def _passes(
         self, led: Parametrization, before: Node, after: Node, leaving: float | None
     ) -> list[_Pass]:
-        """The first pass of the starting value (whole turns aside) between two nodes, if any."""
+        """The first pass of the starting value (modulo whole turns) between two nodes, if any."""
         place = led.place(self.leads.parameter)
         for low, high in itertools.pairwise(one_way(led, place, before, after)):
             t0, t1 = float(low.v[place]), float(high.v[place])

@@ -2,7 +2,7 @@
 
 With another variable λ in the lead a dead point is an ordinary position. Kantorovich's theorem
 gives one solution x(λ) for every λ of a small interval, all of them in one box. The rates x'(λ)
-solve J x' = -F_λ; seen through A ≈ J⁻¹, with d the computed direction and e its error,
+solve J x' = -F_λ; multiplied by A ≈ J⁻¹, with d the computed direction and e its error,
 
     |e| ≤ |I - A J| |e| + |A J d| + |A J_k| |e_k|
 
@@ -30,7 +30,7 @@ __all__ = ["FoldProof", "prove_dead_point"]
 
 _ROOM = 4.0  # times the error of the rate: how far apart the ends of the interval are taken
 _LEAST = 16.0  # units of rounding of the leader
-_WIDENINGS = 12  # tries, each with an interval so many times as wide
+_WIDENINGS = 12  # tries, each with an interval this many times as wide
 _WIDER = 2.0
 
 

@@ -58,7 +58,7 @@ class Fold:
 _MOST_STEPS = 40
 _LONGEST = 0.5  # weighted: a step is shortened as a whole
 _STILL = 1e-13
-_FURTHER = 1e-6  # of the parameter's size: how far behind the fold a solution is looked for
+_FURTHER = 1e-6  # of the parameter's size: how far beyond the fold a solution is sought
 _CLOSED = 1e-10
 _SOLVED = 1e-13
 
@@ -121,7 +121,7 @@ def locate_fold(family: FoldFamily, x: Array, p: float) -> Fold | None:
     -------
     Fold or None
         ``None`` where the parameter does not help: it does not change the gap, or Newton-Raphson
-        on the fold ends nowhere, or on one at which solutions are lost instead of won.
+        on the fold does not converge, or ends at a fold beyond which solutions vanish.
 
     Notes
     -----

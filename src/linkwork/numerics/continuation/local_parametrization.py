@@ -78,7 +78,7 @@ class Parametrizations(Protocol):
         """The equations led by one variable; ``None`` if it does not determine the others."""
 
     def repeats_after(self, turns: Array) -> bool:
-        """Whether variables (N,) moved by so many whole turns satisfy the same equations."""
+        """Whether variables (N,) moved by this many whole turns satisfy the same equations."""
 
 
 def fastest_leader(
@@ -111,12 +111,12 @@ def whole_turns(leads: Parametrizations, a: Array, b: Array) -> Array:
 
 
 def coincide(leads: Parametrizations, a: Array, b: Array) -> bool:
-    """Whether two places that are known to rounding, such as limits, agree, whole turns aside."""
+    """Whether two places that are known to rounding, such as limits, agree, modulo whole turns."""
     return bool(np.abs(apart(leads, a, b) / leads.scale).max() < _COINCIDE)
 
 
 def same_position(leads: Parametrizations, a: Array, b: Array) -> bool:
-    """Whether two positions at one value of the parameter are one, whole turns aside.
+    """Whether two positions at one value of the parameter are one, modulo whole turns.
 
     Both are iterated down to rounding with the parameter in the lead. Then it is a matter of proof:
     one lies where only the other is. Where nothing is proved, they agree if they do to rounding.

@@ -2,8 +2,8 @@
 
 Where several loops can close in two ways at one input, the equations as a whole lose more than one
 rank, but each block only one: with its known variables given as a motion y(t), a block is a
-small system of its own, whose crossing is located as if it stood alone. Its motion on the chosen
-branch then drives the blocks behind it. So any number of crossings can lie at one input or next to
+small system of its own, whose crossing is located by itself. Its motion on the chosen
+branch then drives the later blocks. So any number of crossings can lie at one input or next to
 each other.
 """
 
@@ -36,7 +36,7 @@ _STEPS = 4  # in which a block that does not cross is followed
 _OFF = 1e-3  # weighted: how far such a step may end from its prediction
 _REGULAR = 3e6  # condition from which on branches are as good as crossing, as in tracks
 _BESIDE = 0.1  # of the way to the next kink: a crossing so near to a kink is taken together with it
-_DRIVEN = 2e-13  # relative: how well a crossing is located behind blocks that cross themselves
+_DRIVEN = 2e-13  # relative: how well a crossing is located if earlier blocks cross too
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

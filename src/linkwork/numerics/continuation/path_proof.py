@@ -27,7 +27,7 @@ __all__ = ["ProvenPath", "prove_path"]
 
 _ROUNDS = 45  # halvings of one step before it counts as not proved
 _MOST = 30_000  # positions solved in between for the proof of one path
-_MOST_EACH = 8  # and so many more for each of its own positions
+_MOST_EACH = 8  # and this many more for each of its own positions
 _PIECE = 1024  # positions proved together: arrays that fit the cache
 _LANES = 1024  # steps halved together
 

@@ -18,7 +18,7 @@ __all__ = ["divide_step", "node_between", "one_way", "share_at", "sign_change"]
 
 _STILL = 8.0 * EPSILON  # relative: a variable that moves less over a step rests, to rounding
 _DIVISIONS = 24  # halvings of a step in which a variable turns back several times
-_SAFE = 4.0  # the error of a cubic is at most so many times that halfway
+_SAFE = 4.0  # the error of a cubic is at most this many times that halfway
 _SEARCH = 80  # positions solved to find a sign change
 _EDGE = 1e-3  # of a bracket: nearer to its ends nothing is tried
 _SHARES = np.linspace(0.0, 1.0, 65)
@@ -112,7 +112,7 @@ def divide_step(
     """A step, divided so finely that a variable turns back at most once in each piece.
 
     The cubic through the variable's rates and their derivatives at both ends is compared with the
-    rate halfway. The step is halved until that cubic, give or take its error, is zero at most once;
+    rate halfway. The step is halved until that cubic, within its error, is zero at most once;
     reversals within the rounding of the rate are not seen.
     """
     h = b.t - a.t

@@ -41,7 +41,7 @@ __all__ = ["TurnAhead", "TurningPoint", "turn_beyond", "turning_points"]
 
 _MOST_STEPS = 400  # to a dead point ahead: it is near, unless it is none
 _RESTING = 1e-7  # weighted rate below which the parameter may not move at all,
-_LEVEL = 100.0  # nor does it if the rate's own rate is at most so many times that
+_LEVEL = 100.0  # nor does it if the derivative of that rate is at most this many times that
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -50,7 +50,7 @@ class TurningPoint:
 
     ``v`` (N,) the position; ``bracket`` of the parameter around it; ``direction`` (N,) how the
     variables move through it (weighted norm 1). ``proof``: that the parameter turns back there;
-    without it the place is not located. ``leg``, ``after``: behind which node of the curve it lies.
+    without it the place is not located. ``leg``, ``after``: the node of the curve before it.
     ``node``: the position as the leg's leader sees it.
     """
 

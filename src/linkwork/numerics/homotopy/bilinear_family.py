@@ -51,7 +51,7 @@ class Structure:
         return best
 
     def complete(self, found: int) -> bool:
-        """Whether so many solutions of a member are all, by a theorem."""
+        """Whether this many solutions of a member are all, by a theorem."""
         return found == self.bound(found).number
 
     def random(self, rng: np.random.Generator) -> BilinearSystem:

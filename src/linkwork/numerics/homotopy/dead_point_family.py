@@ -191,7 +191,7 @@ class DeadPointFamily:
         )
 
     def complete(self, found: int) -> bool:
-        """Whether so many solutions of a member are all, by Bézout's theorem."""
+        """Whether this many solutions of a member are all, by Bézout's theorem."""
         return found == most_dead_points(self.own, len(self.rows[0]))
 
     def random(self, rng: np.random.Generator) -> DeadPointSystem:

@@ -25,7 +25,7 @@ __all__ = ["Lead", "RealPoints", "keeps_complex_input", "real_motion"]
 Lead = Callable[[ComplexArray], tuple[ComplexArray, ComplexArray]]
 
 _FREE = 1e-7  # singular values this small, relative to the largest, are zero but for rounding
-_KEPT = 1e-6  # a slope of the input along a curve that is none
+_KEPT = 1e-6  # a slope of the input along a curve that counts as zero
 _COMPLEX = 1e-3  # a distance of the input from its mirror image that rounding does not explain
 _STEPS = 60  # towards a real position
 _CLOSED = 1e-11  # residual of a position, relative to its size squared

@@ -78,7 +78,7 @@ class RootFamily(Hashable, Protocol[S]):
     """Systems that differ in free coefficients only."""
 
     def complete(self, found: int) -> bool:
-        """Whether so many solutions of a member are all, by a theorem."""
+        """Whether this many solutions of a member are all, by a theorem."""
 
     def random(self, rng: np.random.Generator) -> S:
         """A member with random complex free coefficients."""
@@ -179,7 +179,7 @@ def _generic(family: RootFamily[S]) -> _Generic[S]:
             clean += not (ends.failed | ends.singular | _meeting(ends)).any()
             if (clean and len(x)) or clean == _LOOPS:
                 break
-        # closed paths say nothing where nothing is: all paths have to run to infinity twice
+        # without solutions closed paths prove nothing: all paths have to run to infinity twice
         nothing = not len(x) and clean == _LOOPS
         _KNOWN[family] = _close_paths(family, _Generic(system=system, x=x, sure=nothing), rng)
     return _KNOWN[family]

@@ -26,7 +26,7 @@ class MatroidPair:
         count = len(columns)
         ranks = column_ranks(columns)
         self.whole = len(ranks) - 1
-        #: The dimension of the null space, seen through every set of coordinates.
+        #: The dimension of the null space projected onto every set of coordinates.
         self.ranks = [s.bit_count() - ranks[-1] + ranks[self.whole ^ s] for s in range(len(ranks))]
         self._bits = [1 << k for k in range(count)]
         self._known: dict[tuple[int, int, int], int] = {}

@@ -70,7 +70,7 @@ class Radii:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Expansion:
-    """A system at B positions, seen through an approximate inverse A of its Jacobian.
+    """A system at B positions, multiplied by an approximate inverse A of its Jacobian.
 
     All data that a proof needs, whatever the uncertainty of the p known variables.
 
@@ -112,7 +112,7 @@ def expansion(
     Parameters
     ----------
     system : System
-        With n unknowns and p known variables behind; ``has_curvature_bound`` must hold.
+        With n unknowns followed by p known variables; ``has_curvature_bound`` must hold.
     v : (B, N)
     jacobian : (B, n, N)
         dF/dv at v.
