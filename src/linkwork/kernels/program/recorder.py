@@ -1,4 +1,4 @@
-"""Recording arithmetic: what is computed, before it is known by which interpreter or compiler."""
+"""Recording arithmetic, for any interpreter or compiler."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class Recorder:
         return Value(self, number)
 
     def input(self, name: str) -> Value:
-        """What a named register held before the program ran."""
+        """The value of a named register before the program ran."""
         return self._new(Op.INPUT, payload=name)
 
     def constant(self, value: float) -> Value:
@@ -103,7 +103,7 @@ class Recorder:
         return held if self.ops[x.number] is Op.CONSTANT and isinstance(held, float) else None
 
     def is_zero(self, x: Value | float) -> bool:
-        """Whether something is the constant 0."""
+        """Whether a number is the constant 0."""
         return self._number(x) == 0.0
 
     def _negated(self, x: Value) -> Value | None:

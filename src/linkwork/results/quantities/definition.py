@@ -86,6 +86,7 @@ class Vector:
         """The angle of the vector with its derivatives [rad]; NaN for a vector of length 0."""
         with np.errstate(divide="ignore", invalid="ignore"):
             rate = self.d1 / self.v
+            # the second derivative of log v; its imaginary part is that of the angle
             bend = self.d2 / self.v - rate**2
         angle = np.where(self.v == 0, np.nan, np.angle(self.v))
         return Jet(angle, rate.imag, bend.imag)
@@ -174,6 +175,7 @@ class MotionRows:
     def cycle(self) -> BoolArray:
         """Which motions come back after one turn of the input, at the last row, (…,)."""
         span = self.input[-1] - self.input[0]
+        # a turn in radians is no float, and rows come from degrees
         around = self.turn > 0.0 and abs(abs(span) - self.turn) <= _SAME * self.turn
         size = np.fmax.reduce(np.abs(self.value), axis=-1)
         same = np.abs(self.value[..., -1] - self.value[..., 0]) <= _SAME * size
@@ -200,6 +202,7 @@ def cubic(s: Array | float, ends: tuple[Array, Array], slopes: tuple[Array, Arra
 def folded(angle: Jet, period: float) -> Jet:
     """The size of an angle that is the same after a period: from 0 to half of it [rad]."""
     rest = angle.v - period * np.round(angle.v / period)
+    # where the angle is zero its size has a corner, and no derivative
     side = np.sign(rest)
     return Jet(np.abs(rest), side * angle.d1, side * angle.d2)
 
