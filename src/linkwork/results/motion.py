@@ -24,7 +24,7 @@ from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
 from linkwork.results.limit import Limit, LimitKind, OutputLimit
 from linkwork.results.quantities.definition import Vector
-from linkwork.results.quantities.registry import Asked, Group, Quantities
+from linkwork.results.quantities.registry import EVIDENCE, Asked, Group, Quantities
 from linkwork.results.quantity import Quantity, Rate, Units
 from linkwork.results.table import Table
 
@@ -172,15 +172,7 @@ class Motion:
     failure: Failure | None = None
 
     def __post_init__(self) -> None:
-        for field in (
-            "residual",
-            "iterations",
-            "condition",
-            "radius",
-            "unique_within",
-            "added",
-            "q",
-        ):
+        for field in (*EVIDENCE, "added", "q"):
             object.__setattr__(self, field, read_only(getattr(self, field)))
         inputs = {name: read_only(values) for name, values in self.inputs.items()}
         object.__setattr__(self, "inputs", FrozenDict(inputs))

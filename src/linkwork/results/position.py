@@ -17,7 +17,7 @@ from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
 from linkwork.results.quantities.definition import Vector
-from linkwork.results.quantities.registry import Group, Quantities
+from linkwork.results.quantities.registry import EVIDENCE, Group, Quantities
 from linkwork.results.quantity import Units
 from linkwork.results.summary import Summary, driven_text
 
@@ -263,8 +263,11 @@ class Position:
             "condition": _null(self.condition),
             "certificate": {
                 "certified": self.certificate.certified,
-                "radius": self.certificate.radius,
-                "unique_within": _null_or_none(self.certificate.unique_within),
+                **{
+                    name: _null_or_none(getattr(self.certificate, name))
+                    for name in EVIDENCE
+                    if hasattr(self.certificate, name)
+                },
                 "reason": self.certificate.certification.value,
                 **({"redundant": dict(self.redundant)} if self.redundant else {}),
             },

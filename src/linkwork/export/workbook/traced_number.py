@@ -38,7 +38,7 @@ __all__ = ["Trace", "TracedNumber"]
 
 Formula = Callable[..., "TracedNumber"]
 
-_SAME = 1e-15  # two ways to one number that are this near are the same
+_EQUAL_VALUES = 1e-15  # two formulas of one number may differ by this: a few roundings
 
 
 class Trace(Consensus):
@@ -111,7 +111,7 @@ class TracedNumber(Lanes):
         a, b = self._with(yes), self._with(no)
         taken, other = (a, b) if bool(cast(Truths, condition)) else (b, a)
         plain = taken.re.fixed and taken.im.fixed
-        same = abs(complex(taken.values[0]) - complex(other.values[0])) <= _SAME
+        same = abs(complex(taken.values[0]) - complex(other.values[0])) <= _EQUAL_VALUES
         return other if plain and same else taken
 
     def uniform_value(self) -> Any:

@@ -12,6 +12,7 @@ import numpy as np
 from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.mechanism.dyad import Dyad, dyads_of
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.quantity import Kind, Units
@@ -27,8 +28,6 @@ __all__ = [
     "cubic",
     "folded",
 ]
-
-_SAME = 1e-9  # relative: what differs by less is the same
 
 #: The derivative of a quantity whose derivative would need a third one of the positions.
 UNKNOWN = np.array(np.nan)
@@ -174,9 +173,9 @@ class MotionRows:
     def cycle(self) -> BoolArray:
         """Which motions come back after one turn of the input, at the last row, (…,)."""
         span = self.input[-1] - self.input[0]
-        around = self.turn > 0.0 and abs(abs(span) - self.turn) <= _SAME * self.turn
+        around = self.turn > 0.0 and abs(abs(span) - self.turn) <= EQUAL_ROWS * self.turn
         size = np.fmax.reduce(np.abs(self.value), axis=-1)
-        same = np.abs(self.value[..., -1] - self.value[..., 0]) <= _SAME * size
+        same = np.abs(self.value[..., -1] - self.value[..., 0]) <= EQUAL_ROWS * size
         found: BoolArray = around & same & np.isfinite(self.value).all(axis=-1)
         return found
 
@@ -184,7 +183,7 @@ class MotionRows:
     def moves(self) -> BoolArray:
         """Which motions change the quantity by more than rounding, (…,)."""
         high, low = (each.reduce(self.value, axis=-1) for each in (np.fmax, np.fmin))
-        found: BoolArray = high - low > _SAME * np.fmax(np.abs(high), np.abs(low))
+        found: BoolArray = high - low > EQUAL_ROWS * np.fmax(np.abs(high), np.abs(low))
         return found
 
 

@@ -21,7 +21,7 @@ from linkwork.foundation.angles import FULL_TURN
 from linkwork.results.quantities.definition import MechanismNames, RowQuantity, Solved, folded
 from linkwork.results.quantity import Kind
 
-__all__ = ["TRANSMISSION"]
+__all__ = ["TRANSMISSION", "TRANSMISSION_ANGLE"]
 
 
 def _pins(names: MechanismNames) -> Mapping[str, Kind]:
@@ -40,13 +40,12 @@ def _angle(names: MechanismNames, solved: Solved, pin: str) -> Jet:
     return folded(one - other, FULL_TURN)
 
 
-TRANSMISSION = (
-    RowQuantity(
-        word="transmission",
-        about="transmission angle at the pin, 0 to half a turn",
-        kind=Kind.ANGLE,
-        needs=0,
-        of=_pins,
-        evaluate=_angle,
-    ),
+TRANSMISSION_ANGLE = RowQuantity(
+    word="transmission",
+    about="transmission angle at the pin, 0 to half a turn",
+    kind=Kind.ANGLE,
+    needs=0,
+    of=_pins,
+    evaluate=_angle,
 )
+TRANSMISSION = (TRANSMISSION_ANGLE,)
