@@ -20,7 +20,8 @@ from linkwork.equations.from_loops import read_loops, read_plain_equations
 from linkwork.equations.model import LoopEquations, Term
 from linkwork.foundation.arrays import AnyArray, Array, IndexArray
 from linkwork.foundation.errors import LinkworkError
-from linkwork.foundation.lanes import Consensus, NotElementwise, is_batched
+from linkwork.foundation.lanes import LaneArithmetic, is_batched
+from linkwork.foundation.operand import NotElementwise
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
@@ -104,7 +105,7 @@ class Builder:
 
     def _pass(self, rows: IndexArray, *, first: bool) -> IndexArray:
         """Build the designs that go the leader's way; returns the others."""
-        consensus = Consensus(1 + len(rows), leader=0 if first else 1)
+        consensus = LaneArithmetic(1 + len(rows), leader=0 if first else 1)
         numbers = {
             quantity: consensus.lanes(
                 np.concatenate([[self._numbers_of_base[quantity]], values[rows]])
@@ -212,7 +213,7 @@ def family_base(model: Model, varied: Sequence[Quantity]) -> tuple[Model, bool]:
     spoken = sum(which.speed is not None for which in description.inputs)
     if model.equations.surplus is not None or spoken > 1:
         return model, False
-    consensus = Consensus(1, widest=True)
+    consensus = LaneArithmetic(1, widest=True)
     numbers = {q: consensus.lanes(np.array([q.of(description)])) for q in varied}
     try:
         with np.errstate(all="ignore"):

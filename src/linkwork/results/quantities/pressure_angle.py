@@ -30,7 +30,7 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["PRESSURE_ANGLE"]
 
-_QUARTER = Jet.constant(np.pi / 2)
+_QUARTER = np.pi / 2  # between a line and its normal
 
 
 def _followers(names: MechanismNames) -> dict[str, Follower]:

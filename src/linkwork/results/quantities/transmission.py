@@ -36,7 +36,7 @@ def _angle(names: MechanismNames, solved: Solved, pin: str) -> Jet:
         other = (solved.place(dyad.arms[1]) - place).direction()
     else:
         start, end = (solved.place(point) for point in dyad.guide.line)
-        other = (end - start).direction() + Jet.constant(np.pi / 2)
+        other = (end - start).direction() + np.pi / 2
     return folded(one - other, FULL_TURN)
 
 
