@@ -15,7 +15,7 @@ import numpy as np
 from linkwork.expression.grammar import CONSTANTS
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import AnyArray, Array
 from linkwork.foundation.operand import Arithmetic, Operand
 
 __all__ = ["Jet", "evaluate"]
@@ -71,12 +71,15 @@ _JETS = _JetArithmetic()
 
 @dataclass(frozen=True)
 class Jet(Operand):
-    """A value and its first two derivatives along a direction; arrays of equal shape (…,)."""
+    """A value and its first two derivatives along a direction; arrays of equal shape (…,).
+
+    Real, or x + iy of a point in the plane.
+    """
 
     arithmetic = _JETS
-    v: Array
-    d1: Array
-    d2: Array
+    v: AnyArray
+    d1: AnyArray
+    d2: AnyArray
 
     @classmethod
     def constant(cls, value: float) -> Jet:
@@ -86,6 +89,14 @@ class Jet(Operand):
     def chain(self, f: Array, f1: Array, f2: Array) -> Jet:
         """The jet of f(self), given f, f' and f'' at the value (Faà di Bruno to order two)."""
         return Jet(f, f1 * self.d1, f1 * self.d2 + f2 * self.d1**2)
+
+    def direction(self) -> Jet:
+        """The angle of a vector x + iy [rad]; NaN for one of length 0."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rate = self.d1 / self.v
+            bend = self.d2 / self.v - rate**2
+        angle = np.where(self.v == 0, np.nan, np.angle(self.v))
+        return Jet(angle, rate.imag, bend.imag)
 
 
 def _exp(x: Jet) -> Jet:

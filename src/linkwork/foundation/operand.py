@@ -84,36 +84,28 @@ class Operand:
     arithmetic: Arithmetic[Self]
 
     def __add__(self, other: object) -> Self:
-        own = self.arithmetic
-        return own.add(self, own.operand(other))
+        return self.arithmetic.add(self, self.arithmetic.operand(other))
 
     def __sub__(self, other: object) -> Self:
-        own = self.arithmetic
-        return own.subtract(self, own.operand(other))
+        return self.arithmetic.subtract(self, self.arithmetic.operand(other))
 
     def __rsub__(self, other: object) -> Self:
-        own = self.arithmetic
-        return own.subtract(own.operand(other), self)
+        return self.arithmetic.subtract(self.arithmetic.operand(other), self)
 
     def __mul__(self, other: object) -> Self:
-        own = self.arithmetic
-        return own.multiply(self, own.operand(other))
+        return self.arithmetic.multiply(self, self.arithmetic.operand(other))
 
     def __truediv__(self, other: object) -> Self:
-        own = self.arithmetic
-        return own.divide(self, own.operand(other))
+        return self.arithmetic.divide(self, self.arithmetic.operand(other))
 
     def __rtruediv__(self, other: object) -> Self:
-        own = self.arithmetic
-        return own.divide(own.operand(other), self)
+        return self.arithmetic.divide(self.arithmetic.operand(other), self)
 
     def __pow__(self, other: object) -> Self:
-        own = self.arithmetic
-        return own.power(self, own.operand(other))
+        return self.arithmetic.power(self, self.arithmetic.operand(other))
 
     def __rpow__(self, other: object) -> Self:
-        own = self.arithmetic
-        return own.power(own.operand(other), self)
+        return self.arithmetic.power(self.arithmetic.operand(other), self)
 
     def __neg__(self) -> Self:
         return self.arithmetic.negate(self)

@@ -13,7 +13,6 @@ from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.names import canonical
 from linkwork.motion.model import Model
-from linkwork.results.quantities.definition import Vector
 from linkwork.results.quantities.index import row_quantity
 from linkwork.results.quantities.registry import Group
 from linkwork.results.quantity import Kind
@@ -49,7 +48,7 @@ class QuantityValues(ABC):
         """A variable by its symbol, internal units."""
 
     @abstractmethod
-    def place(self, point: str) -> Vector:
+    def place(self, point: str) -> Jet:
         """A point by its exact name."""
 
     def own(self, name: str) -> Jet:

@@ -23,7 +23,6 @@ from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
 from linkwork.results.limit import Limit, LimitKind, OutputLimit
-from linkwork.results.quantities.definition import Vector
 from linkwork.results.quantities.registry import EVIDENCE, Asked, Group, Quantities
 from linkwork.results.quantity import Quantity, Rate, Units
 from linkwork.results.table import Table
@@ -253,10 +252,10 @@ class Motion:
         series = self.series(name)
         return Jet(series.value, series.first, series.second)
 
-    def place(self, point: str) -> Vector:
+    def place(self, point: str) -> Jet:
         """A point with both derivatives by its exact name."""
         x, y = self.points[point]
-        return Vector(x.value + 1j * y.value, x.first + 1j * y.first, x.second + 1j * y.second)
+        return Jet(x.value + 1j * y.value, x.first + 1j * y.first, x.second + 1j * y.second)
 
     @cached_property
     def found(self) -> BoolArray:

@@ -35,7 +35,7 @@ class _FormArithmetic(Arithmetic["LinearForm"]):
 
     def negate(self, x: LinearForm) -> LinearForm:
         """-x."""
-        return x * -1.0
+        return _weigh(x, -1.0)
 
     def multiply(self, x: LinearForm, y: LinearForm) -> LinearForm:
         """x y."""
@@ -45,12 +45,12 @@ class _FormArithmetic(Arithmetic["LinearForm"]):
             return _weigh(y, x.constant)
         (left, one), (right, other) = _factored(x), _factored(y)
         node = Binary("^", left, Number(2.0)) if left == right else Binary("*", left, right)
-        return LinearForm.of(node) * (one * other)
+        return _weigh(LinearForm.of(node), one * other)
 
     def divide(self, x: LinearForm, y: LinearForm) -> LinearForm:
         """x / y."""
         if y.fixed:
-            return x * (1.0 / y.constant)
+            return _weigh(x, 1.0 / y.constant)
         if x.zero:
             return x
         below, weight = _factored(y)
@@ -58,11 +58,11 @@ class _FormArithmetic(Arithmetic["LinearForm"]):
         if not x.constant and None not in reduced:
             parts = zip(reduced, x.terms, strict=True)
             return sum(
-                (form * (own / weight) for form, (_, own) in parts if form is not None),
+                (_weigh(form, own / weight) for form, (_, own) in parts if form is not None),
                 LinearForm(),
             )
         above, own = _factored(x)
-        return LinearForm.of(Binary("/", above, below)) * (own / weight)
+        return _weigh(LinearForm.of(Binary("/", above, below)), own / weight)
 
 
 @dataclass(frozen=True)

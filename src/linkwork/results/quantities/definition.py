@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.expression.jets import Jet
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.mechanism.dyad import Dyad, dyads_of
@@ -24,7 +24,6 @@ __all__ = [
     "MotionRows",
     "RowQuantity",
     "Solved",
-    "Vector",
     "cubic",
     "folded",
 ]
@@ -70,26 +69,6 @@ class MechanismNames:
         return dyads_of(self.skeleton)
 
 
-@dataclass(frozen=True)
-class Vector:
-    """A vector x + iy in the plane with its derivatives by the leading input, shape S each."""
-
-    v: ComplexArray
-    d1: ComplexArray
-    d2: ComplexArray
-
-    def __sub__(self, other: Vector) -> Vector:
-        return Vector(self.v - other.v, self.d1 - other.d1, self.d2 - other.d2)
-
-    def direction(self) -> Jet:
-        """The angle of the vector with its derivatives [rad]; NaN for a vector of length 0."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            rate = self.d1 / self.v
-            bend = self.d2 / self.v - rate**2
-        angle = np.where(self.v == 0, np.nan, np.angle(self.v))
-        return Jet(angle, rate.imag, bend.imag)
-
-
 class Solved(Protocol):
     """Solved positions as arrays of one shape S: one position, the rows of a motion, of a family.
 
@@ -99,8 +78,8 @@ class Solved(Protocol):
     def own(self, name: str) -> Jet:
         """A quantity of the mechanism's own by its exact name; values in the file's units."""
 
-    def place(self, point: str) -> Vector:
-        """A point by its exact name."""
+    def place(self, point: str) -> Jet:
+        """A point by its exact name, as x + iy."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -23,7 +23,6 @@ from linkwork.results.quantities.definition import (
     MechanismNames,
     RowQuantity,
     Solved,
-    Vector,
     folded,
 )
 from linkwork.results.quantity import Kind
@@ -70,7 +69,7 @@ def _line(names: MechanismNames, solved: Solved, guide: str) -> Jet:
     return (end - start).direction()
 
 
-def _sliding(names: MechanismNames, solved: Solved, follower: Follower) -> Vector:
+def _sliding(names: MechanismNames, solved: Solved, follower: Follower) -> Jet:
     """The velocity of the follower's point against the cam, by the input."""
     outlines = names.skeleton.of(CamOutline)
     cam = next(outline for outline in outlines if outline.name == follower.name)
@@ -78,7 +77,7 @@ def _sliding(names: MechanismNames, solved: Solved, follower: Follower) -> Vecto
     arm = solved.place(follower.point) - solved.place(cam.center)
     rate = arm.d1 - 1j * turning.d1 * arm.v
     bend = arm.d2 - 1j * (turning.d2 * arm.v + turning.d1 * arm.d1)
-    return Vector(rate, bend, UNKNOWN.astype(complex))
+    return Jet(rate, bend, UNKNOWN)
 
 
 PRESSURE_ANGLE = (
