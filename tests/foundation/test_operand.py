@@ -37,7 +37,10 @@ def _meaning(x: Any) -> object:
     recording = getattr(x, "arithmetic", None)
     if isinstance(recording, Recorder):
         return [recording.ops, recording.arguments, recording.payload, x.number]
-    own = [getattr(x, part, None) for part in ("values", "re", "im", "v", "d1", "d2", "terms")]
+    names = ("values", "re", "im", "v", "d1", "d2", "terms", "constant")
+    own = [
+        getattr(x, name) for name in names if hasattr(x, name) and not callable(getattr(x, name))
+    ]
     return [part.tolist() if isinstance(part, np.ndarray) else part for part in own]
 
 
