@@ -37,10 +37,9 @@ def _meaning(x: Any) -> object:
     recording = getattr(x, "arithmetic", None)
     if isinstance(recording, Recorder):
         return [recording.ops, recording.arguments, recording.payload, x.number]
-    names = ("values", "re", "im", "v", "d1", "d2", "terms", "constant")
-    own = [
-        getattr(x, name) for name in names if hasattr(x, name) and not callable(getattr(x, name))
-    ]
+    if isinstance(x, LinearForm):
+        return x.terms, x.constant
+    own = [getattr(x, part, None) for part in ("values", "re", "im", "v", "d1", "d2")]
     return [part.tolist() if isinstance(part, np.ndarray) else part for part in own]
 
 
