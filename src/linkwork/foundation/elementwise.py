@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -43,26 +43,25 @@ __all__ = [
 ]
 
 _Number = TypeVar("_Number", float, complex)
-
-
-def _real(number: Lanes) -> float:
-    return cast(float, number)
-
-
-def _complex(number: Lanes) -> complex:
-    return cast(complex, number)
+_Function = Callable[..., Any]
 
 
 def _first_of_many(numbers: Iterable[object]) -> Lanes | None:
-    return next((number for number in numbers if isinstance(number, Lanes)), None)
+    for number in numbers:
+        if isinstance(number, Lanes):
+            return number
+    return None
+
+
+def _apply(of_arrays: _Function, of_numbers: _Function, *numbers: complex) -> Any:
+    """A function of arrays where a number is one of many designs, else one of plain numbers."""
+    lanes = _first_of_many(numbers)
+    return of_numbers(*numbers) if lanes is None else lanes.apply(of_arrays, *numbers)
 
 
 def vector(x: float, y: float) -> complex:
     """x + iy."""
-    lanes = _first_of_many((x, y))
-    if lanes is None:
-        return complex(x, y)
-    return _complex(lanes.apply(with_parts, x, y))
+    return cast(complex, _apply(with_parts, complex, x, y))
 
 
 def with_parts(x: Array, y: Array) -> ComplexArray:
@@ -74,15 +73,13 @@ def with_parts(x: Array, y: Array) -> ComplexArray:
 
 def phase(z: complex) -> float:
     """The direction of a vector, in (-π, π]."""
-    if is_batched(z):
-        return _real(z.apply(np.angle, z))
-    return cmath.phase(z)
+    return cast(float, _apply(np.angle, cmath.phase, z))
 
 
 def cis(angle: float) -> complex:
     """e^(i angle)."""
     if is_batched(angle):
-        return vector(_real(angle.apply(np.cos, angle)), _real(angle.apply(np.sin, angle)))
+        return vector(_apply(np.cos, math.cos, angle), _apply(np.sin, math.sin, angle))
     return cmath.exp(1j * angle)
 
 
@@ -93,7 +90,7 @@ def exponential(z: complex) -> complex:
     found = z.apply(np.exp, z)
     if (wrong := ~np.isfinite(found.values)).any() and z.arithmetic.decide(wrong):
         raise OverflowError
-    return _complex(found)
+    return cast(complex, found)
 
 
 def rect(length: float, angle: float) -> complex:
@@ -105,29 +102,22 @@ def rect(length: float, angle: float) -> complex:
 
 def sqrt(x: float) -> float:
     """The square root; NaN in lanes where it is not real."""
-    return _real(x.apply(np.sqrt, x)) if is_batched(x) else math.sqrt(x)
+    return cast(float, _apply(np.sqrt, math.sqrt, x))
 
 
 def hypot(x: float, y: float) -> float:
     """√(x² + y²)."""
-    lanes = _first_of_many((x, y))
-    if lanes is None:
-        return math.hypot(x, y)
-    return _real(lanes.apply(np.hypot, x, y))
+    return cast(float, _apply(np.hypot, math.hypot, x, y))
 
 
 def copysign(size: float, sign: float) -> float:
     """A plain size with the sign of a number."""
-    if is_batched(sign):
-        return _real(sign.apply(np.copysign, size, sign))
-    return math.copysign(size, sign)
+    return cast(float, _apply(np.copysign, math.copysign, size, sign))
 
 
 def remainder(x: float, period: float) -> float:
     """x less whole periods, at most half a period in size; exact."""
-    if not is_batched(x):
-        return math.remainder(x, period)
-    return _real(x.apply(remainders, x, period))
+    return cast(float, _apply(remainders, math.remainder, x, period))
 
 
 def remainders(x: Array, period: float) -> Array:
@@ -140,9 +130,7 @@ def remainders(x: Array, period: float) -> Array:
 
 def degrees(angle: float) -> float:
     """Radians in degrees."""
-    if is_batched(angle):
-        return _real(angle * (180.0 / math.pi))
-    return math.degrees(angle)
+    return cast(float, angle * (180.0 / math.pi)) if is_batched(angle) else math.degrees(angle)
 
 
 def finite(x: float) -> bool:
@@ -212,9 +200,7 @@ def display_value(x: complex) -> complex:
 
 def as_float(x: float) -> float:
     """A float of any plain number; lanes as they are."""
-    if is_batched(x):
-        return _real(x)
-    return float(x)
+    return cast(float, x) if is_batched(x) else float(x)
 
 
 def leader_value(x: float) -> float:

@@ -15,7 +15,6 @@ number (``float``, ``math``, arrays) gets a :class:`NotElementwise` from lanes.
 from __future__ import annotations
 
 from collections.abc import Callable
-from operator import attrgetter, methodcaller
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, cast
 
 import numpy as np
@@ -26,25 +25,9 @@ from linkwork.foundation.operand import Arithmetic, NotElementwise, Operand
 if TYPE_CHECKING:
     from typing import TypeGuard
 
-__all__ = [
-    "Consensus",
-    "LaneArithmetic",
-    "Lanes",
-    "Rest",
-    "Truths",
-    "conjugate_of",
-    "imaginary_part",
-    "is_batched",
-    "real_part",
-    "rest_of",
-]
+__all__ = ["Consensus", "LaneArithmetic", "Lanes", "Rest", "Truths", "is_batched", "rest_of"]
 
 _Number = TypeVar("_Number", float, complex)
-
-# Of arrays, faster than the functions of NumPy, which take anything.
-conjugate_of = methodcaller("conjugate")
-real_part = attrgetter("real")
-imaginary_part = attrgetter("imag")
 
 
 class Consensus(Arithmetic[Any]):
@@ -150,17 +133,17 @@ class Lanes(Operand):
 
     def conjugate(self) -> Lanes:
         """The complex conjugate."""
-        return self.arithmetic.apply(conjugate_of, self)
+        return self.arithmetic.apply(np.conjugate, self)
 
     @property
     def real(self) -> Lanes:
         """The real part."""
-        return self.arithmetic.apply(real_part, self)
+        return self.arithmetic.apply(np.real, self)
 
     @property
     def imag(self) -> Lanes:
         """The imaginary part."""
-        return self.arithmetic.apply(imaginary_part, self)
+        return self.arithmetic.apply(np.imag, self)
 
     # Questions
 

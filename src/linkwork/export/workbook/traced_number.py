@@ -19,14 +19,7 @@ from linkwork.expression.tree import Binary, Call, Node, Number
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.elementwise import remainders, with_parts
-from linkwork.foundation.lanes import (
-    Consensus,
-    Lanes,
-    Truths,
-    conjugate_of,
-    imaginary_part,
-    real_part,
-)
+from linkwork.foundation.lanes import Consensus, Lanes, Truths
 from linkwork.foundation.operand import NotElementwise
 
 __all__ = ["Trace", "TracedNumber"]
@@ -235,7 +228,7 @@ def _called(name: str) -> Formula:
 _FORMULAS: dict[Callable[..., Any], Formula] = {
     np.angle: _angle, np.cos: _cosine, np.sin: _sine, np.tan: _tangent, with_parts: _vector,
     np.sqrt: _root, np.copysign: _signed, np.rint: _signed, remainders: _reduced, np.abs: _size,
-    conjugate_of: _conjugate, real_part: _real, imaginary_part: _imaginary,
+    np.conjugate: _conjugate, np.real: _real, np.imag: _imaginary,
     np.hypot: _called("hypot"), np.exp: _called("exp"), np.fmax: _called("max"),
     np.fmin: _called("min"), most: _called("max"), least: _called("min"),
     **{FUNCTIONS[name]: _called(name) for name in ("ln", "log10", "asin", "acos", "atan", "atan2")},
