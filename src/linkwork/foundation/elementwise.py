@@ -53,7 +53,7 @@ def _first_of_many(numbers: Iterable[object]) -> Lanes | None:
     return None
 
 
-def _apply(of_arrays: _Function, of_numbers: _Function, *numbers: complex) -> Any:
+def _apply(of_arrays: _Function, of_numbers: _Function, *numbers: object) -> Any:
     """A function of arrays where a number is one of many designs, else one of plain numbers."""
     lanes = _first_of_many(numbers)
     return of_numbers(*numbers) if lanes is None else lanes.apply(of_arrays, *numbers)
