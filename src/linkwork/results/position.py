@@ -16,7 +16,8 @@ from linkwork.foundation.presenting import presenter
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
-from linkwork.results.quantities.registry import EVIDENCE, Group, Quantities
+from linkwork.results.quantities.asked import Group
+from linkwork.results.quantities.registry import EVIDENCE, Quantities
 from linkwork.results.quantity import Units
 from linkwork.results.summary import Summary, driven_text
 
