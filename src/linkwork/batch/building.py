@@ -20,7 +20,8 @@ from linkwork.equations.from_loops import read_loops, read_plain_equations
 from linkwork.equations.model import LoopEquations, Term
 from linkwork.foundation.arrays import AnyArray, Array, IndexArray
 from linkwork.foundation.errors import LinkworkError
-from linkwork.foundation.lanes import Consensus, NotElementwise, is_batched
+from linkwork.foundation.lanes import LaneArithmetic, is_batched
+from linkwork.foundation.operand import NotElementwise
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
@@ -105,7 +106,7 @@ class Builder:
     def _pass(self, rows: IndexArray, *, first: bool) -> IndexArray:
         """Build the designs that go the leader's way; returns the others."""
         # the mechanism itself in lane 0; later passes follow a design that did not agree with it
-        consensus = Consensus(1 + len(rows), leader=0 if first else 1)
+        consensus = LaneArithmetic(1 + len(rows), leader=0 if first else 1)
         numbers = {
             quantity: consensus.lanes(
                 np.concatenate([[self._numbers_of_base[quantity]], values[rows]])
@@ -215,7 +216,7 @@ def family_base(model: Model, varied: Sequence[Quantity]) -> tuple[Model, bool]:
     # released links and contradicting speeds depend on numbers, and are decided design by design
     if model.equations.surplus is not None or spoken > 1:
         return model, False
-    consensus = Consensus(1, widest=True)
+    consensus = LaneArithmetic(1, widest=True)
     numbers = {q: consensus.lanes(np.array([q.of(description)])) for q in varied}
     try:
         with np.errstate(all="ignore"):

@@ -12,7 +12,8 @@ from linkwork.batch.designs import Designs
 from linkwork.batch.rows import DesignRows
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError, LinkworkError
-from linkwork.foundation.lanes import Consensus, NotElementwise, is_batched
+from linkwork.foundation.lanes import LaneArithmetic, is_batched
+from linkwork.foundation.operand import NotElementwise
 from linkwork.foundation.status import Status
 from linkwork.kernels.march.closure import BlockPart
 from linkwork.kernels.march.position_programs import at_places
@@ -164,7 +165,7 @@ def _speed_of(designs: Designs, description: Description) -> float:
 
 def _speeds_together(designs: Designs, fine: IndexArray, found: Array) -> BoolArray:
     """Fill in the speeds of sound designs; which of them are left to be asked one by one."""
-    consensus = Consensus(len(fine))
+    consensus = LaneArithmetic(len(fine))
     columns = zip(designs.quantities, designs.dimensions.values(), strict=True)
     numbers = {quantity: consensus.lanes(values[fine]) for quantity, values in columns}
     try:

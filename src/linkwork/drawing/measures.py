@@ -8,7 +8,11 @@ from dataclasses import dataclass
 
 from linkwork.drawing.box import Box
 
-__all__ = ["Measures"]
+__all__ = ["COINCIDENT", "Measures"]
+
+#: Relative to the size of a drawing, or to its longest vector: places as near as this are one.
+#: Rounding moves solved places far less, and a reader sees no difference below 1e-4.
+COINCIDENT = 1e-6
 
 _PIN_OF_SIZE = 0.0115  # pin radius over drawn size: 10 points of diameter on a six-inch figure
 _SMALLEST_OF_SIZE = 0.0055  # below this a pin is no longer seen as a circle

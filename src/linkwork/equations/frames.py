@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from linkwork.equations.model import LinkAngle, Redundant, Term
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, Node
-from linkwork.foundation.lanes import (
+from linkwork.foundation.elementwise import (
     choose,
     cis,
     copysign,

@@ -21,8 +21,8 @@ from linkwork.equations.part.index import rows_of_parts
 from linkwork.equations.redundancy import Bar, released_links
 from linkwork.equations.structure import Node, Structure, StructureBlock
 from linkwork.expression.tree import Name
+from linkwork.foundation.elementwise import cis, hypot, largest, phase, row_of, smallest
 from linkwork.foundation.errors import MechanismError, Problem
-from linkwork.foundation.lanes import cis, hypot, largest, phase, row_of, smallest
 from linkwork.foundation.names import GROUND, canonical, pretty
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.driven_input import Input

@@ -17,8 +17,8 @@ from linkwork.equations.outputs import read_outputs
 from linkwork.equations.phasors import Monomial, PhasorReader
 from linkwork.expression.grammar import CONSTANTS, parse, parse_equation
 from linkwork.expression.tree import Binary, Name, Negative, Node, names_in
+from linkwork.foundation.elementwise import display_value, is_structurally_nonzero, largest, row_of
 from linkwork.foundation.errors import ExpressionError, choices
-from linkwork.foundation.lanes import display_value, is_structurally_nonzero, largest, row_of
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.loops import Loops, PlainEquations

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from linkwork.equations.frames import Frames, Place
 from linkwork.equations.model import LawEquation, LinearEquation, LoopEquation
 from linkwork.foundation.arrays import ComplexArray
-from linkwork.foundation.lanes import copysign, largest, uniform_value
+from linkwork.foundation.elementwise import copysign, largest, uniform_value
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Key, Problems
 

@@ -15,7 +15,7 @@ from math import comb
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.foundation.rounding import EXTENDED_EPSILON, UNIT_ROUNDOFF
 
 __all__ = ["Piecewise"]
 
@@ -133,7 +133,7 @@ class Piecewise:
         than 2 Σ|D| + Σ|J|/P and whose second derivative is Σ D/P, leaves none (P: all pieces).
         """
         exact = np.longdouble
-        unit = float(np.finfo(exact).eps)
+        unit = EXTENDED_EPSILON
         c, (a, w, p) = self.powers.astype(exact), self.sines.T.astype(exact)
         t = np.diff(self.breaks.astype(exact))
         degrees = np.arange(c.shape[1])

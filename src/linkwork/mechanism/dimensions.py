@@ -10,8 +10,9 @@ from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.tree import Name, names_in
 from linkwork.expression.values import value
 from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.elementwise import finite
 from linkwork.foundation.errors import ExpressionError, choices
-from linkwork.foundation.lanes import finite, is_batched
+from linkwork.foundation.lanes import is_batched
 from linkwork.foundation.names import canonical
 from linkwork.foundation.plain_numbers import as_told, plain_number
 

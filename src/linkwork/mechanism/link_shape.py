@@ -8,8 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from linkwork.foundation.lanes import (
-    Rest,
+from linkwork.foundation.elementwise import (
     choose,
     cis,
     degrees,
@@ -17,10 +16,10 @@ from linkwork.foundation.lanes import (
     largest,
     phase,
     rect,
-    rest_of,
     sqrt,
     vector,
 )
+from linkwork.foundation.lanes import Rest, rest_of
 from linkwork.mechanism.least_norm import full_rank, least_norm
 
 __all__ = ["Distance", "LinkShape", "ShapeError", "VertexAngle", "place"]

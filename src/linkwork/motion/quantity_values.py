@@ -15,7 +15,6 @@ from linkwork.foundation.names import canonical
 from linkwork.motion.model import Model
 from linkwork.results import quantities
 from linkwork.results.quantities.asked import Group
-from linkwork.results.quantities.definition import Vector
 from linkwork.results.quantity import Kind
 
 __all__ = ["QuantityValues"]
@@ -49,7 +48,7 @@ class QuantityValues(ABC):
         """A variable by its symbol, internal units."""
 
     @abstractmethod
-    def place(self, point: str) -> Vector:
+    def place(self, point: str) -> Jet:
         """A point by its exact name."""
 
     def own(self, name: str) -> Jet:

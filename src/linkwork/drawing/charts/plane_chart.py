@@ -24,7 +24,7 @@ __all__ = ["hodograph_chart", "path_chart"]
 
 _NO_AXIS = Axis(label="")
 _APART = 0.09  # of the larger side: the least distance of two stations' texts
-_SAME = 1e-3  # of the larger side: stations nearer than this are one
+_HIDDEN = 1e-3  # of the larger side: a dot as near as this to another one hides it
 _STATIONS = 8  # along an input that is no angle, about
 _USUAL = 80  # percent of the values, which the others are compared with
 _BEYOND, _SHOWN = 4.0, 2.0  # times these: what runs to infinity, and what of it is shown
@@ -210,7 +210,7 @@ class _Room:
         dots: list[complex] = []
         for k, text in _stations(motion):
             here = complex(path[k])
-            if not self.shows(here) or any(abs(here - d) < _SAME * self.size for d in dots):
+            if not self.shows(here) or any(abs(here - d) < _HIDDEN * self.size for d in dots):
                 continue
             dots.append(here)
             away = _outwards(path, k, middle)

@@ -16,7 +16,7 @@ from linkwork.expression.grammar import parse
 from linkwork.expression.jets import Jet, evaluate
 from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.lanes import leader_value, uniform_value
+from linkwork.foundation.elementwise import leader_value, uniform_value
 from linkwork.foundation.names import canonical
 from linkwork.foundation.rounding import EPSILON
 from linkwork.kernels.piecewise import Piecewise
@@ -110,7 +110,7 @@ def _law(gear: NoncircularGear, linkage: Bodies) -> tuple[Fraction, Piecewise]:
     # points of a curve close only nearly: the rest is spread over the turn
     ratio = _ratio(over, "pitch_curve", _NEARLY)
     # the curve was closed nearly; the law has to be exact
-    jet = jet * Jet.constant(float(ratio) * math.tau / over)
+    jet = jet * (float(ratio) * math.tau / over)
     return ratio, _through(phi, jet, float(ratio))
 
 

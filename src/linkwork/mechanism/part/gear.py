@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
+from linkwork.foundation.elementwise import largest
 from linkwork.foundation.file_keys import Flag, Key, Text
-from linkwork.foundation.lanes import largest
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.figures import Figure, Mesh, Outlines
 from linkwork.mechanism.joint import JointKind

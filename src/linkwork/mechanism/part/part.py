@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
+from linkwork.foundation.elementwise import vector
 from linkwork.foundation.errors import choices
 from linkwork.foundation.file_keys import Key as FileKey, ListOf, Number as NumberKey, Text
-from linkwork.foundation.lanes import vector
 from linkwork.foundation.names import free_name
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.description import Key, Problems

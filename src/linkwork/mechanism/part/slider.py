@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Self
 
+from linkwork.foundation.elementwise import choose, phase
 from linkwork.foundation.file_keys import Key, ListOf, Number as NumberKey, Text
-from linkwork.foundation.lanes import choose, phase
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
+from linkwork.foundation.elementwise import largest
 from linkwork.foundation.file_keys import Key, ListOf, Number as NumberKey, Text
-from linkwork.foundation.lanes import largest
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Disc

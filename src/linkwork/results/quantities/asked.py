@@ -160,7 +160,7 @@ class AskedOfMotion:
         """What it follows, with both derivatives by the leading input, in the file's units."""
         if self.quantity.of_point:
             place = solved.place(self.of.name)
-            return place.v, place.d1, place.d2  # type: ignore[return-value]  # complex
+            return place.v, place.d1, place.d2
         jet, scale = self.of.jet(solved), self.names.units.scale(self.of.own.kind)
         return jet.v, jet.d1 / scale, jet.d2 / scale
 
