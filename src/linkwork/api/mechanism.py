@@ -64,14 +64,13 @@ class Mechanism(SolvableMechanism):
         at : number or Mapping[str, number], optional
             Input value(s) in file units, as in :meth:`solve`.
         configuration : str, optional
-            The configuration or branch to draw, as in :meth:`solve`; the cycle is the one through
-            it.
+            The configuration or branch to draw, as in :meth:`solve`; also selects the cycle.
         vectors : bool
             Whether to draw the loop equations as vectors.
         traces : sequence of str, optional
             The points whose paths are drawn; by default those of the file's ``[trace]``.
         options : SceneOptions, optional
-            What else to draw; see :class:`linkwork.drawing.SceneOptions`.
+            Further contents; see :class:`linkwork.drawing.SceneOptions`.
         progress : callable, optional
             Called with the finished fraction of the cycle, 0 to 1.
 
@@ -236,7 +235,7 @@ class Mechanism(SolvableMechanism):
         all_circuits: bool,
         progress: Callable[[float], None] | None = None,
     ) -> dict[str, Motion]:
-        """The motions that are shown, by name."""
+        """The displayed motions, by name."""
         if all_circuits:
             return self.cycles(progress=progress)
         return {"motion": self.cycle() if motion is None else motion}
