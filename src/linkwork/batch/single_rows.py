@@ -1,4 +1,4 @@
-"""Rows and limits of a design that was swept alone."""
+"""Rows and limits of a design swept alone."""
 
 from __future__ import annotations
 
@@ -17,8 +17,9 @@ __all__ = ["SingleRows", "ends_as_limits"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SingleRows:
-    """Derivatives of the unknowns by the leading input, (n, R) each; ``driven`` (2, R): whether the
-    inputs have both (not at a dead point); ``condition``, ``residual`` (R,).
+    """Derivatives of the unknowns with respect to the leading input, (n, R) each; ``driven`` (2,
+    R): whether the inputs have both derivatives (not at a dead point); ``condition``, ``residual``
+    (R,).
     """
 
     first: Array
@@ -29,7 +30,7 @@ class SingleRows:
 
     @classmethod
     def of(cls, rows: SolvedRows, unknowns: int) -> SingleRows:
-        """What solved rows hold."""
+        """The fields of solved rows."""
         return cls(
             first=rows.first[:, :unknowns].T.copy(),
             second=rows.second[:, :unknowns].T.copy(),
@@ -40,9 +41,9 @@ class SingleRows:
 
 
 def ends_as_limits(ends: Iterable[BranchEnd]) -> tuple[Array, StatusArray]:
-    """Where a branch ends below and above, values of the path (2,), and the kinds as codes (2,).
+    """Lower and upper end of a branch as path parameters (2,), and their kinds as codes (2,).
 
-    Infinite where nothing ended it, NaN where the place was not located.
+    Infinite without an end, NaN if the end was not located.
     """
     limits, kinds = np.array([-np.inf, np.inf]), np.zeros(2, dtype=np.int8)
     for end in ends:

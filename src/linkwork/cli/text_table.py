@@ -71,7 +71,7 @@ def table_lines(columns: Sequence[Column], width: int = WIDTH) -> list[str]:
 
 
 def fixed(value: float, decimals: int = _ANGLE_DECIMALS) -> str:
-    """A number with so many decimals, without a negative zero."""
+    """A number with the given decimals, without a negative zero."""
     if not math.isfinite(value):
         return _NOTHING
     text = f"{value:.{decimals}f}"
@@ -79,7 +79,7 @@ def fixed(value: float, decimals: int = _ANGLE_DECIMALS) -> str:
 
 
 def lengths(values: Iterable[float]) -> list[str]:
-    """Lengths with common decimals: so many that the largest shows six significant digits."""
+    """Lengths with common decimals; the largest has six significant digits."""
     numbers = list(values)
     largest = max((abs(v) for v in numbers if math.isfinite(v)), default=0.0)
     if largest and not 1e-6 <= largest < 1e9:
@@ -89,7 +89,7 @@ def lengths(values: Iterable[float]) -> list[str]:
 
 
 def significant(value: float, digits: int = 6, noise: float = 0.0) -> str:
-    """A number with so many significant digits; 0 where it is at most ``noise``."""
+    """A number with the given significant digits; 0 if it is at most ``noise``."""
     if not math.isfinite(value):
         return _NOTHING
     if abs(value) <= noise:
