@@ -1,4 +1,4 @@
-"""The sizes of symbols: fractions of the drawn size, smaller where pins stand close together."""
+"""The sizes of symbols: fractions of the drawn size, reduced if pins are close together."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from linkwork.drawing.box import Box
 
 __all__ = ["Measures"]
 
-_PIN_OF_SIZE = 0.0115  # pin radius over drawn size: 10 points of diameter on a six-inch figure
-_SMALLEST_OF_SIZE = 0.0055  # below this a pin is no longer seen as a circle
-_PIN_OF_GAP = 0.22  # pin radius over the distance of its nearest neighbour
+_PIN_OF_SIZE = 0.0115  # pin radius over drawn size: a diameter of 10 points in a six-inch figure
+_SMALLEST_OF_SIZE = 0.0055  # minimum for a visible circle
+_PIN_OF_GAP = 0.22  # pin radius over the distance to its nearest neighbour
 
 
 @dataclass(frozen=True, kw_only=True)
 class Measures:
-    """Lengths of a drawing, all in the mechanism's length unit.
+    """Lengths of a drawing in the mechanism's length unit.
 
     Parameters
     ----------
     size : float
-        The larger side of what is drawn.
+        The larger side of the drawing.
     pin : float
-        The radius of a pin; every other symbol is a multiple of it.
+        The radius of a pin; other symbols are multiples of it.
     larger : float
-        How much larger than usual names are, for small pictures; symbols grow by its root.
+        Enlargement of names, for small pictures; symbols grow by its square root.
     """
 
     size: float
@@ -35,9 +35,9 @@ class Measures:
 
     @classmethod
     def of(cls, box: Box, gaps: Iterable[float], larger: float = 1.0) -> Measures:
-        """Measures for what fills a box, with gaps between pins that do not change in the motion.
+        """Measures for a drawing that fills a box, with constant distances between pins.
 
-        A mechanism of a single point counts as one unit long.
+        A mechanism with a single point counts as one unit long.
         """
         size = max(box.width, box.height) or 1.0
         shortest = min((gap for gap in gaps if gap > 1e-6 * size), default=size)
@@ -48,17 +48,17 @@ class Measures:
 
     @property
     def stroke(self) -> float:
-        """The width of a thin line; roles count their line widths in it."""
+        """The width of a thin line, the unit of line widths of roles."""
         return 0.22 * self.pin
 
     @property
     def dot(self) -> float:
-        """The radius of a point that is no pin."""
+        """The radius of a point that is not a pin."""
         return 0.5 * self.pin
 
     @property
     def text(self) -> float:
-        """The font size (one em) of names: readable however small the pins are."""
+        """The font size (one em) of names, independent of the size of pins."""
         return 0.0275 * self.larger * self.size
 
     @property
@@ -68,7 +68,7 @@ class Measures:
 
     @property
     def slot(self) -> float:
-        """Half the width of a slot: a pin and some play."""
+        """Half the width of a slot: a pin radius and some clearance."""
         return 1.55 * self.pin
 
     @property

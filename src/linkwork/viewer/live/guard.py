@@ -1,8 +1,8 @@
-"""Access control of the live page, decided from the header of a request.
+"""Access control of the live page, based on the request header.
 
-The server listens on this machine only, but every web site that is open in a browser of this
-machine can send requests to it. The Host must be this server's (otherwise a foreign name could
-resolve to this machine), so must the Origin, and the WebSocket needs the token of the address.
+The server listens on this machine only, but any web site open in a browser of this machine can send
+requests to it. Host and Origin must be those of this server (a foreign name could resolve to this
+machine), and the WebSocket needs the token of the address.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 __all__ = ["SUBPROTOCOL", "Guard", "Refusal"]
 
-#: What a page offers when it connects; ``token.`` with the token is offered beside it.
+#: Subprotocol offered by a page, together with ``token.`` + token.
 SUBPROTOCOL = "linkwork"
 _TOKEN = "token."
 
@@ -22,7 +22,7 @@ Headers = Iterable[tuple[bytes, bytes]]
 
 @dataclass(frozen=True, kw_only=True)
 class Refusal:
-    """An HTTP status, and a sentence that tells nothing which the asker does not know."""
+    """An HTTP status, and a sentence without information unknown to the client."""
 
     status: int
     message: str
@@ -35,11 +35,11 @@ class Guard:
     Parameters
     ----------
     port : int
-        Where it listens.
+        The port of the server.
     token : str
-        What a connection has to know.
+        The token that a connection must present.
     paths : collection of str
-        What can be read.
+        The paths that can be read.
     """
 
     port: int
@@ -48,12 +48,12 @@ class Guard:
 
     @property
     def hosts(self) -> tuple[str, ...]:
-        """The names under which the server answers."""
+        """The host names of the server."""
         return (f"127.0.0.1:{self.port}", f"localhost:{self.port}")
 
     @property
     def security_headers(self) -> dict[str, str]:
-        """Sent with every answer: nothing from elsewhere, shown nowhere else, kept by nobody."""
+        """Headers of every answer: no foreign content, no embedding, no caching."""
         sockets = " ".join(f"ws://{host}" for host in self.hosts)
         return {
             "content-security-policy": (
@@ -70,7 +70,7 @@ class Guard:
         }
 
     def refused(self, method: str, raw_path: bytes, headers: Headers) -> Refusal | None:
-        """Why a request for a page is not answered; ``None`` if it is."""
+        """The reason to refuse a request for a page; ``None`` to answer it."""
         given = list(headers)
         if (refusal := self._foreign(given)) is not None:
             return refusal
@@ -85,7 +85,7 @@ class Guard:
     def connection_refused(
         self, path: str, headers: Headers, subprotocols: Iterable[str]
     ) -> Refusal | None:
-        """Why a connection is not made; ``None`` if it is."""
+        """The reason to refuse a connection; ``None`` to accept it."""
         given = list(headers)
         if (refusal := self._foreign(given)) is not None:
             return refusal
@@ -101,7 +101,7 @@ class Guard:
         return None
 
     def _foreign(self, headers: list[tuple[bytes, bytes]]) -> Refusal | None:
-        """Requests under another name, or from a page of another origin."""
+        """Refuse requests for another host name, or from another origin."""
         hosts = [host.encode() for host in self.hosts]
         named = _all(headers, b"host")
         if len(named) != 1 or named[0].lower() not in hosts:
