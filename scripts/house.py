@@ -51,7 +51,7 @@ def measure(package: Path, known: Mapping[str, Any]) -> dict[str, Count]:
         "lists of kinds of parts": lists_of_parts(sources, known["parts"]),
         "files for a quantity (most)": files_of_a_quantity(sources, known["quantities"]),
         **loop_counts(sources, known["stepping"], known["loops"]),
-        "containers of rows": containers(sources, rows["fields"], rows["least"]),
+        "containers of rows": containers(sources, rows["fields"], rows["least"], rows["single"]),
         "classes with arithmetic": arithmetic(sources),
         "roundoffs worked out elsewhere": roundoffs(sources, known["rounding"]),
         "tolerances of one name": tolerances(sources, known["tolerances"]),

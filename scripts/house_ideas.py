@@ -75,12 +75,14 @@ def _is_all(node: ast.Assign) -> bool:
     return any(isinstance(name, ast.Name) and name.id == "__all__" for name in node.targets)
 
 
-def containers(sources: list[Source], fields: Iterable[str], least: int) -> Count:
+def containers(
+    sources: list[Source], fields: Iterable[str], least: int, single: Iterable[str]
+) -> Count:
     """Classes with several fields that solved rows have."""
     typical, found = set(fields), []
     for source in sources:
         for node in source.nodes:
-            if isinstance(node, ast.ClassDef):
+            if isinstance(node, ast.ClassDef) and node.name not in single:
                 own = {
                     entry.target.id
                     for entry in node.body

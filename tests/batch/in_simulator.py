@@ -16,9 +16,10 @@ import linkwork as lw
 from benchmarks import gpu
 from linkwork.batch import Family
 from linkwork.batch.family_motion import FamilyMotion
+from linkwork.foundation.arrays import BoolArray
 from linkwork.kernels.gpu import kernel as device_kernel
 from linkwork.kernels.gpu.kernel import Chunk, DeviceKernel
-from linkwork.kernels.march.sweep_kernel import LaneRows
+from linkwork.kernels.march.work_arrays import MarchResult
 
 ARRAYS = ("v", "status", "certification", "radius", "turns", "limits", "limit_kinds", "alone")
 
@@ -62,16 +63,16 @@ def main(path: str) -> None:
     assert os.environ["NUMBA_ENABLE_CUDASIM"] == "1"
     arrays: dict[str, np.ndarray] = {}
     sizes: list[int] = []
-    marches: list[LaneRows] = []
+    marches: list[MarchResult] = []
     chunk, run = DeviceKernel.chunk, DeviceKernel.run
 
     def noted_chunk(self: DeviceKernel, rows: int, designs: int) -> Chunk:
         sizes.append(designs)
         return chunk(self, rows, designs)
 
-    def noted_run(self: DeviceKernel, *given: Any) -> None:
-        run(self, *given)
+    def noted_run(self: DeviceKernel, *given: Any) -> BoolArray:
         marches.append(given[5])
+        return run(self, *given)
 
     # methods are replaced for this process only, which ends with this function
     DeviceKernel.chunk = noted_chunk  # type: ignore[method-assign]
@@ -81,7 +82,7 @@ def main(path: str) -> None:
         marches.clear()
         motion = family.sweep(certify=certify, device="gpu")
         arrays |= {f"{name}/{key}": values for key, values in found(motion).items()}
-        arrays |= {f"{name}/stopped": marches[0].stopped, f"{name}/last": marches[0].last}
+        arrays |= {f"{name}/end": marches[0].end, f"{name}/last": marches[0].last}
     speed = gpu.kernel_speed(families()["jansen-leg"][0], False, 15)
     everything: dict[str, Any] = {"chunks": sizes, "speed": speed, **arrays}
     np.savez(path, **everything)

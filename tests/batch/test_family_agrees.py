@@ -350,7 +350,7 @@ def test_starts_that_cannot_be_led_to_the_path_go_alone() -> None:
 def test_threads_and_parts_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     family = lw.example("slider-crank").family({"A B": np.linspace(90.0, 110.0, 150)})
     whole = family.sweep(threads=1)
-    monkeypatch.setattr("linkwork.kernels.march.sweep_kernel._PART", 64)
+    monkeypatch.setattr("linkwork.kernels.march.thread_shares.MOST_DESIGNS", 64)
     parted = family.sweep(threads=3)
     np.testing.assert_array_equal(parted.rows.v, whole.rows.v)
     np.testing.assert_array_equal(parted.radius, whole.radius)

@@ -68,7 +68,7 @@ def test_a_design_that_stops_leaves_its_last_nodes(
     simulated: dict[str, np.ndarray], proved: str
 ) -> None:
     stopped, last = (
-        simulated[f"four-bar with dead points{proved}/{key}"] for key in ("stopped", "last")
+        simulated[f"four-bar with dead points{proved}/{key}"] for key in ("end", "last")
     )
     size = last.shape[1] // 2
     where = np.isfinite(stopped)

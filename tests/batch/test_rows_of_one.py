@@ -9,7 +9,8 @@ import linkwork as lw
 from benchmarks.peers.linkwork_kernel import rows_of_one
 from linkwork.batch import Family
 from linkwork.batch.lane_rows import March, Path
-from linkwork.kernels.march.rowwise import _is_smooth, _prove_rows
+from linkwork.kernels.march.row_proof import prove_rows
+from linkwork.kernels.march.rowwise import _is_smooth
 from linkwork.kernels.march.work_arrays import MarchResult
 from linkwork.kernels.program.execution import Execution
 from linkwork.kernels.program.interpreter import LANES
@@ -107,9 +108,7 @@ class Proving:
         node[: len(begin)], node[-1] = begin, self.t[self.start]
         kept = MarchResult(0, rows.copy(), np.empty((len(self.t), 1)), *self.one.room)
         alone = self.one.loaded.alone
-        done = _prove_rows(
-            topology, space, node, alone.table, alone.scale[0], kept, self.one.counts
-        )
+        done = prove_rows(topology, space, node, alone.table, alone.scale[0], kept, self.one.counts)
         return bool(done), kept.unknowns
 
 

@@ -196,7 +196,7 @@ def _plain_newton(case: Case, theta: Array) -> tuple[dict[str, Array], Array]:
             done = solver.solve(here[None, :], options)
             if done.status[0] != Status.CONVERGED.code:
                 break
-            here = done.v[0]
+            here = done.v[0].copy()
             found[k] = here
     names = [(v.name, model.units.scale(Kind(v.kind))) for v in model.equations.unknowns]
     return {name: found[:, k] / scale for k, (name, scale) in enumerate(names)}, theta

@@ -10,8 +10,9 @@ import numpy.typing as npt
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath
-from linkwork.numerics.continuation.path_proof import PathPoints, prove_path
+from linkwork.numerics.continuation.path_proof import prove_path
 from linkwork.numerics.proof.position_proof import prove, reach, rounding_of_inputs, steps_connected
+from linkwork.numerics.rows import SolvedRows
 from tests.campaigns.certificates import Verdict
 from tests.campaigns.positions import closed
 from tests.numerics.systems import Term, blocks_of, loop_table
@@ -94,16 +95,10 @@ def _branch(table: LoopTable, v: Array, length: float) -> Array | None:
     return np.stack(found)
 
 
-def beads_of(solver: BlockSolver, v: Array) -> PathPoints:
+def beads_of(solver: BlockSolver, v: Array) -> SolvedRows:
     """Positions as points along their own input."""
-    rates = solver.rates(v, PATH.rate)
-    return PathPoints(
-        t=v[:, solver.unknowns],
-        v=v,
-        first=rates.first,
-        second=rates.second,
-        input_radius=rounding_of_inputs(v, solver.unknowns),
-    )
+    apart = rounding_of_inputs(v, solver.unknowns)
+    return solver.rates(v, PATH.rate).with_columns(t=v[:, solver.unknowns], input_radius=apart)
 
 
 def _true_step(

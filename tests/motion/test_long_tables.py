@@ -22,6 +22,7 @@ from linkwork.kernels.program.kernel_cache import kernels_are_compiled, say_that
 from linkwork.motion import by_kernels
 from linkwork.motion.drive import Drive
 from linkwork.numerics.continuation.branch_tracking import Track
+from linkwork.numerics.rows import SolvedRows
 from tests.library_mechanisms import read_example
 from tests.thinned import thinned
 
@@ -53,9 +54,10 @@ def taken(monkeypatch: pytest.MonkeyPatch) -> list[bool]:
     """Whether what they found was taken, call by call."""
     own, found = by_kernels.KernelRows.put_into, []
 
-    def seen(self: by_kernels.KernelRows, *arguments: Any) -> bool:
-        found.append(own(self, *arguments))
-        return found[-1]
+    def seen(self: by_kernels.KernelRows, *arguments: Any) -> SolvedRows | None:
+        filled = own(self, *arguments)
+        found.append(filled is not None)
+        return filled
 
     monkeypatch.setattr(by_kernels.KernelRows, "put_into", seen)
     return found
@@ -198,21 +200,15 @@ def spoilt(monkeypatch: pytest.MonkeyPatch, both: Sweep) -> Callable[..., tuple[
     return sweep
 
 
-def with_value(array: np.ndarray, where: Any, value: float) -> np.ndarray:
-    copy = array.copy()
-    copy[where] = value
-    return copy
-
-
 @pytest.mark.parametrize("certify", [True, False])
 @pytest.mark.parametrize("away", [1e-6, 2e-9])
 def test_rows_on_another_branch_are_not_taken(
     certify: bool, away: float, spoilt: Callable[..., tuple[lw.Motion, ...]], taken: list[bool]
 ) -> None:
     def strayed(rows: by_kernels.KernelRows) -> by_kernels.KernelRows:
-        v = rows.v.copy()
-        v[0, len(rows.where) // 2 :] += away  # from the middle on
-        return replace(rows, v=v)
+        v = rows.rows.v.copy()
+        v[len(rows.where) // 2 :, 0] += away  # from the middle on
+        return replace(rows, rows=rows.rows.set(v=v))
 
     plain, quick = spoilt(strayed, certify=certify)
     assert taken == [False]
@@ -241,7 +237,7 @@ def test_rows_without_a_proof_of_their_own_are_not_certified(
     taken: list[bool],
 ) -> None:
     def doubtful(rows: by_kernels.KernelRows) -> by_kernels.KernelRows:
-        return replace(rows, radius=with_value(rows.radius, which(rows)[7], radius))
+        return replace(rows, rows=rows.rows.set(which(rows)[7], radius=radius))
 
     plain, quick = spoilt(doubtful)
     assert taken == [False]
@@ -262,8 +258,10 @@ def test_inputs_that_are_not_known_exactly_widen_the_proofs(
     monkeypatch.setattr(by_kernels, "kernel_rows", wider)
     both(fine(lw.example("four-bar")))
     narrow, wide = found
-    moved = np.abs(wide.first[:-1]).max(axis=0) * apart  # by how much the position may be off
-    assert wide.radius - narrow.radius == pytest.approx(moved, rel=1e-3)
+    moved = (
+        np.abs(wide.rows.first[:, :-1]).max(axis=1) * apart
+    )  # by how much the position may be off
+    assert wide.rows.radius - narrow.rows.radius == pytest.approx(moved, rel=1e-3)
 
 
 def test_corrections_are_counted(both: Sweep) -> None:

@@ -137,8 +137,8 @@ def test_rows_between_nodes_are_the_positions_of_the_branch() -> None:
     for k in (0, 123, 700):  # a batch of one differs by rounding only
         alone = rows_on_track(solver, PATH, Track(nodes=(start, *nodes), start=0), t[k : k + 1])
         np.testing.assert_allclose(alone.v[0], rows.v[k], rtol=0, atol=CLOSE)
-        np.testing.assert_allclose(alone.rates.first[0], rows.rates.first[k], rtol=0, atol=CLOSE)
-        np.testing.assert_allclose(alone.rates.second[0], rows.rates.second[k], rtol=0, atol=1e-10)
+        np.testing.assert_allclose(alone.first[0], rows.first[k], rtol=0, atol=CLOSE)
+        np.testing.assert_allclose(alone.second[0], rows.second[k], rtol=0, atol=1e-10)
 
 
 def test_a_row_whose_guess_leads_to_the_other_branch_is_followed_from_its_node() -> None:

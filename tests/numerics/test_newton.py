@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +13,8 @@ import pytest
 from linkwork.foundation.status import Status
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.numerics.least_squares import nearest_miss
-from linkwork.numerics.newton import NewtonOptions, NewtonResult, newton
+from linkwork.numerics.newton import NewtonOptions, newton
+from linkwork.numerics.rows import SolvedRows
 from tests.numerics.systems import Cubic, four_bar_table, loop_table, watt_table
 from tests.oracles.four_bar import FourBar, random_crank_rockers
 
@@ -127,10 +128,11 @@ def test_every_exit_is_reached_in_one_batch() -> None:
     np.testing.assert_array_equal(done.v[:, 1:], START[:, 1:])  # inputs are left alone
 
 
-def same(one: NewtonResult, lane: int, many: NewtonResult, atol: float) -> None:
-    for field in fields(NewtonResult):
-        alone, batch = getattr(one, field.name)[0], getattr(many, field.name)[lane]
-        np.testing.assert_allclose(alone, batch, rtol=0, atol=atol, err_msg=field.name)
+def same(one: SolvedRows, lane: int, many: SolvedRows, atol: float) -> None:
+    assert len(many.columns) == 6
+    for name, batch in many.columns.items():
+        alone = one.columns[name][0]
+        np.testing.assert_allclose(alone, batch[lane], rtol=0, atol=atol, err_msg=name)
 
 
 def test_rows_of_a_batch_equal_the_same_rows_alone() -> None:

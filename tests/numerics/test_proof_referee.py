@@ -6,7 +6,6 @@ The referee itself lives in ``tests/campaigns``; ``scripts/campaign`` runs it on
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -310,10 +309,12 @@ def test_rows_a_whole_turn_away_count_the_rounding_of_two_pi() -> None:
     track = Track(nodes=(start, *nodes), start=0)
     t = np.array([3.5])
     rows = rows_on_track(solver, path, track, t)
-    same = prove_rows(solver, path, track, rows, t[:, None])
-    turned = prove_rows(solver, path, track, rows, t[:, None] - 2 * math.pi)
-    apart = prove_rows(solver, path, track, rows, t[:, None] + 1e-12)
-    assert {int(p.code[0]) for p in (same, turned, apart)} == {Certification.CERTIFIED.code}
+    same, _ = prove_rows(solver, path, track, rows, t[:, None])
+    turned, _ = prove_rows(solver, path, track, rows, t[:, None] - 2 * math.pi)
+    apart, _ = prove_rows(solver, path, track, rows, t[:, None] + 1e-12)
+    assert {int(p.certification[0]) for p in (same, turned, apart)} == {
+        Certification.CERTIFIED.code
+    }
     assert same.radius[0] < turned.radius[0] < 3 * same.radius[0]
     # what the inputs differ by is part of the radius, 1e-12 times a rate of order one
     assert 2e-13 < apart.radius[0] - same.radius[0] < 1e-11
@@ -479,7 +480,7 @@ def too_long_to_prove(monkeypatch: pytest.MonkeyPatch) -> Certification:
     start, last = (node_at(solver, PATH, x[2], x) for x in v)
     track = Track(nodes=(start, last), start=0)
     rows = rows_on_track(solver, PATH, track, v[1:, 2])
-    (code,) = prove_rows(solver, PATH, track, rows, v[1:, 2:]).code
+    (code,) = prove_rows(solver, PATH, track, rows, v[1:, 2:])[0].certification
     return Certification.of_code(int(code))
 
 
@@ -497,17 +498,9 @@ def test_every_reason_for_a_missing_certificate_is_reached(monkeypatch: pytest.M
     places[1] = four_bar_at(FOLDING, t[1:2], -1)[1][0]
     status = np.array([Status.CONVERGED.code] * 4, dtype=np.int8)
     status[2] = Status.LOST.code
-    doctored = replace(
-        rows,
-        t=t,
-        v=places,
-        status=status,
-        iterations=np.zeros(4, dtype=np.int64),
-        residual=np.zeros(4),
-        rates=solver.rates(places, PATH.rate),
-    )
-    proofs = prove_rows(solver, PATH, track, doctored, t[:, None])
-    reasons = [Certification.of_code(int(code)) for code in proofs.code]
+    doctored = solver.rates(places, PATH.rate).with_columns(t=t, status=status)
+    proofs, _ = prove_rows(solver, PATH, track, doctored, t[:, None])
+    reasons = [Certification.of_code(int(code)) for code in proofs.certification]
     proved = np.isfinite(proofs.radius) & np.isfinite(proofs.uniqueness_radius)
     np.testing.assert_array_equal(proved, [True, True, False, False])
 

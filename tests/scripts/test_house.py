@@ -171,9 +171,10 @@ def test_containers_have_several_arrays_that_rows_have() -> None:
         "class Rows:\n    v: Array\n    status: StatusArray\n    other: Array\n"
         "class One:\n    v: float\n    status: Status\n"
     )
-    found = containers([source(text)], ["v", "status"], 2)
+    found = containers([source(text)], ["v", "status"], 2, [])
     assert found.where == ("a.py:1 Rows: other, status, v",)
-    assert containers([source(text)], ["v", "status", "w"], 3).value == 0
+    assert containers([source(text)], ["v", "status", "w"], 3, []).value == 0
+    assert containers([source(text)], ["v", "status"], 2, ["Rows"]).value == 0
 
 
 @pytest.mark.parametrize("method", ["__add__", "__mul__", "__array_ufunc__"])

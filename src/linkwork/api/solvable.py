@@ -1,26 +1,22 @@
-"""A mechanism that can be changed, checked and solved."""
+"""A mechanism that can be solved: positions, motions, configurations, circuits and families."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING
 
-from linkwork import batch, equations as closure, motion, textfile
+from linkwork import batch, motion
+from linkwork.api.described import DescribedMechanism
 from linkwork.foundation.deprecation import former_method
-from linkwork.foundation.errors import InputError, MechanismError
-from linkwork.mechanism.description import Description
+from linkwork.foundation.errors import InputError
 from linkwork.mechanism.dimensions import Number
-from linkwork.mechanism.driven_input import Input
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
 if TYPE_CHECKING:
     from linkwork.batch.family import Family
-    from linkwork.results.check import CheckReport
     from linkwork.results.circuits import Circuits
-    from linkwork.results.classification import Inversion
     from linkwork.results.configurations import Configurations
     from linkwork.results.iterates import Iterates
     from linkwork.results.nearest_assembly import NearestAssembly
@@ -29,133 +25,8 @@ if TYPE_CHECKING:
 __all__ = ["SolvableMechanism"]
 
 
-class SolvableMechanism:
-    """The part of :class:`~linkwork.api.mechanism.Mechanism` that needs no drawing.
-
-    Raises
-    ------
-    MechanismError
-        If the equations cannot be derived, or do not determine the motion.
-    """
-
-    def __init__(self, description: Description, read: textfile.ReadFile | None = None) -> None:
-        self.description = description
-        try:
-            self.model = motion.as_described(description)
-        except MechanismError as error:
-            if read is None:
-                raise
-            raise read.located(error) from None
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, SolvableMechanism) and self.description == other.description
-
-    def __hash__(self) -> int:
-        return hash((type(self.description), self.description.name))
-
-    def __repr__(self) -> str:
-        equations = self.model.equations
-        inputs = ", ".join(v.name for v in equations.inputs) or "nothing"
-        count = len(equations.labels)
-        what = "equation" if count == 1 else "equations"
-        return (
-            f'<Mechanism "{self.description.name}": {count} {what} for '
-            f"{', '.join(v.name for v in equations.unknowns)}; driven by {inputs}>"
-        )
-
-    @property
-    def name(self) -> str:
-        """The name of the mechanism."""
-        return self.description.name
-
-    @property
-    def loop_equations(self) -> closure.LoopEquations:
-        """The closure equations as symbols."""
-        return self.model.equations
-
-    def with_dimensions(self, **changes: Number) -> Self:
-        """A copy with other values of named dimensions.
-
-        Parameters
-        ----------
-        **changes : number or formula
-            New values by name, in the unit of the file.
-
-        Raises
-        ------
-        UnknownNameError
-            If a dimension does not exist.
-
-        Examples
-        --------
-        >>> import linkwork as lw
-        >>> lw.example("crank-shaper").with_dimensions(r=50).description.dimensions["r"]
-        50
-        """
-        return type(self)(self.description.with_dimensions(changes))
-
-    def changed(self, **parts: Any) -> Self:
-        """A copy with other parts of the description.
-
-        Parameters
-        ----------
-        **parts
-            Fields of the description, as in :func:`linkage` or :func:`loops`: ``points``,
-            ``lengths``, ``guess``, …
-
-        Raises
-        ------
-        MechanismError
-            With every problem found.
-        """
-        return type(self)(replace(self.description, **parts))
-
-    def inversion(self, link: str, *, input: Input | None = None) -> Self:
-        """The same kinematic chain with another link as ground; the old ground becomes ``frame``.
-
-        Parameters
-        ----------
-        link : str
-            The link that becomes the ground.
-        input : Input, optional
-            The new input; by default the same relative angle or length as before.
-
-        Raises
-        ------
-        UnknownNameError
-            If the link does not exist.
-        InputError
-            If the link cannot be the ground.
-        """
-        return type(self)(motion.inversion(self.model, link, input))
-
-    def inversions(self) -> tuple[Inversion, ...]:
-        """All inversions of the chain, each with its type."""
-        return motion.inversions(self.model)
-
-    def driven_by(self, **what: Any) -> Self:
-        """A copy with another input.
-
-        Parameters
-        ----------
-        **what
-            Fields of :class:`linkwork.Input`: ``link="rocker"``, ``start=0``, …
-
-        Examples
-        --------
-        >>> import linkwork as lw
-        >>> lw.example("four-bar").driven_by(link="rocker")
-        <Mechanism "Four-bar linkage, open": 1 equation for crank, coupler; driven by rocker>
-        """
-        return type(self)(motion.driven_otherwise(self.model, Input(**what)))
-
-    def check(self) -> CheckReport:
-        """How the mechanism was read: equations, unknowns, blocks, mobility, start."""
-        return motion.check(self.model)
-
-    def equations(self) -> closure.EquationSheet:
-        """The loop equations and their Jacobian as text, LaTeX or MathML."""
-        return closure.EquationSheet(self.model.equations)
+class SolvableMechanism(DescribedMechanism):
+    """The part of :class:`~linkwork.api.mechanism.Mechanism` that needs no drawing."""
 
     def solve(
         self,

@@ -34,7 +34,8 @@ from linkwork.foundation.names import find_spelling
 from linkwork.foundation.status import Status
 from linkwork.motion.lock_step import lock_step
 from linkwork.results.motion import Series
-from linkwork.results.quantities.registry import Asked, Group, Quantities
+from linkwork.results.quantities.asked import Asked, Group
+from linkwork.results.quantities.registry import Quantities
 from linkwork.results.quantity import Rate
 
 __all__ = ["FamilyMotion"]

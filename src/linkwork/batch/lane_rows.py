@@ -18,7 +18,8 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.foundation.status import Status
 from linkwork.kernels.march.dead_points import dead_points
-from linkwork.kernels.march.sweep_kernel import LaneRows, Steps
+from linkwork.kernels.march.sweep_kernel import Steps
+from linkwork.kernels.march.work_arrays import MarchResult
 from linkwork.kernels.program.execution import Execution
 from linkwork.motion.by_kernels import are_served, kernel_of
 from linkwork.motion.drive import Drive
@@ -58,7 +59,7 @@ def design_rows(
         left &= ~march.fill(designs, found, certify, threads, execution or Execution())
     for k in np.flatnonzero(left):
         sweep_single(designs, int(k), found, certify)
-    return found
+    return found.freeze()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -184,16 +185,16 @@ class March:
         done, reached : (D,), (R, D)
             Designs that are finished: each row is reached or lies beyond a dead point.
         """
-        rows = self._march(t, v, radius, slice(None))
-        reached = rows.reached
+        begun, found = self._march(t, v, radius, slice(None))
+        reached = found.reached
         if reached.all():  # the usual case, quicker to check for all designs together
-            return np.ones(len(rows.found), dtype=bool), reached
+            return np.ones(len(begun), dtype=bool), reached
         done: BoolArray = np.logical_and.reduce(reached, axis=0)
-        stopped = np.flatnonzero(rows.found & ~done)
+        stopped = np.flatnonzero(begun & ~done)
         if not len(stopped) or len(self.path.rate) > 1:
             return done, reached
         limits = np.repeat([[-np.inf], [np.inf]], len(stopped), axis=1)
-        self._limit(limits, rows.take(stopped), stopped)
+        self._limit(limits, found, stopped, stopped)
         around = (-1, 1) if self.free else ()
         for turns in around:
             self._wind(t, turns, v, radius, reached, stopped, limits)
@@ -212,16 +213,17 @@ class March:
         where: IndexArray | slice,
         apart: float = 0.0,
         smallest: float | None = None,
-    ) -> LaneRows:
-        """Rows at values of t, which may differ by ``apart`` from the requested ones.
+    ) -> tuple[BoolArray, MarchResult]:
+        """Rows at values of t, which may differ by ``apart`` from the requested ones, and a mask of
+        the designs that began.
 
         ``smallest``: minimum step, if not the default.
         """
         steps = Steps() if smallest is None else Steps(smallest=smallest)
-        found = LaneRows.over(v, radius, self.kernel)
+        found = self.kernel.result(v, radius)
         coefficients = {name: values[where] for name, values in self.coefficients.items()}
         coefficients["u0.spread"] = coefficients["u0.spread"] + apart
-        self.kernel.run(
+        begun = self.kernel.run(
             coefficients,
             self.guess[:, where],
             self.start[where],
@@ -230,23 +232,26 @@ class March:
             found,
             self.threads,
         )
-        return found
+        return begun, found
 
-    def _limit(self, limits: Array, rows: LaneRows, mine: IndexArray) -> None:
-        """Store the range of t of designs with stopped rows.
+    def _limit(
+        self, limits: Array, found: MarchResult, there: IndexArray, mine: IndexArray
+    ) -> None:
+        """Store the range of t of designs stopped in a march; ``there`` (S,): their indices in the
+        march, ``mine`` (S,): in the family.
 
         ``limits`` (2, S): infinite if the march was not stopped; NaN if it was stopped without a
         located dead point.
         """
         for way in range(2):
-            ended = np.flatnonzero(~np.isnan(rows.stopped[way]) & np.isinf(limits[way]))
+            ended = np.flatnonzero(~np.isnan(found.end[way, there]) & np.isinf(limits[way]))
             if not len(ended):
                 continue
             folds = dead_points(
                 self.path.model.compiled.table,
                 self.zeros,
                 {name: values[mine[ended]] for name, values in self.coefficients.items()},
-                self.kernel.last_nodes(rows, way, ended),
+                self.kernel.last_nodes(found, way, there[ended]),
                 way,
             )
             limits[way, ended] = np.where(folds.found, folds.t, np.nan)
@@ -276,7 +281,7 @@ class March:
             if turns
             else 0.0
         )
-        further = self._march(moved, own, radii, mine, apart, smallest)
+        _, further = self._march(moved, own, radii, mine, apart, smallest)
         row, column = np.nonzero(further.reached & ~reached[:, mine])
         v[:, row, mine[column]] = own[:, row, column]
         if self.certify:
@@ -285,7 +290,7 @@ class March:
         if turns:
             self.wound.append((row, mine[column], turns))
         known = limits[:, those]
-        self._limit(known, further, mine)
+        self._limit(known, further, np.arange(len(mine)), mine)
         limits[:, those] = known
 
     def _find_complete(self, t: Array, reached: BoolArray, limits: Array) -> BoolArray:

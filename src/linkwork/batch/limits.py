@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from linkwork.foundation.arrays import AnyArray, Array, StatusArray
 from linkwork.foundation.frozen import read_only
+from linkwork.motion.limits import BranchEnd
 from linkwork.results.motion import LimitKind
 
-__all__ = ["LIMIT_KINDS", "FamilyLimits"]
+__all__ = ["LIMIT_KINDS", "FamilyLimits", "ends_as_limits"]
 
 #: Kind of the end of a branch, by code; 0 for none.
 LIMIT_KINDS: tuple[LimitKind | None, ...] = (None, *LimitKind)
@@ -56,3 +58,16 @@ class FamilyLimits:
             f"{int((ends == kind.word).sum())} {kind.word}s" for kind in LIMIT_KINDS if kind
         )
         return f"<FamilyLimits of {len(self)} designs: {told}>"
+
+
+def ends_as_limits(ends: Iterable[BranchEnd]) -> tuple[Array, StatusArray]:
+    """Where a branch ends below and above, values of the path (2,), and the kinds as codes (2,).
+
+    Infinite where nothing ended it, NaN where the place was not located.
+    """
+    limits, kinds = np.array([-np.inf, np.inf]), np.zeros(2, dtype=np.int8)
+    for end in ends:
+        which = int(end.side > 0.0)
+        limits[which] = end.t if end.limit.located else np.nan
+        kinds[which] = LIMIT_KINDS.index(end.limit.kind)
+    return limits, kinds

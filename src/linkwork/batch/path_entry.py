@@ -9,7 +9,7 @@ import numpy as np
 from linkwork.batch.designs import Designs
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
-from linkwork.kernels.march.sweep_kernel import LaneRows, Steps, SweepKernel
+from linkwork.kernels.march.sweep_kernel import Steps, SweepKernel
 
 __all__ = ["lead_to_rows"]
 
@@ -51,7 +51,7 @@ def lead_to_rows(
         given[f"u{j}.origin"], given[f"u{j}.rate"] = own[:, j].copy(), rate[:, j].copy()
         given[f"u{j}.spread"] = 4.0 * UNIT_ROUNDOFF * (np.abs(own[:, j]) + np.abs(rate[:, j]))
     v, radius = np.empty((n, 2, count)), np.empty((2 if kernel.certified else 0, count))
-    found = LaneRows.over(v, radius, kernel)
+    found = kernel.result(v, radius)
     ends = np.array([0.0, 1.0])
     kernel.run(given, designs.start[which, :n].T, np.zeros(count), ends, Steps(), found, threads)
     return np.where(found.reached[1], v[:, 1], np.nan), nearest

@@ -83,8 +83,8 @@ def design_rates(designs: Designs, rows: DesignRows, threads: int = 1) -> Design
         both[~np.isfinite(both)] = np.nan
     driven = np.ones((2, count, width), dtype=bool)
     for k, own in rows.own.items():
-        both[0, :, :, k], both[1, :, :, k] = own.first, own.second
-        driven[:, :, k] = own.driven
+        both[0, :, :, k], both[1, :, :, k] = own.first[:, :n].T, own.second[:, :n].T
+        driven[:, :, k] = ~np.isnan([own.first[:, -1], own.second[:, -1]])
     return DesignRates(first=both[0], second=both[1], driven=driven)
 
 

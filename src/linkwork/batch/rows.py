@@ -7,23 +7,23 @@ from functools import cached_property
 
 import numpy as np
 
-from linkwork.batch.single_rows import SingleRows
 from linkwork.foundation.aligned import allocate_aligned
 from linkwork.foundation.arrays import Array, BoolArray, StatusArray, TurnArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
+from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["DesignRows"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DesignRows:
-    """D designs over R rows of inputs, internal units.
+    """D designs over R rows of inputs, internal units; written by the march, then frozen.
 
     ``v`` (n, R, D): unknowns, NaN where there is no position. ``status``, ``certification``
     (R, D): codes. ``radius`` (R, D): of the proof, weighted, NaN without one; (0, D) if none is
     requested. ``limits`` (2, D): lower and upper end of the branch, ``limit_kinds`` (2, D): their
-    kinds, see :func:`linkwork.batch.single_rows.ends_as_limits`; NaN without a position.
+    kinds, see :func:`linkwork.batch.limits.ends_as_limits`; NaN without a position.
     ``alone`` (D,): designs computed one at a time; ``own``: their own results.
     """
 
@@ -34,7 +34,7 @@ class DesignRows:
     limits: Array
     limit_kinds: StatusArray
     alone: BoolArray
-    own: dict[int, SingleRows] = field(default_factory=dict)
+    own: dict[int, SolvedRows] = field(default_factory=dict)
 
     @classmethod
     def blank(
@@ -60,6 +60,13 @@ class DesignRows:
     def turns(self) -> TurnArray:
         """Whole turns from the requested input to that of the position, (R, D)."""
         return np.zeros(self.status.shape, dtype=np.int32)
+
+    def freeze(self) -> DesignRows:
+        """Make all arrays read-only."""
+        for array in vars(self).values():
+            if isinstance(array, np.ndarray):
+                array.setflags(write=False)
+        return self
 
     def clear(self, where: BoolArray, certify: bool) -> None:
         """Remove the position of some rows (R, D) and the status of all."""

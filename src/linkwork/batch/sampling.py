@@ -16,17 +16,15 @@ doi:10.1007/3-540-45760-7_9.
 
 from __future__ import annotations
 
-import csv
 import math
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from linkwork.batch.design_table import numbers, read_columns
 from linkwork.foundation.arrays import AnyArray, Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.frozen import read_only
@@ -274,11 +272,7 @@ def from_table(table: object, columns: Sequence[str] | None = None) -> Plan:
     UnknownNameError
         For a column that the table does not have.
     """
-    found = _read_csv(Path(table), columns) if isinstance(table, str | PathLike) else None
-    if found is None:
-        found = {
-            name: _numbers(name, cells) for name, cells in _pick_columns(table, columns).items()
-        }
+    found = read_columns(table, columns)
     lengths = {name: len(values) for name, values in _some(found).items()}
     if len(set(lengths.values())) > 1:
         told = ", ".join(f"{name}: {length}" for name, length in lengths.items())
@@ -344,75 +338,7 @@ def _range(name: str, given: object) -> Range:
 
 
 def _level(name: str, values: object) -> Array:
-    levels = np.atleast_1d(_numbers(name, values))
+    levels = np.atleast_1d(numbers(name, values))
     if levels.ndim != 1 or not levels.size:
         raise InputError(f'"{name}" needs at least one value in a row, got {as_told(values)}')
     return levels
-
-
-def _numbers(name: str, cells: object) -> Array:
-    array = np.asarray(cells)
-    if array.dtype.kind not in "iuf" or array.ndim > 1:
-        raise InputError(f'"{name}" needs numbers, got {array.dtype} of {array.ndim} axes')
-    return array.astype(np.float64)
-
-
-def _pick_columns(table: Any, columns: Sequence[str] | None) -> dict[str, object]:
-    """The columns of a table in memory."""
-    if isinstance(table, np.ndarray) and table.dtype.names is not None:
-        names = list(table.dtype.names)
-    elif isinstance(table, Mapping):
-        names = list(table)
-    elif hasattr(table, "columns"):
-        names = list(table.columns)
-    else:
-        raise InputError(
-            "a table is a DataFrame, a structured array, a mapping of arrays or the path of a CSV "
-            f"file, got {type(table).__name__}"
-        )
-    return {name: table[name] for name in _known(names, columns)}
-
-
-def _known(names: Sequence[str], columns: Sequence[str] | None) -> Sequence[str]:
-    for name in columns or ():
-        if name not in names:
-            raise UnknownNameError(
-                f'the table has no column "{name}" {choices("columns", names, name)}'
-            )
-    return names if columns is None else columns
-
-
-def _read_csv(path: Path, columns: Sequence[str] | None) -> dict[str, Array]:
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            reader = csv.reader(file)
-            header = [name.strip() for name in next(reader, [])]
-            wanted = [(name, header.index(name)) for name in _known(header, columns)]
-            found: dict[str, list[float]] = {name: [] for name, _ in wanted}
-            for cells in reader:
-                if cells:
-                    _read_row(path, reader.line_num, cells, header, wanted, found)
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path} is not UTF-8 text: save it as CSV in UTF-8") from None
-    return {name: np.array(values) for name, values in found.items()}
-
-
-def _read_row(
-    path: Path,
-    line: int,
-    cells: Sequence[str],
-    header: Sequence[str],
-    wanted: Sequence[tuple[str, int]],
-    found: Mapping[str, list[float]],
-) -> None:
-    if len(cells) != len(header):
-        raise InputError(f"{path} line {line} has {len(cells)} cells, the header {len(header)}")
-    for name, column in wanted:
-        try:
-            found[name].append(float(cells[column]))
-        except ValueError:
-            raise InputError(
-                f'{path} line {line}: "{name}" needs a number, got "{cells[column][:40]}"'
-            ) from None

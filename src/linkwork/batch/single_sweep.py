@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from linkwork.batch.designs import Designs
+from linkwork.batch.limits import ends_as_limits
 from linkwork.batch.rows import DesignRows
-from linkwork.batch.single_rows import SingleRows, ends_as_limits
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import LinkworkError
@@ -17,8 +17,8 @@ from linkwork.mechanism.driven_input import Input
 from linkwork.motion import sweep
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.model import Model
-from linkwork.motion.rows import SolvedRows
 from linkwork.motion.sweeping import sweep_rows
+from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["message_single", "sweep_single"]
 
@@ -57,7 +57,7 @@ def sweep_single(designs: Designs, k: int, found: DesignRows, certify: bool) -> 
     found.status[:, k], found.certification[:, k] = rows.status, rows.certification
     if certify:
         found.radius[:, k] = rows.radius
-    found.own[k] = SingleRows.of(rows, n)
+    found.own[k] = rows
     _note_way(designs.base, k, rows, ends, found)
 
 

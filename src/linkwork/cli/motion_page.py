@@ -15,7 +15,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.results.motion import Motion
-from linkwork.results.quantities.registry import Asked
+from linkwork.results.quantities.asked import Asked
 from linkwork.results.quantity import Kind
 
 __all__ = ["failure_line", "motion_lines"]

@@ -8,7 +8,7 @@ whole motion, so that they do not jump. Nothing is solved here.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,49 +21,35 @@ from linkwork.drawing.input_arrow import input_arrows
 from linkwork.drawing.lasting_labels import labels_as_before, lasting_labels
 from linkwork.drawing.link_symbols import tones
 from linkwork.drawing.measures import Measures
-from linkwork.drawing.mechanism_scene import symbols, traced
+from linkwork.drawing.mechanism_scene import traced
+from linkwork.drawing.moving_shape import (
+    Key,
+    Moving,
+    attach_shapes,
+    drawn_symbols,
+    keyed,
+    take_over_frames,
+)
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import (
     Arc,
-    Polygon,
     Polyline,
     Primitive,
     Role,
     Scene,
     Text,
-    xy,
 )
-from linkwork.drawing.shape_corners import corners, same_sizes, with_corners
+from linkwork.drawing.shape_corners import corners, with_corners
 from linkwork.drawing.trace_path import trace_symbols
-from linkwork.foundation.arrays import BoolArray, ComplexArray, CountArray
+from linkwork.foundation.arrays import BoolArray, CountArray
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
 
-__all__ = ["Moving", "MovingScene", "moving_scene"]
+__all__ = ["MovingScene", "moving_scene"]
 
 _SAMPLED = 9  # rows at which names must not collide
 _FEW = 4  # the same, for a picture that somebody waits for
 _TRIED = 25  # rows that tell what carries a shape
-_ARC_PIECES = 32  # of an arc that changes its sweep
-
-
-@dataclass(frozen=True, kw_only=True)
-class Moving:
-    """A primitive that moves.
-
-    Parameters
-    ----------
-    shape : Primitive
-        As it is in the reference row.
-    frame : Frame, optional
-        What carries it; ``None`` if it changes its shape.
-    course : array (N, m), optional
-        Then its corners x + iy row by row; NaN in rows where it is not drawn.
-    """
-
-    shape: Primitive
-    frame: Frame | None
-    course: ComplexArray | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,16 +158,16 @@ def moving_scene(
     pose = Pose.at_row(motion, int(rows[0]))
     measures = Measures.of(box, pose.gaps)
     frames = Frames.of(motion, pose)
-    shown = dict(_keyed(_drawn(pose, measures)))
+    shown = dict(keyed(drawn_symbols(pose, measures)))
     carried = None if like is None else _carried(like)
     if carried is None or carried.keys() != shown.keys():
         like = carried = None
     if carried is None and sampled:
-        carried = _attached(motion, pose, measures, frames, _some(rows, _TRIED))
+        carried = attach_shapes(motion, pose, measures, frames, _some(rows, _TRIED))
     if carried is not None and carried.keys() == shown.keys():
-        parts = _taken_over(motion, pose, measures, shown, carried, rows)
+        parts = take_over_frames(motion, pose, measures, shown, carried, rows)
     else:
-        parts = list(_attached(motion, pose, measures, frames, rows).values())
+        parts = list(attach_shapes(motion, pose, measures, frames, rows).values())
     paths = trace_symbols(pose, traced(pose, traces), measures)
     parts += [Moving(shape=path, frame=STILL) for path in paths]
     row = int(rows[0])
@@ -218,10 +204,6 @@ def _scene(motion: Motion, parts: Sequence[Moving], measures: Measures, within: 
     )
 
 
-#: Kind, role and part of a primitive, and its number among those that agree in all of these.
-Key = tuple[type[Primitive], Role, str, int]
-
-
 def _turned(shape: Primitive) -> Primitive:
     """The arrow of an input the other way; everything else as it is."""
     if shape.role is Role.INPUT and isinstance(shape, Arc):
@@ -231,92 +213,11 @@ def _turned(shape: Primitive) -> Primitive:
     return shape
 
 
-def _drawn(pose: Pose, measures: Measures) -> Iterator[Primitive]:
-    return symbols(pose, tracks(pose, measures, tones(pose)), (), measures)
-
-
-def _keyed(primitives: Iterator[Primitive]) -> Iterator[tuple[Key, Primitive]]:
-    count: dict[tuple[type[Primitive], Role, str], int] = {}
-    for primitive in primitives:
-        kind = (type(primitive), primitive.role, primitive.of)
-        count[kind] = count.get(kind, -1) + 1
-        yield (*kind, count[kind]), primitive
-
-
-def _attached(
-    motion: Motion, pose: Pose, measures: Measures, frames: Frames, rows: CountArray
-) -> dict[Key, Moving]:
-    """What carries each primitive, from its coordinates in these rows."""
-    first: dict[Key, Primitive] = {}
-    course: dict[Key, dict[int, Primitive]] = {}
-    for k, row in enumerate(rows):
-        for key, primitive in _keyed(_drawn(pose.moved_to(motion, int(row)), measures)):
-            first.setdefault(key, primitive)
-            course.setdefault(key, {})[k] = primitive
-    return {
-        key: _one_attached(first[key], along, frames, rows, motion, measures)
-        for key, along in course.items()
-    }
-
-
 def _some(rows: CountArray, count: int) -> CountArray:
     """At most so many rows from the first to the last."""
     spread = np.linspace(0, len(rows) - 1, count).round().astype(int)
     some: CountArray = rows[list(dict.fromkeys(spread.tolist()))]
     return some
-
-
-def _one_attached(
-    shape: Primitive,
-    along: Mapping[int, Primitive],
-    frames: Frames,
-    rows: CountArray,
-    motion: Motion,
-    measures: Measures,
-) -> Moving:
-    found = [corners(one) for one in along.values()]
-    alike = len(along) == len(rows) and len({len(one) for one in found}) == 1
-    if alike and same_sizes(along.values(), measures.size):
-        frame = frames.holding(
-            np.stack(found),
-            rows,
-            measures.size,
-            first=shape.of,
-            closed=_closed(shape),
-        )
-        if frame is not None:
-            return Moving(shape=shape, frame=frame)
-    return _own_course(shape, along, rows, len(motion))
-
-
-def _closed(shape: Primitive) -> bool:
-    """Whether it does not matter from which corner the corners are numbered."""
-    line = isinstance(shape, Polyline) and len(shape.points) == 2 and not shape.head
-    return line or isinstance(shape, Polygon)
-
-
-def _own_course(
-    shape: Primitive, along: Mapping[int, Primitive], rows: CountArray, count: int
-) -> Moving:
-    """A primitive with its corners row by row; an arc becomes a line."""
-    lines = {k: _as_line(one) for k, one in along.items()}
-    most = max(len(line) for line in lines.values())
-    course = np.full((count, most), complex(np.nan, np.nan))
-    for k, line in lines.items():
-        course[rows[k], : len(line)] = line
-        course[rows[k], len(line) :] = line[-1]
-    if isinstance(shape, Arc):
-        own = {"role": shape.role, "of": shape.of, "tone": shape.tone, "head": shape.head}
-        shape = Polyline(points=tuple(map(xy, _as_line(shape))), **own)  # type: ignore[arg-type]
-    return Moving(shape=shape, frame=None, course=course)
-
-
-def _as_line(shape: Primitive) -> ComplexArray:
-    if not isinstance(shape, Arc):
-        return corners(shape)
-    angles = shape.start + shape.sweep * np.arange(_ARC_PIECES + 1) / _ARC_PIECES
-    line: ComplexArray = complex(*shape.centre) + shape.radius * np.exp(1j * angles)
-    return line
 
 
 def _carried(scene: MovingScene) -> dict[Key, Moving]:
@@ -327,30 +228,7 @@ def _carried(scene: MovingScene) -> dict[Key, Moving]:
         if part.shape.role not in (Role.TRACE, Role.INPUT) and not isinstance(part.shape, Text)
     ]
     by_shape = {id(part.shape): part for part in drawn}
-    return {key: by_shape[id(shape)] for key, shape in _keyed(part.shape for part in drawn)}
-
-
-def _taken_over(
-    motion: Motion,
-    pose: Pose,
-    measures: Measures,
-    shown: Mapping[Key, Primitive],
-    carried: Mapping[Key, Moving],
-    rows: CountArray,
-) -> list[Moving]:
-    """The primitives of a pose, carried as they were with other dimensions."""
-    changing = [key for key, part in carried.items() if part.frame is None]
-    course: dict[Key, dict[int, Primitive]] = {key: {} for key in changing}
-    for k, row in enumerate(rows if changing else ()):
-        for key, primitive in _keyed(_drawn(pose.moved_to(motion, int(row)), measures)):
-            if key in course:
-                course[key][k] = primitive
-    return [
-        _own_course(shape, course[key], rows, len(motion))
-        if key in course
-        else Moving(shape=shape, frame=carried[key].frame)
-        for key, shape in shown.items()
-    ]
+    return {key: by_shape[id(shape)] for key, shape in keyed(part.shape for part in drawn)}
 
 
 def _arrows(

@@ -16,19 +16,17 @@ from linkwork.motion.drive import Drive
 from linkwork.motion.last_rows import fill_last_rows, fill_passed_rows
 from linkwork.motion.limits import BranchEnd, ends_of
 from linkwork.motion.proving import inputs_apart, prove_rows
-from linkwork.motion.rows import SolvedRows
 from linkwork.motion.tracking import track_to
 from linkwork.numerics.continuation.branch_tracking import (
     BOLD,
     Node,
     Track,
     TrackOptions,
-    TrackRows,
-    concatenate_rows,
     follow,
     rows_on_track,
 )
 from linkwork.numerics.continuation.passage import Passage
+from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["Asked", "BranchRows", "Report", "rows_of_branch"]
 
@@ -127,10 +125,10 @@ def rows_of_branch(
     ends = ends_of(drive, track, certify)
     if not to_ends:
         ends = tuple(end.demote(Certification.MOTION_NOT_PROVED) for end in ends)
-    fill_last_rows(drive, track, ends, asked.t, placed, rows)
+    rows = fill_last_rows(drive, track, ends, asked.t, placed, rows)
     if passage is not None:
-        fill_passed_rows(drive, passage, asked.t, placed, rows)
-    _mark_missing(rows, track, asked.t, np.isnan(placed), ends)
+        rows = fill_passed_rows(drive, passage, asked.t, placed, rows)
+    rows = _mark_missing(rows, track, asked.t, np.isnan(placed), ends)
     return BranchRows(rows=rows, track=track, placed=placed, ends=ends, proved_to_ends=to_ends)
 
 
@@ -211,15 +209,7 @@ class _RowSolver:
             quickly = self._by_kernels(there)
             if quickly is not None:
                 return quickly
-        found = self._blank()
-        return found, self._fill(found, there)
-
-    def _blank(self) -> SolvedRows:
-        variables = self.drive.solver.variables
-        found = SolvedRows.blank(self.asked.in_file_units, variables, Status.CONVERGED)
-        if not self.certify:
-            found.certification[:] = Certification.NOT_ASKED.code
-        return found
+        return self._along_track(there)
 
     def _by_kernels(self, there: IndexArray) -> tuple[SolvedRows, bool] | None:
         """Most rows by compiled kernels, the others along the track; ``None`` if that is not the
@@ -230,39 +220,45 @@ class _RowSolver:
         rows = by_kernels.kernel_rows(drive, self.track, t, spread, self.certify)
         if rows is None:
             return None
-        found = self._blank()
-        to_ends = self._fill(found, there[rows.checked])
+        found, to_ends = self._along_track(there[rows.checked])
         weights = drive.solver.variable_scale
-        return (found, to_ends) if rows.put_into(found, there, weights, self.certify) else None
+        filled = rows.put_into(found, there, weights, self.certify)
+        return None if filled is None else (filled, to_ends)
 
-    def _fill(self, found: SolvedRows, there: IndexArray) -> bool:
-        """Solve some rows, in the order of the track; whether that is proved up to its ends."""
+    def _along_track(self, there: IndexArray) -> tuple[SolvedRows, bool]:
+        """The table with some rows solved, in the order of the track; whether the track is proved
+        up to its ends.
+        """
         solver, path, track = self.drive.solver, self.drive.path, self.track
-        pieces: list[TrackRows] = []
+        blank = SolvedRows.blank(
+            self.asked.in_file_units,
+            solver.variables,
+            Status.CONVERGED,
+            Certification.NO_POSITION if self.certify else Certification.NOT_ASKED,
+        )
+        if not len(there):
+            return blank, self.certify
+        pieces: list[SolvedRows] = []
         for begin in range(0, len(there), _CHUNK):
             chunk = there[begin : begin + _CHUNK]
-            rows = rows_on_track(solver, path, track, self.placed[chunk])
-            pieces.append(rows)
-            found.v[chunk], found.first[chunk] = rows.v, rows.rates.first
-            found.second[chunk] = rows.rates.second
-            found.status[chunk], found.iterations[chunk] = rows.status, rows.iterations
-            found.residual[chunk], found.condition[chunk] = rows.residual, rows.rates.condition
+            pieces.append(rows_on_track(solver, path, track, self.placed[chunk]))
             self.report.solved((begin + len(chunk)) / len(there))
-        if not (self.certify and pieces):
-            return self.certify
-        asked, joined = self.asked.inputs[there], concatenate_rows(pieces)
-        proofs = prove_rows(solver, path, track, joined, asked, self.report.proved)
-        found.prove(there, proofs)
-        return proofs.up_to_ends
+        rows, to_ends = SolvedRows.concatenate(pieces), False
+        if self.certify:
+            asked = self.asked.inputs[there]
+            rows, to_ends = prove_rows(solver, path, track, rows, asked, self.report.proved)
+        return blank.put(there, rows), to_ends
 
 
 def _mark_missing(
     rows: SolvedRows, track: Track, t: Array, missing: BoolArray, ends: tuple[BranchEnd, ...]
-) -> None:
+) -> SolvedRows:
     """Rows that are nowhere on the track say what was met on the straight way to them."""
-    if not ends:
-        return
+    if not (ends and missing.any()):
+        return rows
     lower = ends[0] if track.below is not None else ends[-1]
     upper = ends[-1] if track.above is not None else ends[0]
-    rows.status[missing & (t < track.first_t)] = lower.limit.status.code
-    rows.status[missing & (t > track.last_t)] = upper.limit.status.code
+    status = rows.status.copy()
+    status[missing & (t < track.first_t)] = lower.limit.status.code
+    status[missing & (t > track.last_t)] = upper.limit.status.code
+    return rows.with_columns(status=status)

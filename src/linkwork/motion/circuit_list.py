@@ -12,6 +12,7 @@ from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.foundation.disjoint_sets import DisjointSets
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import canonical
 from linkwork.foundation.rounding import REGULAR_CONDITION
@@ -28,9 +29,9 @@ from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import motion_of_rows
 from linkwork.motion.redundancy import FITS, misfit
-from linkwork.motion.rows import SolvedRows
 from linkwork.numerics.continuation.change_point import Crossing
 from linkwork.numerics.continuation.local_parametrization import same_position
+from linkwork.numerics.rows import SolvedRows
 from linkwork.results.circuits import Branch, Circuit, Circuits
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Motion
@@ -109,22 +110,14 @@ class _Circuits:
     def _groups(self) -> list[_Group]:
         """Arcs joined by the change points they share, in the order found."""
         arcs, crossings = [a for a in self.explorer.arcs if self._fits(a)], self.explorer.crossings
-        owner = list(range(len(arcs)))
-
-        def root(k: int) -> int:
-            while owner[k] != k:
-                k = owner[k]
-            return k
-
+        joined = DisjointSets(len(arcs))
         first: dict[int, int] = {}
         for k, arc in enumerate(arcs):
             for crossing in arc.crossings:
-                other = first.setdefault(crossing, k)
-                a, b = sorted((root(k), root(other)))
-                owner[b] = a
+                joined.unite(k, first.setdefault(crossing, k))
         groups: dict[int, list[int]] = {}
         for k in range(len(arcs)):
-            groups.setdefault(root(k), []).append(k)
+            groups.setdefault(joined.root(k), []).append(k)
         return [
             _Group(
                 arcs=tuple(arcs[k] for k in members),
@@ -237,19 +230,19 @@ class _Circuits:
         model, solver = self.model, self.model.compiled.solver
         v = np.concatenate([branch.v for branch in pieces])
         inputs = v[:, solver.unknowns :] / model.input_scale
-        rows = SolvedRows.blank(inputs, solver.variables, Status.CONVERGED)
         rates = solver.rates(v, self.drive.path.rate)
-        rows.v[:] = v
-        regular = rates.nearness < REGULAR_CONDITION
-        rows.first[regular], rows.second[regular] = rates.first[regular], rates.second[regular]
-        rows.residual[:], rows.condition[:] = solver.residual(v), rates.condition
-        begin = 0
+        singular = ~(rates.nearness < REGULAR_CONDITION)
+        rates = rates.set(singular, first=np.nan, second=np.nan)
+        rates = rates.with_columns(residual=solver.residual(v))
+        blank = SolvedRows.blank(inputs, solver.variables, Status.CONVERGED)
+        rows, begin = blank.put(np.arange(len(v)), rates), 0
         for branch, named in zip(pieces, names, strict=True):
             here = slice(begin, begin + len(branch.v))
             begin += len(branch.v)
-            rows.branch[here], rows.limit[here] = named.name, branch.limits
             code = Certification.CERTIFIED if named.certified else Certification.MOTION_NOT_PROVED
-            rows.certification[here] = (code if self.certify else Certification.NOT_ASKED).code
+            code = code if self.certify else Certification.NOT_ASKED
+            limits = np.array(branch.limits, dtype=object)
+            rows = rows.set(here, branch=named.name, limit=limits, certification=code.code)
         return motion_of_rows(model, rows, "", np.zeros(len(v), dtype=bool))
 
 

@@ -121,7 +121,7 @@ def _rows(
     found = rows_of_branch(drive, node, mine, report, certify)
     joined = branch.is_joined(leads)
     standing = Certification.CERTIFIED if joined else Certification.MOTION_NOT_PROVED
-    found.rows.demote(standing)
+    found = replace(found, rows=found.rows.demote(standing))
     ends = tuple(
         end_at_dead_point(drive, turn, walk.curve.legs[turn.leg].led, certify, joined)
         for turn in (branch.begin, branch.end)

@@ -162,7 +162,7 @@ def _samples(leads: Parametrizations, leg: Leg, fine: int) -> tuple[Array, Array
     if fine > 1 and len(t) > 1:
         rows = rows_on_track(led.solver, led.path, track, t)
         good = rows.status == Status.CONVERGED.code
-        t, v, first = t[good], led.whole(rows.v[good]), led.whole(rows.rates.first[good])
+        t, v, first = t[good], led.whole(rows.v[good]), led.whole(rows.first[good])
     else:
         v, first = leg.v, leg.first
     speed = np.abs(first) / leads.scale

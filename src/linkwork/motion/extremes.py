@@ -17,7 +17,7 @@ from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import RowValues
 from linkwork.numerics.continuation.branch_tracking import Track, rows_on_track
 from linkwork.results.limit import OutputLimit
-from linkwork.results.quantities.registry import Group
+from linkwork.results.quantities.asked import Group
 
 __all__ = ["check_quantities", "output_limit_at", "output_limits"]
 
@@ -124,9 +124,8 @@ class _Search:
         model = self.drive.model
         rows = rows_on_track(self.drive.solver, self.drive.path, self.track, t)
         good = rows.status == Status.CONVERGED.code
-        rates = rows.rates
-        series = RowValues(model, rows.v, rates.first, rates.second, good).series(self.name)
-        return series.value, series.first, series.second, rows.rates.condition
+        series = RowValues(model, rows.v, rows.first, rows.second, good).series(self.name)
+        return series.value, series.first, series.second, rows.condition
 
     def between(self, low: float, high: float, rate: float) -> tuple[float, float]:
         """Where the derivative is zero, and how far from it that may be."""

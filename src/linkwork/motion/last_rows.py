@@ -18,13 +18,13 @@ from linkwork.foundation.rounding import EPSILON, LARGEST_POLISH
 from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
-from linkwork.motion.rows import SolvedRows
 from linkwork.numerics.continuation.branch_tracking import Track
 from linkwork.numerics.continuation.curve_proof import same_solution
 from linkwork.numerics.continuation.passage import Passage
 from linkwork.numerics.continuation.step_division import sign_change
 from linkwork.numerics.continuation.turning_point import TurnAhead
 from linkwork.numerics.proof.position_proof import Proof, prove
+from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["fill_last_rows", "fill_passed_rows"]
 
@@ -36,31 +36,49 @@ def fill_last_rows(
     t: Array,
     placed: Array,
     rows: SolvedRows,
-) -> None:
+) -> SolvedRows:
     """Fill the rows between a track's outermost nodes and the dead points beyond them.
 
     ``t`` (B,): values asked for. ``placed`` (B,): where on the branch each row lies, NaN for those
     that were not found; it gets the values of the rows that are found here.
     """
+    certify = _asks_for_proofs(rows)
+    found: dict[int, SolvedRows] = {}
     for end in ends:
         edge = track.last_t if end.side > 0 else track.first_t
         for row, here in _between(t, np.isnan(placed), edge, end.t, drive.free):
+            solved = None
             if end.passage is not None:
-                standing = Certification.MOTION_NOT_PROVED
-                _enter_passed(drive, end.passage, here, row, rows, standing)
-                placed[row] = here
-            elif end.ahead is not None and _fill(drive, end, end.ahead, here, row, rows):
-                placed[row] = here
+                why = Certification.MOTION_NOT_PROVED
+                solved = _passed_row(drive, end.passage, here, why, certify)
+            elif end.ahead is not None:
+                solved = _row_ahead(drive, end, end.ahead, here, certify)
+            if solved is not None:
+                found[row], placed[row] = solved, here
+    return _put_each(rows, found)
 
 
 def fill_passed_rows(
     drive: Drive, passage: Passage, t: Array, placed: Array, rows: SolvedRows
-) -> None:
+) -> SolvedRows:
     """Fill the rows between the first change point on a way and its end."""
     begin, end = passage.crossings[0][0].t, passage.node.t
+    certify, why = _asks_for_proofs(rows), Certification.BRANCH_CHOSEN
+    found: dict[int, SolvedRows] = {}
     for row, here in _between(t, np.isnan(placed), begin, end, False):
-        _enter_passed(drive, passage, here, row, rows, Certification.BRANCH_CHOSEN)
-        placed[row] = here
+        found[row], placed[row] = _passed_row(drive, passage, here, why, certify), here
+    return _put_each(rows, found)
+
+
+def _asks_for_proofs(rows: SolvedRows) -> bool:
+    return not (rows.certification == Certification.NOT_ASKED.code).any()
+
+
+def _put_each(rows: SolvedRows, found: dict[int, SolvedRows]) -> SolvedRows:
+    """The rows with some replaced, each by its number."""
+    if not found:
+        return rows
+    return rows.put(np.array(list(found)), SolvedRows.concatenate(list(found.values())))
 
 
 def _between(
@@ -74,55 +92,56 @@ def _between(
         yield int(row), float(here[row])
 
 
-def _enter_passed(
-    drive: Drive, passage: Passage, t: float, row: int, rows: SolvedRows, standing: Certification
-) -> None:
-    """Enter one row on the way across change points, where positions are too ill-conditioned for
+def _passed_row(
+    drive: Drive, passage: Passage, t: float, standing: Certification, certify: bool
+) -> SolvedRows:
+    """One row on the way across change points, where positions are too ill-conditioned for
     Newton-Raphson to improve them.
     """
-    v = passage.position(t)[0]
-    proof = _enter(drive, v, row, rows)
-    if proof is not None and proof.holds[0]:
-        rows.certification[row] = standing.code
-        rows.radius[row], rows.uniqueness_radius[row] = (
-            proof.radius[0],
-            proof.least_uniqueness_radius[0],
-        )
+    row, proof = _row_at(drive, passage.position(t)[0], certify)
+    return _with_proof(row, proof, standing) if proof is not None else row
 
 
-def _enter(drive: Drive, v: Array, row: int, rows: SolvedRows) -> Proof | None:
-    """Enter a position (N,) as a row, not proved yet; its proof, ``None`` if there can be none."""
+def _row_at(drive: Drive, v: Array, certify: bool) -> tuple[SolvedRows, Proof | None]:
+    """A position (N,) as a row, not proved yet; its proof, ``None`` if there is none."""
     solver, here = drive.solver, v[None, :]
-    rates = solver.rates(here, drive.path.rate)
-    rows.v[row], rows.first[row], rows.second[row] = v, rates.first[0], rates.second[0]
-    rows.status[row] = Status.CONVERGED.code
-    rows.residual[row], rows.condition[row] = solver.residual(here)[0], rates.condition[0]
-    if rows.certification[row] == Certification.NOT_ASKED.code:
-        return None
     bounded = all(block.system.has_curvature_bound for block in solver.blocks)
     why = Certification.POSITION_NOT_PROVED if bounded else Certification.NO_BOUND
-    rows.certification[row] = why.code
-    rounding = 4.0 * EPSILON * np.abs(here[:, solver.unknowns :])
-    return prove(solver, here, rounding) if bounded else None
+    row = solver.rates(here, drive.path.rate).with_columns(
+        status=np.array([Status.CONVERGED.code], dtype=np.int8),
+        residual=solver.residual(here),
+        certification=np.array([(why if certify else Certification.NOT_ASKED).code], dtype=np.int8),
+        radius=np.array([np.nan]),
+        uniqueness_radius=np.array([np.nan]),
+    )
+    if not (certify and bounded):
+        return row, None
+    proof = prove(solver, here, 4.0 * EPSILON * np.abs(here[:, solver.unknowns :]))
+    return row, proof if proof.holds[0] else None
 
 
-def _fill(
-    drive: Drive, end: BranchEnd, ahead: TurnAhead, t: float, row: int, rows: SolvedRows
-) -> bool:
-    """Solve one row at a value of the path; whether it was found."""
+def _with_proof(row: SolvedRows, proof: Proof, standing: Certification) -> SolvedRows:
+    return row.set(
+        certification=standing.code,
+        radius=proof.radius,
+        uniqueness_radius=proof.least_uniqueness_radius,
+    )
+
+
+def _row_ahead(
+    drive: Drive, end: BranchEnd, ahead: TurnAhead, t: float, certify: bool
+) -> SolvedRows | None:
+    """One row between the track and a dead point, at a value of the path; ``None`` if it was not
+    found.
+    """
     v = _position(drive, ahead, t) if ahead.located else None
     if v is None:
-        return False
-    proof, own = _enter(drive, v, row, rows), drive.leads.with_parameter(drive.leads.parameter)
-    if proof is None or own is None or not proof.holds[0]:
-        return True
-    if same_solution(ahead.leg.led, own, v):
-        rows.certification[row] = end.certification.code
-        rows.radius[row], rows.uniqueness_radius[row] = (
-            proof.radius[0],
-            proof.least_uniqueness_radius[0],
-        )
-    return True
+        return None
+    row, proof = _row_at(drive, v, certify)
+    own = drive.leads.with_parameter(drive.leads.parameter)
+    if proof is not None and own is not None and same_solution(ahead.leg.led, own, v):
+        return _with_proof(row, proof, end.certification)
+    return row
 
 
 def _position(drive: Drive, ahead: TurnAhead, t: float) -> Array | None:

@@ -10,7 +10,7 @@ from linkwork.foundation.status import Status
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import name_series
 from linkwork.motion.redundancy import FITS, largest_misfits, misfit
-from linkwork.motion.rows import SolvedRows
+from linkwork.numerics.rows import SolvedRows
 from linkwork.results.motion import Motion
 
 __all__ = ["fitting", "motion_of_rows"]
@@ -56,11 +56,7 @@ def fitting(model: Model, rows: SolvedRows) -> SolvedRows:
     """Rows at which redundant links fit; the others have no position."""
     if not model.equations.redundant:
         return rows
-    rows = rows.take(np.arange(len(rows)))
     fits = misfit(model.equations, rows.v) <= FITS
     lost = (rows.status == Status.CONVERGED.code) & ~fits
     nothing = SolvedRows.blank(rows.inputs[lost], rows.v.shape[1], Status.DOES_NOT_FIT)
-    rows.put(np.flatnonzero(lost), nothing)
-    proved = rows.certification == Certification.CERTIFIED.code
-    rows.certification[proved] = Certification.SUBSET_CERTIFIED.code
-    return rows
+    return rows.put(np.flatnonzero(lost), nothing).demote(Certification.SUBSET_CERTIFIED)

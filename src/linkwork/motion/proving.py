@@ -3,76 +3,58 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, IndexArray, StatusArray
+from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.foundation.status import Status
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Track, TrackRows
-from linkwork.numerics.continuation.path_proof import PathPoints, prove_path
+from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Track, rows_of_nodes
+from linkwork.numerics.continuation.path_proof import prove_path
 from linkwork.numerics.proof.position_proof import rounding_of_inputs
+from linkwork.numerics.rows import SolvedRows
 
-__all__ = ["RowProofs", "inputs_apart", "prove_rows", "unproved", "way_is_proved"]
+__all__ = ["inputs_apart", "prove_rows", "way_is_proved"]
 
 _FAR_FROM_SINGULAR = 1e5  # condition up to which a track's nodes must be proved
 _TURN = 1e-9  # rad: an input this near to whole turns away from what was asked is the same one
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class RowProofs:
-    """(B,) codes of :class:`Certification`, radii of existence and of uniqueness (weighted).
-
-    ``up_to_ends`` tells whether the track itself is proved up to where it ends.
-    """
-
-    code: StatusArray
-    radius: Array
-    uniqueness_radius: Array
-    up_to_ends: bool = True
-
-
-def unproved(count: int, why: Certification) -> RowProofs:
-    """No proofs, all for one reason."""
-    return RowProofs(
-        code=np.full(count, why.code, dtype=np.int8),
-        radius=np.full(count, np.nan),
-        uniqueness_radius=np.full(count, np.nan),
-    )
 
 
 def prove_rows(
     solver: BlockSolver,
     path: InputPath,
     track: Track,
-    rows: TrackRows,
+    rows: SolvedRows,
     asked: Array,
     progress: Callable[[float], None] | None = None,
-) -> RowProofs:
+) -> tuple[SolvedRows, bool]:
     """Prove rows solved along a track for the inputs ``asked`` (B, p).
 
     The rows and the track's nodes around them are sorted along the path; every position and every
     step between neighbours is proved, and a row is certified if proved steps join it to the
     track's start.
+
+    Returns
+    -------
+    rows, up_to_ends
+        The rows with ``certification``, ``radius`` and ``uniqueness_radius``; whether the track
+        itself is proved up to both ends.
     """
-    count = len(rows.t)
     if not all(block.system.has_curvature_bound for block in solver.blocks):
-        return unproved(count, Certification.NO_BOUND)
+        return _unproved(rows, Certification.NO_BOUND), True
     found = np.flatnonzero(rows.status == Status.CONVERGED.code)
     if not len(found):
-        return unproved(count, Certification.NO_POSITION)
+        return _unproved(rows, Certification.NO_POSITION), True
     nodes = _nodes_around(track, rows.t[found])
     points, place = _path_points(solver, [track.nodes[k] for k in nodes], rows, asked, found)
     anchor = int(place[nodes.index(track.start)])
     proof = prove_path(solver, path, points, anchor=anchor, progress=progress)
     joined = proof.connected_to(anchor)
     mine = place[len(nodes) :]
-    proofs = unproved(count, Certification.NO_POSITION)
     position = proof.position.holds[mine]
-    proofs.code[found] = np.select(
+    certification = np.select(
         [joined[mine], ~position, proof.given_up_before(anchor)[mine]],
         [
             Certification.CERTIFIED.code,
@@ -81,11 +63,20 @@ def prove_rows(
         ],
         default=Certification.MOTION_NOT_PROVED.code,
     )
-    proofs.radius[found] = np.where(position, proof.position.radius[mine], np.nan)
-    proofs.uniqueness_radius[found] = np.where(
-        position, proof.position.least_uniqueness_radius[mine], np.nan
+    proved = _unproved(rows, Certification.NO_POSITION).set(
+        found,
+        certification=certification,
+        radius=np.where(position, proof.position.radius[mine], np.nan),
+        uniqueness_radius=np.where(position, proof.position.least_uniqueness_radius[mine], np.nan),
     )
-    return replace(proofs, up_to_ends=bool(joined[place[: len(nodes)]].all()))
+    return proved, bool(joined[place[: len(nodes)]].all())
+
+
+def _unproved(rows: SolvedRows, why: Certification) -> SolvedRows:
+    """The rows without proofs, all for one reason."""
+    unknown = np.full(len(rows), np.nan)
+    code = np.full(len(rows), why.code, dtype=np.int8)
+    return rows.with_columns(certification=code, radius=unknown, uniqueness_radius=unknown)
 
 
 def _nodes_around(track: Track, t: Array) -> list[int]:
@@ -100,43 +91,29 @@ def _nodes_around(track: Track, t: Array) -> list[int]:
 
 
 def _path_points(
-    solver: BlockSolver, nodes: Sequence[Node], rows: TrackRows, asked: Array, found: IndexArray
-) -> tuple[PathPoints, IndexArray]:
-    """Nodes and rows sorted along the path; where each of them stands, the nodes first."""
-    t = np.concatenate([[node.t for node in nodes], rows.t[found]])
-    order = np.argsort(t, kind="stable")
-
-    def gathered(of_nodes: list[Array], of_rows: Array) -> Array:
-        joined: Array = np.concatenate([np.stack(of_nodes), of_rows])[order]
-        return joined
-
-    input_radius = [rounding_of_inputs(node.v[None, :], solver.unknowns)[0] for node in nodes]
-    points = PathPoints(
-        t=t[order],
-        v=gathered([node.v for node in nodes], rows.v[found]),
-        first=gathered([node.first for node in nodes], rows.rates.first[found]),
-        second=gathered([node.second for node in nodes], rows.rates.second[found]),
-        input_radius=gathered(
-            input_radius, inputs_apart(rows.v[found][:, solver.unknowns :], asked[found])
-        ),
+    solver: BlockSolver, nodes: Sequence[Node], rows: SolvedRows, asked: Array, found: IndexArray
+) -> tuple[SolvedRows, IndexArray]:
+    """Nodes and rows sorted along the path; the place of each of them, the nodes first."""
+    apart = inputs_apart(rows.v[found][:, solver.unknowns :], asked[found])
+    points = SolvedRows.concatenate(
+        [_points_of(solver, nodes), rows.take(found).with_columns(input_radius=apart)]
     )
+    order = np.argsort(points.t, kind="stable")
     place = np.empty(len(order), dtype=np.intp)
     place[order] = np.arange(len(order))
-    return points, place
+    return points.take(order), place
+
+
+def _points_of(solver: BlockSolver, nodes: Sequence[Node]) -> SolvedRows:
+    points = rows_of_nodes(nodes)
+    return points.with_columns(input_radius=rounding_of_inputs(points.v, solver.unknowns))
 
 
 def way_is_proved(solver: BlockSolver, path: InputPath, nodes: Sequence[Node]) -> bool:
     """Whether every position and every step of a track is proved."""
     if not all(block.system.has_curvature_bound for block in solver.blocks):
         return False
-    v = np.stack([node.v for node in nodes])
-    points = PathPoints(
-        t=np.array([node.t for node in nodes]),
-        v=v,
-        first=np.stack([node.first for node in nodes]),
-        second=np.stack([node.second for node in nodes]),
-        input_radius=rounding_of_inputs(v, solver.unknowns),
-    )
+    points = _points_of(solver, nodes)
     return bool(prove_path(solver, path, points, anchor=0).connected_to(0).all())
 
 

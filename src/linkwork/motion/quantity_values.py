@@ -13,9 +13,9 @@ from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.names import canonical
 from linkwork.motion.model import Model
+from linkwork.results.quantities.asked import Group
 from linkwork.results.quantities.definition import Vector
 from linkwork.results.quantities.index import row_quantity
-from linkwork.results.quantities.registry import Group
 from linkwork.results.quantity import Kind
 
 __all__ = ["QuantityValues"]

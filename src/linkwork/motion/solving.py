@@ -24,9 +24,9 @@ from linkwork.motion.positions import (
 )
 from linkwork.motion.redundancy import FITS, lengths_found, misfit, without_redundant
 from linkwork.motion.start import Start, first_position
-from linkwork.numerics.block_solver import Rates
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.proof.position_proof import prove, rounding_of_inputs
+from linkwork.numerics.rows import SolvedRows
 from linkwork.results.failure import Failure, Remedy
 from linkwork.results.position import Certificate, Position
 
@@ -166,14 +166,10 @@ def _does_not_fit(model: Model, v: Array) -> Failure:
     return Failure(what=Status.DOES_NOT_FIT.value, remedies=tuple(remedies), units=model.units)
 
 
-def _at_limit(first: Array) -> Rates:
-    """Derivatives by the input where a branch ends, as far as they exist: first (N,), no second."""
+def _at_limit(v: Array, first: Array) -> SolvedRows:
+    """A position v (1, N) where a branch ends: the first derivatives (N,) exist, no second."""
     nothing = np.full((1, len(first)), np.nan)
-    endless = np.full(1, np.inf)
-    sign = np.zeros((1, 0), dtype=np.int8)
-    return Rates(
-        first=first[None, :], second=nothing, condition=endless, nearness=endless, orientation=sign
-    )
+    return SolvedRows(v=v, first=first[None, :], second=nothing, condition=np.full(1, np.inf))
 
 
 def _position(
@@ -186,7 +182,7 @@ def _position(
         return failed_position(
             model, target, Status.DOES_NOT_FIT, _does_not_fit(model, found.v), start
         )
-    rates = solver.rates(v, input_rate(model)) if found.first is None else _at_limit(found.first)
+    rates = solver.rates(v, input_rate(model)) if found.first is None else _at_limit(v, found.first)
     ok = np.array([found.status.ok])
     named = name_series(model, v, rates.first, rates.second, target[None, :], ok)
     condition = float(rates.condition[0])

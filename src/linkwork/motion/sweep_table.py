@@ -16,7 +16,7 @@ from linkwork.foundation.status import Status
 from linkwork.motion.branch_rows import Asked, BranchRows
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
-from linkwork.motion.rows import SolvedRows
+from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["NamedEnd", "SweepTable"]
 
@@ -83,7 +83,7 @@ class SweepTable:
         """
         straight = found.converged & (found.placed == self.asked.t[where])
         put = straight | (self.rows.status[where] != Status.CONVERGED.code)
-        self.rows.put(where[put], found.rows.take(np.flatnonzero(put)))
+        self.rows = self.rows.put(where[put], found.rows.take(np.flatnonzero(put)))
         self._placed[where[put]] = found.placed[put]
         taken = np.zeros(len(self.rows), dtype=bool)
         taken[where[put & found.converged]] = True
@@ -92,7 +92,7 @@ class SweepTable:
     def leave_out(self, where: IndexArray, status: Status) -> None:
         """Those of some rows that are not there say why."""
         there = self.rows.status[where] == Status.CONVERGED.code
-        self.rows.status[where[~there]] = status.code
+        self.rows = self.rows.set(where[~there], status=status.code)
 
     def places_of(self, t: float) -> list[float]:
         """Where a value belongs in the table's range, whole turns apart too."""
@@ -182,13 +182,17 @@ class SweepTable:
     ) -> SolvedRows:
         solver = self.drive.solver
         row = SolvedRows.blank(self._inputs(end, here), solver.variables, Status.CONVERGED)
-        row.v[0], row.first[0] = v, first
-        row.residual[0] = float(solver.residual(v[None, :])[0])
-        row.condition[0] = np.inf
-        row.certification[0] = end.certification.code
-        row.radius[0], row.uniqueness_radius[0] = end.radius, end.uniqueness_radius
-        row.branch[0], row.limit[0] = branch, end.limit.kind.word
-        return row
+        return row.set(
+            v=v,
+            first=first,
+            residual=solver.residual(v[None, :]),
+            condition=np.inf,
+            certification=end.certification.code,
+            radius=end.radius,
+            uniqueness_radius=end.uniqueness_radius,
+            branch=branch,
+            limit=end.limit.kind.word,
+        )
 
     def put(self, row: SolvedRows, here: float, slack: float | None = None) -> bool:
         """A row at a value of t: in the place of one that was asked for just there, or between.
@@ -202,8 +206,8 @@ class SweepTable:
         same = np.flatnonzero(np.abs(self.asked.t - here) <= slack)
         fresh = [k for k in same if not self.rows.limit[k]]
         for k in fresh:
-            row.inputs[0] = self.rows.inputs[k]
-            self.rows.put(np.array([k]), row)
+            row = row.set(inputs=self.rows.inputs[k])
+            self.rows = self.rows.put(np.array([k]), row)
         if not len(same):
             self._extra.append(row)
             self._extra_t.append(here)

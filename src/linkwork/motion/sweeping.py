@@ -22,23 +22,20 @@ from linkwork.motion.limits import BranchEnd
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import fitting, motion_of_rows
-from linkwork.motion.proving import way_is_proved
+from linkwork.motion.path_entry import enter_path
 from linkwork.motion.redundancy import FITS, misfit
-from linkwork.motion.rows import SolvedRows
 from linkwork.motion.start import Start, first_position
 from linkwork.motion.sweep_table import NamedEnd, SweepTable
 from linkwork.motion.tracking import track_to
-from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Track, follow, node_at
+from linkwork.numerics.continuation.branch_tracking import Node, Track
 from linkwork.numerics.continuation.local_parametrization import coincide, whole_turns
 from linkwork.numerics.continuation.passage import Passage
 from linkwork.numerics.newton import NewtonOptions
+from linkwork.numerics.rows import SolvedRows
 from linkwork.results.motion import Limit, Motion, OutputLimit
 
 __all__ = ["sweep", "sweep_rows"]
 
-_ENTRIES = (
-    24  # rows, from the nearest on, at which a table of several inputs is tried to be entered
-)
 _MOST_CROSSINGS = 64
 _ROUNDING = 1e-14  # of whole turns, which are no floats
 _SAME_EXTREME = 1e-6  # of the leading input: extremes nearer to each other are one
@@ -101,9 +98,9 @@ def sweep(
 
 
 def sweep_rows(model: Model, *, certify: bool = True) -> tuple[SolvedRows, tuple[BranchEnd, ...]]:
-    """What :func:`sweep` finds for the rows of the table, and the ends of the branch they lie on.
+    """The rows that :func:`sweep` finds for the table, and the ends of the branch they lie on.
 
-    No row is added for limits, and limits are told where they were met, not whole turns away.
+    No row is added for limits; a limit has the input at which it was met, not one whole turns away.
     """
     options, policy = NewtonOptions(), ChangePointPolicy.STOP
     work = _begin_sweep(model, certify, options, policy, None, explained=False)
@@ -131,7 +128,7 @@ def _begin_sweep(
     lead, rate = lock_step(rows)
     drive = Drive.through(model, rows[0], rate, lead)
     asked = Asked(t=rows[:, lead], inputs=rows, in_file_units=model.rows_in_file_units)
-    entry = _onto_path(drive, start, asked.t, certify)
+    entry = enter_path(drive, start, asked.t, certify)
     if entry is None:
         message = "no row of the table can be reached from the input values of the guess"
         return replace(start, message=message)
@@ -198,9 +195,8 @@ class _Sweep:
         passage: Passage | None = None,
     ) -> BranchRows:
         found = rows_of_branch(self.drive, anchor, asked, self.report, self.certify, passage)
-        found.rows.demote(standing)
-        found.rows.branch[found.converged] = name
-        return found
+        rows = found.rows.demote(standing).set(found.converged, branch=name)
+        return replace(found, rows=rows)
 
     def _keep(
         self,
@@ -258,7 +254,7 @@ class _Sweep:
         placed: list[BranchEnd] = []
         for branch in around.branches:
             found, name = branch.found, branch.name
-            found.rows.branch[found.converged] = name
+            found = replace(found, rows=found.rows.set(found.converged, branch=name))
             windows = (branch.window, _span(asked.t))
             table = SweepTable(self.drive, branch.asked, found, windows, False)
             self.tables.append(table)
@@ -274,7 +270,7 @@ class _Sweep:
         self.limits += [end.limit for end in fresh]
         beyond = table.rows.status == Status.OUT_OF_REACH.code
         beyond &= around.leaves_out(asked.t, self.drive.free)
-        table.rows.status[beyond] = Status.OUT_OF_CIRCUIT.code
+        table.rows = table.rows.set(beyond, status=Status.OUT_OF_CIRCUIT.code)
 
     def _is_same(self, end: BranchEnd, known: BranchEnd) -> bool:
         """Whether two ends are one place: near each other, at one value as far as it is known.
@@ -311,7 +307,7 @@ class _Sweep:
                 ]
                 for here in mine:
                     row = self._branch_row(branch, t, here)
-                    row.limit[0] = f"{extreme.kind} of {name}"
+                    row = row.set(limit=f"{extreme.kind} of {name}")
                     if here == mine[0]:
                         self.output_limits.append(extreme.named(float(row.inputs[0, lead])))
                     places.append(here)
@@ -364,39 +360,6 @@ def _message(motion: Motion) -> str:
     return "; ".join(
         [f"{missing} of {int(asked.sum())} positions were not found", *misses, *dict.fromkeys(told)]
     )
-
-
-def _onto_path(drive: Drive, start: Start, t: Array, certify: bool) -> tuple[Node, bool] | None:
-    """The start as a node of the table's path, and whether the way to it is proved.
-
-    Several inputs are first led onto the path.
-    """
-    solver, path = drive.solver, drive.path
-    own = drive.model.start_inputs
-    here = float(own[drive.lead])
-    if np.allclose(path.at(here), own, rtol=0, atol=1e-12 * path.size):
-        return node_at(solver, path, here, start.v), True
-    weights = solver.variable_scale[solver.unknowns :]
-    distance = np.abs((path.at(t) - own) / weights).max(axis=1)
-    nearest = np.argsort(distance, kind="stable")
-    spread = np.linspace(0, len(t) - 1, min(len(t), _ENTRIES)).astype(np.intp)
-    for row in (nearest[0], *nearest[spread[1:]]):
-        entry = _lead_to_row(drive, start, float(t[row]), certify)
-        if entry is not None:
-            return entry
-    return None
-
-
-def _lead_to_row(drive: Drive, start: Start, t: float, certify: bool) -> tuple[Node, bool] | None:
-    """The start led to one row of the table along the straight line between their inputs."""
-    solver, path, own = drive.solver, drive.path, drive.model.start_inputs
-    way = InputPath(origin=own, rate=path.at(t) - own)
-    first = node_at(solver, way, 0.0, start.v)
-    nodes, end = follow(solver, way, first, 1.0)
-    if end is not None:
-        return None
-    entered = certify and way_is_proved(solver, way, [first, *nodes])
-    return node_at(solver, path, t, nodes[-1].v), entered
 
 
 def _no_rows(model: Model) -> SolvedRows:

@@ -15,10 +15,10 @@ from linkwork.foundation.status import Status
 from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import motion_of_rows
 from linkwork.motion.positions import input_rate
-from linkwork.motion.rows import SolvedRows
 from linkwork.motion.start import first_position
 from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.newton import NewtonOptions
+from linkwork.numerics.rows import SolvedRows
 from linkwork.results.motion import Limit, LimitKind, Motion
 
 __all__ = ["warm_started"]
@@ -233,26 +233,19 @@ class _Renewal:
 
     def solve(self, branch: str) -> SolvedRows:
         """The rows with what is known of them."""
-        count, ok = len(self.v), self.found
+        here = np.flatnonzero(self.found)
         blank = SolvedRows.blank(
             self.model.rows_in_file_units, self.v.shape[1], Status.OUT_OF_REACH
         )
-        nothing = np.full(count, np.nan)
-        found = SolvedRows(
-            inputs=self.model.rows_in_file_units,
-            v=self.v,
-            first=self.first,
-            second=self.second,
-            status=np.full(count, Status.CONVERGED.code, dtype=np.int8),
-            iterations=self.iterations,
-            residual=self.residual,
-            condition=self.condition,
-            certification=np.full(count, Certification.NOT_ASKED.code, dtype=np.int8),
-            radius=nothing,
-            uniqueness_radius=nothing.copy(),
-            branch=np.full(count, branch, dtype=object),
-            limit=np.full(count, "", dtype=object),
+        return blank.set(
+            here,
+            v=self.v[here],
+            first=self.first[here],
+            second=self.second[here],
+            status=Status.CONVERGED.code,
+            iterations=self.iterations[here],
+            residual=self.residual[here],
+            condition=self.condition[here],
+            certification=Certification.NOT_ASKED.code,
+            branch=branch,
         )
-        here = np.flatnonzero(ok)
-        blank.put(here, found.take(here))
-        return blank

@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, CountArray, IndexArray, StatusArray
+from linkwork.foundation.arrays import Array, IndexArray, StatusArray
 from linkwork.foundation.products import matrix_vector
 from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.newton import NewtonOptions, Watch, newton
+from linkwork.numerics.rows import SolvedRows
 from linkwork.numerics.system import System
 
-__all__ = ["Block", "BlockSolution", "BlockSolver", "Linearised", "Rates", "linearise_block"]
+__all__ = ["Block", "BlockSolver", "Linearised", "linearise_block"]
 
 _LARGE = 1e3  # condition up to which nobody asks whether balanced columns would do better
 
@@ -31,19 +32,6 @@ class Block:
     variables: IndexArray
 
 
-@dataclass(frozen=True, kw_only=True)
-class BlockSolution:
-    """Solved variables (B, N) with evidence; ``failed_block`` is -1 where all blocks converged."""
-
-    v: Array
-    status: StatusArray
-    failed_block: CountArray
-    iterations: CountArray
-    residual: Array
-    first_step: Array
-    contraction: Array
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Linearised:
     """A block at B positions: dF/dv (B, n, N), the inverse of its first n columns, sign of det."""
@@ -51,22 +39,6 @@ class Linearised:
     jacobian: Array
     inverse: Array
     sign: StatusArray
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Rates:
-    """Derivatives along the input path: (B, N) each; evidence about the Jacobian.
-
-    ``condition`` (B,): largest over the blocks of ‖J‖·‖J⁻¹‖ (largest norm, weighted). ``nearness``
-    (B,): to a singular position, the condition itself unless lengths differ much (see
-    :func:`_nearness`). ``orientation`` (B, blocks): sign of det J. NaN and 0 where J is singular.
-    """
-
-    first: Array
-    second: Array
-    condition: Array
-    nearness: Array
-    orientation: StatusArray
 
 
 @dataclass(frozen=True)
@@ -93,7 +65,7 @@ class BlockSolver:
         start: Array,
         options: NewtonOptions | None = None,
         watches: Sequence[Watch | None] | None = None,
-    ) -> BlockSolution:
+    ) -> SolvedRows:
         """Newton-Raphson block by block from each row of ``start`` (B, N), inputs included.
 
         A row whose block fails keeps its guess in the blocks behind.
@@ -124,7 +96,7 @@ class BlockSolver:
                 live = live[~wrong]
                 if not len(live):
                     break
-        return BlockSolution(
+        return SolvedRows(
             v=v,
             status=status,
             failed_block=failed,
@@ -140,7 +112,7 @@ class BlockSolver:
 
     def rates(
         self, v: Array, input_rate: Array, linear: Sequence[Linearised] | None = None
-    ) -> Rates:
+    ) -> SolvedRows:
         """First and second derivative of all variables when the inputs move at a constant rate.
 
         J x' = -F_u u';  J x'' = -D²F[(x', u'), (x', u')]: one inverse of J serves both and the
@@ -154,6 +126,11 @@ class BlockSolver:
             u' of the inputs; u'' = 0.
         linear : list of Linearised, optional
             ``linearise(v)``, if it is there already.
+
+        Returns
+        -------
+        SolvedRows
+            ``v``, ``first``, ``second``, ``condition``, ``nearness``, ``orientation``.
         """
         parts = self.linearise(v) if linear is None else linear
         count = len(v)
@@ -183,7 +160,8 @@ class BlockSolver:
                 own = _nearness(own, system.equation_scale, jacobian[:, :, :n], inverse)
             nearness = np.maximum(nearness, own)
             orientation[:, k] = parts[k].sign
-        return Rates(
+        return SolvedRows(
+            v=v,
             first=first,
             second=second,
             condition=condition,

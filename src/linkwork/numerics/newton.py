@@ -8,11 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray, CountArray, StatusArray
+from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.status import CONVERGED, Status
+from linkwork.numerics.rows import SolvedRows
 from linkwork.numerics.system import System
 
-__all__ = ["NewtonOptions", "NewtonResult", "corrections", "newton"]
+__all__ = ["NewtonOptions", "corrections", "newton"]
 
 _FAR = 1e9  # weighted size of a correction beyond which the iteration has run away
 
@@ -47,23 +48,6 @@ class NewtonOptions:
     largest_turn: float = math.radians(40.0)
 
 
-@dataclass(frozen=True, kw_only=True)
-class NewtonResult:
-    """The end of every iteration; arrays over B starts.
-
-    ``v`` (B, N); ``status`` codes; ``iterations``; ``residual`` scaled, largest row;
-    ``first_step`` weighted size of the first correction; ``contraction`` largest ratio of
-    successive corrections that were above rounding.
-    """
-
-    v: Array
-    status: StatusArray
-    iterations: CountArray
-    residual: Array
-    first_step: Array
-    contraction: Array
-
-
 Watch = Callable[[int, Array, Array, Array | None], None]
 
 
@@ -72,7 +56,7 @@ def newton(
     start: Array,
     options: NewtonOptions | None = None,
     watch: Watch | None = None,
-) -> NewtonResult:
+) -> SolvedRows:
     """Solve F(v) = 0 for the first n variables from every row of ``start``.
 
     Parameters
@@ -86,8 +70,9 @@ def newton(
 
     Returns
     -------
-    NewtonResult
-        The loop's exit is the status.
+    SolvedRows
+        ``v``, ``status``, ``iterations``, ``residual``, ``first_step``, ``contraction``; the loop's
+        exit is the status.
 
     Notes
     -----
@@ -118,13 +103,13 @@ class _Iteration:
         turns = system.is_angle[:n]
         self.turns = turns if turns.any() and not math.isinf(options.largest_turn) else None
 
-    def run(self) -> NewtonResult:
+    def run(self) -> SolvedRows:
         """Iterate until every row has left."""
         for k in range(self.options.max_steps + 1):
             self._step(k)
             if not len(self.live):
                 break
-        return NewtonResult(
+        return SolvedRows(
             v=self.v,
             status=self.status,
             iterations=self.iterations,

@@ -23,8 +23,9 @@ from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
 from linkwork.results.limit import Limit, LimitKind, OutputLimit
+from linkwork.results.quantities.asked import Asked, Group
 from linkwork.results.quantities.definition import Vector
-from linkwork.results.quantities.registry import Asked, Group, Quantities
+from linkwork.results.quantities.registry import Quantities
 from linkwork.results.quantity import Quantity, Rate, Units
 from linkwork.results.table import Table
 

@@ -16,8 +16,9 @@ from linkwork.foundation.presenting import presenter
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
+from linkwork.results.quantities.asked import Group
 from linkwork.results.quantities.definition import Vector
-from linkwork.results.quantities.registry import Group, Quantities
+from linkwork.results.quantities.registry import Quantities
 from linkwork.results.quantity import Units
 from linkwork.results.summary import Summary, driven_text
 

@@ -8,7 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from linkwork.drawing.attachment import STILL, Frame
-from linkwork.drawing.moving_scene import Moving, MovingScene
+from linkwork.drawing.moving_scene import MovingScene
+from linkwork.drawing.moving_shape import Moving
 from linkwork.drawing.scene import XY, Arc, Disc, Hatch, Polygon, Polyline, Primitive, Text
 from linkwork.foundation.arrays import BoolArray, ComplexArray
 from linkwork.results.motion import Motion

@@ -14,7 +14,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import find_spelling
 from linkwork.results.motion import Motion
-from linkwork.results.quantities.registry import Asked, Group
+from linkwork.results.quantities.asked import Asked, Group
 from linkwork.results.quantity import Kind, Rate
 
 __all__ = ["TIME", "Column", "abscissa_of", "column_of", "lead_of"]

@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 from itertools import combinations, permutations
 
 from linkwork.equations.reading.walk import FRAME, Phase, Run, Walk
+from linkwork.foundation.disjoint_sets import DisjointSets
 
 __all__ = ["Corner", "Joints", "NotRead", "Slide", "joints_of"]
 
@@ -115,27 +116,6 @@ def joints_of(walks: Sequence[Walk], size: float) -> Joints:
     return found.joints()
 
 
-class _Union:
-    """Sets of numbered things, each by the first of them."""
-
-    def __init__(self) -> None:
-        self.above: list[int] = []
-
-    def more(self) -> int:
-        self.above.append(len(self.above))
-        return self.above[-1]
-
-    def root(self, k: int) -> int:
-        while self.above[k] != k:
-            k = self.above[k]
-        return k
-
-    def unite(self, a: int, b: int) -> bool:
-        first, second = sorted((self.root(a), self.root(b)))
-        self.above[second] = first
-        return first != second
-
-
 @dataclass
 class _Joining:
     """Pieces of links, corners between them, and what has turned out to be the same.
@@ -148,10 +128,10 @@ class _Joining:
     tolerance: float
     apart: complex
     phase: list[Phase] = field(default_factory=list)
-    link: _Union = field(default_factory=_Union)
+    link: DisjointSets = field(default_factory=DisjointSets)
     rigid: list[int] = field(default_factory=list)
     shift: list[complex] = field(default_factory=list)
-    corner: _Union = field(default_factory=_Union)
+    corner: DisjointSets = field(default_factory=DisjointSets)
     ends: list[tuple[int, int, complex]] = field(default_factory=list)  # corner, piece, place
     loop_of: list[int] = field(default_factory=list)  # of corners
     slides: list[Slide] = field(default_factory=list)
@@ -161,7 +141,7 @@ class _Joining:
         """The pieces of a loop, their corners and slides."""
         if len(walk.runs) < 2:
             raise NotRead("all vectors of a loop have one direction, so that it has no pin")
-        corners = [self.corner.more() for _ in walk.runs]
+        corners = [self.corner.add() for _ in walk.runs]
         self.loop_of += [loop] * len(corners)
         for k, run in enumerate(walk.runs):
             self._run(run, corners[k], corners[(k + 1) % len(corners)], walk.begun if not k else -1)
@@ -190,7 +170,7 @@ class _Joining:
         self.phase.append(phase)
         self.rigid.append(len(self.rigid))
         self.shift.append(0j)
-        return self.link.more()
+        return self.link.add()
 
     def join(self) -> None:
         """Unite what is the same, as far as the rules go."""
@@ -383,9 +363,7 @@ class _Joining:
 
     def _check_slides(self, links: list[int], slides: list[Slide]) -> None:
         """Links that turn alike hang together by their sliding joints, without a loop of them."""
-        held = _Union()
-        for _ in self.phase:
-            held.more()
+        held = DisjointSets(len(self.phase))
         for slide in slides:
             if not held.unite(slide.before, slide.after):
                 raise NotRead(f'"{slide.variable}" slides in a loop of sliding joints')

@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.kernels.gpu.compiling import graphics_card
 from linkwork.kernels.gpu.printing import ThreadState, device_source
-from linkwork.kernels.march.sweep_kernel import LaneRows, Steps, SweepKernel
+from linkwork.kernels.march.sweep_kernel import Steps, SweepKernel
+from linkwork.kernels.march.work_arrays import MarchResult
 from linkwork.kernels.program.code_cache import load_compiled
 from linkwork.kernels.program.execution import Execution
 
@@ -57,17 +58,19 @@ class DeviceKernel(SweepKernel):
         start: Array,
         rows: Array,
         steps: Steps,
-        found: LaneRows,
+        found: MarchResult,
         threads: int = 1,
-    ) -> None:
+    ) -> BoolArray:
         """March D designs through R rows, as a :class:`SweepKernel` does.
 
         The march of one chunk runs while results of the one before are brought back. What is not
         reached is left in ``found`` as it comes.
         """
         count, given = len(start), self.guess_nodes(guess, start)
+        begun = np.zeros(count, dtype=bool)
         if not count:
-            return
+            return begun
+        results = found._asdict() | {"begun": begun}
         chunks = self._room(len(rows), count)
         waiting: tuple[Chunk, slice] | None = None
         for k, first in enumerate(range(0, count, chunks[0].designs)):
@@ -77,10 +80,11 @@ class DeviceKernel(SweepKernel):
             chunk.launch()
             chunk.send_back()
             if waiting is not None:
-                waiting[0].collect(found, waiting[1])
+                waiting[0].collect(results, waiting[1])
             waiting = chunk, part
         assert waiting is not None
-        waiting[0].collect(found, waiting[1])
+        waiting[0].collect(results, waiting[1])
+        return begun
 
     def load(
         self,
@@ -147,14 +151,14 @@ class _Shape:
 
     @property
     def outputs(self) -> dict[str, tuple[tuple[int, ...], type]]:
-        """Results by their names in :class:`LaneRows`."""
+        """Results by their names in :class:`MarchResult`, and which designs begin."""
         radii = self.rows if self.certified else 1  # unused, because nothing has no address
         return {
-            "v": ((self.unknowns, self.rows, self.designs), np.float64),
+            "unknowns": ((self.unknowns, self.rows, self.designs), np.float64),
             "radius": ((radii, self.designs), np.float64),
             "reached": ((self.rows, self.designs), np.bool_),
-            "found": ((self.designs,), np.bool_),
-            "stopped": ((2, self.designs), np.float64),
+            "begun": ((self.designs,), np.bool_),
+            "end": ((2, self.designs), np.float64),
             "last": ((2, 2 * self.size, self.designs), np.float64),
         }
 
@@ -176,8 +180,8 @@ class Chunk:
     node : device array
         Where mechanisms start, (S, M).
     outputs, staged : dict
-        Results by their names in :class:`LaneRows`, on the device; in page-locked memory those that
-        are brought back.
+        Results by their names in ``_Shape.outputs``, on the device; in page-locked memory those
+        that are brought back.
     """
 
     designs: int
@@ -245,11 +249,11 @@ class Chunk:
             begin = self.kernels[0][blocks, _BLOCK, self.stream]
             march = self.kernels[1][2 * blocks, _BLOCK, self.stream]
         design, options, node = own["design"], own["options"], self.node
-        found, reached, stopped = out["found"], out["reached"], out["stopped"]
-        begin(design, options, own["given"], node, found, reached, stopped)
+        begun, reached, end = out["begun"], out["reached"], out["end"]
+        begin(design, options, own["given"], node, begun, reached, end)
         march(
-            design, options, node, found, own["rows"], own["steps"],
-            out["v"], out["radius"], reached, stopped, out["last"],
+            design, options, node, begun, own["rows"], own["steps"],
+            out["unknowns"], out["radius"], reached, end, out["last"],
         )  # fmt: skip
 
     def send_back(self) -> None:
@@ -257,9 +261,9 @@ class Chunk:
         for name, values in self.staged.items():
             self.outputs[name].copy_to_host(values, stream=self.stream)
 
-    def collect(self, found: LaneRows, part: slice) -> None:
-        """Wait for the results and enter them as those of some designs."""
+    def collect(self, results: Mapping[str, AnyArray], part: slice) -> None:
+        """Wait for the results and enter them, by name, as those of some designs."""
         self.stream.synchronize()
         count = part.stop - part.start
         for name, values in self.staged.items():
-            getattr(found, name)[..., part] = values[..., :count]
+            results[name][..., part] = values[..., :count]

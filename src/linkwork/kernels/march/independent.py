@@ -9,9 +9,11 @@ nodes moved instead.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.kernels.march.march_programs import NODES
 from linkwork.kernels.march.step_control import aim, grow, is_lost, stride
 from linkwork.kernels.march.step_trial import (
@@ -38,6 +40,23 @@ from linkwork.kernels.program.program import ROLES
 from linkwork.marching.step_size import HALF
 
 __all__ = ["march"]
+
+_NO_TASK_YET, _NO_TASK_LEFT = -2, -1
+
+
+class _Work(NamedTuple):
+    """What every lane works at, (LANES,): its task, its next row, its direction (1 upwards).
+
+    ``known``: how many nodes a prediction can use. ``h``: the next step at most. ``spacing``
+    (LANES, 4): of the nodes for which the weights of the prediction were computed.
+    """
+
+    task: IndexArray
+    row: IndexArray
+    way: IndexArray
+    known: IndexArray
+    h: Array
+    spacing: Array
 
 
 @njit_no_refcount
@@ -73,6 +92,73 @@ def _stop_design(
         found.last[way, size + j, place] = w[nodes[(2 - turn) % ROLES, j], lane]
 
 
+@njit_no_refcount
+def _give_task(
+    w: Array,
+    lane: int,
+    topology: Topology,
+    turn: int,
+    design: Array,
+    table: InputTable,
+    tasks: Tasks,
+    count: int,
+    following: int,
+    work: _Work,
+) -> int:
+    """Give a lane without work the next task; return the task that follows it."""
+    nodes, rows, size = topology.nodes, table.rows, topology.nodes.shape[1]
+    while work.task[lane] == _NO_TASK_YET or (
+        work.task[lane] >= 0 and not 0 <= work.row[lane] < len(rows)
+    ):
+        if following == count:
+            work.task[lane] = _NO_TASK_LEFT
+            break
+        work.task[lane], work.way[lane] = following, tasks.way[following]
+        load_lane(w, lane, topology.coefficients, design, tasks.member[following])
+        for role in range(1, ROLES):
+            load_lane(w, lane, nodes[(role - turn) % ROLES], tasks.node, following)
+        work.known[lane], work.h[lane] = 1, table.steps[0]
+        work.spacing[lane, :] = np.inf  # equal to no spacing, so that weights are computed
+        above = np.searchsorted(rows, w[nodes[(1 - turn) % ROLES, size - 1], lane])
+        work.row[lane] = above if work.way[lane] == 1 else above - 1
+        following += 1
+    return following
+
+
+@njit_no_refcount
+def _take_or_halve_step(
+    w: Array,
+    lane: int,
+    topology: Topology,
+    turn: int,
+    member: int,
+    table: InputTable,
+    work: _Work,
+    found: MarchResult,
+) -> None:
+    """Take the step of a lane if its trial is good, else halve it, and stop below the least."""
+    nodes, rows, last = topology.nodes, table.rows, topology.nodes.shape[1] - 1
+    t0, t1 = w[nodes[-turn % ROLES, last], lane], w[nodes[(1 - turn) % ROLES, last], lane]
+    goal, moved = rows[work.row[lane]], abs(t0 - t1)
+    taken = w[topology.noted[GOOD], lane] > 0.5 and not is_lost(t0, t1, goal)
+    if taken:
+        if t0 == goal:
+            _store_row(w, lane, topology, turn, work.row[lane], member, table.unknowns, found)
+            work.row[lane] += 2 * work.way[lane] - 1
+        work.h[lane] = grow(work.h[lane], moved, table.steps[1])
+        work.known[lane] = min(work.known[lane] + 1, NODES)
+    else:
+        work.h[lane] = HALF * moved
+        if work.h[lane] < table.steps[2]:
+            _stop_design(w, lane, topology, turn, work.way[lane], member, found)
+            work.row[lane] = len(rows) if work.way[lane] == 1 else -1
+    if not taken or moved == 0.0:  # the trial is no new node: move the others on
+        if taken:
+            work.known[lane] = 1
+        for role in range(NODES):
+            copy_lane(w, lane, nodes[(role - turn) % ROLES], nodes[(role + 1 - turn) % ROLES])
+
+
 @compiled_for(
     types.void(
         TOPOLOGY, types.Array(types.float64, 2, "C"),
@@ -100,70 +186,41 @@ def march(
         The first ``count`` of them.
     found : MarchResult
     """
-    rows, steps, nodes = table.rows, table.steps, topology.nodes
-    weights, size = topology.weights, nodes.shape[1]
-    task = np.full(LANES, -2)  # to be given work; -1: there is none
-    row = np.zeros(LANES, np.int64)
-    way = np.zeros(LANES, np.int64)
-    known = np.zeros(LANES, np.int64)  # nodes that a prediction can use
-    h, standing = np.zeros(LANES), np.ones(LANES)
-    spacing, times = np.zeros((LANES, NODES)), np.zeros(NODES)
-    following, busy, turn = 0, LANES, 0
+    rows, nodes, size = table.rows, topology.nodes, topology.nodes.shape[1]
+    work = _Work(
+        np.full(LANES, _NO_TASK_YET),
+        np.zeros(LANES, np.int64),
+        np.zeros(LANES, np.int64),
+        np.zeros(LANES, np.int64),
+        np.zeros(LANES),
+        np.zeros((LANES, NODES)),
+    )
+    standing, times, following, turn = np.ones(LANES), np.zeros(NODES), 0, 0
     w[: nodes.size] = 0.0  # they come first
     for register in topology.noted:
         w[register] = 0.0
     while True:
         t0, t1 = nodes[-turn % ROLES, size - 1], nodes[(1 - turn) % ROLES, size - 1]
-        good = topology.noted[GOOD]
+        busy = 0
         for i in range(LANES):
-            while task[i] == -2 or (task[i] >= 0 and (row[i] < 0 or row[i] >= len(rows))):
-                if following == count:
-                    task[i] = -1
-                    standing[i] = 0.0
-                    busy -= 1
-                    break
-                task[i] = following
-                following += 1
-                way[i] = tasks.way[task[i]]
-                load_lane(w, i, topology.coefficients, design, tasks.member[task[i]])
-                for role in range(1, ROLES):
-                    load_lane(w, i, nodes[(role - turn) % ROLES], tasks.node, task[i])
-                known[i] = 1
-                spacing[i, :] = np.inf  # like no other
-                h[i] = steps[0]
-                above = np.searchsorted(rows, w[t1, i])
-                row[i] = above if way[i] == 1 else above - 1
-            if task[i] < 0:
+            following = _give_task(
+                w, i, topology, turn, design, table, tasks, count, following, work
+            )
+            if work.task[i] == _NO_TASK_LEFT:
+                standing[i] = 0.0
                 continue
-            goal = rows[row[i]]
-            step = stride(goal, w[t1, i], h[i])
-            w[t0, i] = aim(goal, w[t1, i], h[i])
+            busy += 1
+            goal = rows[work.row[i]]
+            step = stride(goal, w[t1, i], work.h[i])
+            w[t0, i] = aim(goal, w[t1, i], work.h[i])
             for role in range(1, ROLES):
                 times[role - 1] = w[nodes[(role - turn) % ROLES, size - 1], i]
-            update_weights(w, i, weights, times, step, known[i], spacing[i])
+            update_weights(w, i, topology.weights, times, step, work.known[i], work.spacing[i])
         if busy == 0:
             break
         correct_and_judge(topology, turn, w, standing, False, LANES)
         for i in range(LANES):
-            if task[i] < 0:
-                continue
-            m = tasks.member[task[i]]
-            moved = abs(w[t0, i] - w[t1, i])
-            taken = w[good, i] > 0.5 and not is_lost(w[t0, i], w[t1, i], rows[row[i]])
-            if taken:
-                if w[t0, i] == rows[row[i]]:
-                    _store_row(w, i, topology, turn, row[i], m, table.unknowns, found)
-                    row[i] += 2 * way[i] - 1
-                h[i] = grow(h[i], moved, steps[1])
-                known[i] = min(known[i] + 1, NODES)
-            else:
-                h[i] = HALF * moved
-                if h[i] < steps[2]:
-                    _stop_design(w, i, topology, turn, way[i], m, found)
-                    row[i] = len(rows) if way[i] == 1 else -1
-            if not taken or moved == 0.0:  # the trial is no new node: move the others on
-                if taken:
-                    known[i] = 1
-                for role in range(NODES):
-                    copy_lane(w, i, nodes[(role - turn) % ROLES], nodes[(role + 1 - turn) % ROLES])
+            if work.task[i] != _NO_TASK_LEFT:
+                member = tasks.member[work.task[i]]
+                _take_or_halve_step(w, i, topology, turn, member, table, work, found)
         turn = (turn + 1) % ROLES

@@ -11,12 +11,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.foundation.arrays import AnyArray, Array, CountArray
+from linkwork.foundation.arrays import Array, CountArray
 from linkwork.kernels.march.march_programs import NODES
+from linkwork.kernels.march.row_prediction import (
+    KNOTS,
+    choose_knots,
+    hermite_weights_of_lanes,
+    predict_from_nodes,
+    predict_from_rows,
+)
+from linkwork.kernels.march.row_proof import keep_rows, prove_rows
 from linkwork.kernels.march.step_control import aim, grow, stride
 from linkwork.kernels.march.step_trial import (
     GOOD,
-    RADIUS,
     TOPOLOGY,
     Topology,
     correct_and_judge,
@@ -37,12 +44,8 @@ DONE, LEFT, NOT_NEAR = 1, 0, -1
 
 _STRIDE = 0.6  # of the largest step: as far reach rows that are computed together
 _VECTOR = 8  # lanes that a processor computes at once
-_KNOTS = 6  # rows from which the next ones are predicted, at most
 _FEWEST = 4  # with fewer the march is as quick
-_APART = 0.2  # of a step: nodes that are closer do not tell more
 _ANY = 1 << 30  # nodes: as many as the way takes
-# of an angle, or of a length's weight:
-_FAR = 1e-7  # as much as a row may be off before it is proved
 _CLOSE = 0.1  # a guess that is as near needs no care
 _BEND = 0.1  # without proofs, from row to row: a change of rates times the distance,
 _ROUGH = 0.03  # and what rates do not explain, of the way and of as much for a largest step
@@ -132,100 +135,6 @@ def _find_nodes(
 
 
 @njit_no_refcount
-def _all_good(topology: Topology, w: Array, lanes: int) -> bool:
-    good, bad = topology.noted[GOOD], 0
-    for i in range(lanes):
-        bad += not w[good, i] > 0.5
-    return bad == 0
-
-
-@njit_no_refcount
-def _hermite_weights(times: AnyArray, count: int, t: AnyArray, lanes: int, cells: Array) -> None:
-    """Weights at t (lanes,) of values and derivatives at ``count`` times, (2 count, lanes), in
-    Hermite's polynomial.
-    """
-    for j in range(count):
-        scale, slope = 1.0, 0.0
-        for k in range(count):
-            if k != j:
-                scale *= times[j] - times[k]
-                slope += 1.0 / (times[j] - times[k])
-        for i in range(lanes):
-            basis = 1.0 / scale
-            for k in range(count):
-                if k != j:
-                    basis *= t[i] - times[k]
-            away, square = t[i] - times[j], basis * basis
-            cells[2 * j, i], cells[2 * j + 1, i] = (
-                (1.0 - 2.0 * slope * away) * square,
-                away * square,
-            )
-
-
-@compiled
-def _predict_from_nodes(
-    topology: Topology, turn: int, w: Array, lanes: int, used: int, unknowns: int, cells: Array
-) -> None:
-    """Guesses for the first rows by the polynomial through the nodes behind them, which are the
-    same in all lanes, in the place of the oldest one.
-
-    A node close to a later one is left out.
-    """
-    nodes, last = topology.nodes, topology.nodes.shape[1] - 1
-    times, places, count = np.zeros(NODES), np.zeros(NODES, np.int64), 0
-    t, near = nodes[-turn % ROLES, last], nodes[(1 - turn) % ROLES, last]
-    for k in range(used):
-        time, apart = w[nodes[(k + 1 - turn) % ROLES, last], 0], True
-        for j in range(count):
-            apart &= abs(time - times[j]) > _APART * abs(w[t, 0] - w[near, 0])
-        if apart:
-            times[count], places[count] = time, (k + 1 - turn) % ROLES
-            count += 1
-    _hermite_weights(times, count, w[t], lanes, cells)
-    for k in range(unknowns):
-        guess = nodes[(ROLES - 1 - turn) % ROLES, k]
-        for i in range(lanes):
-            w[guess, i] = 0.0
-        for j in range(count):
-            value, rate = w[nodes[places[j], k], 0], w[nodes[places[j], unknowns + k], 0]
-            for i in range(lanes):
-                w[guess, i] += cells[2 * j, i] * value + cells[2 * j + 1, i] * rate
-
-
-@compiled
-def _knots(width: int) -> CountArray:
-    """The lanes of so many rows from which the next rows are predicted, the last one first."""
-    count = min(_KNOTS, width)
-    knots = np.empty(count, np.int64)
-    for j in range(count):
-        knots[j] = width - 1 - j * (width // count)
-    return knots
-
-
-@njit_no_refcount
-def _predict_from_rows(
-    topology: Topology,
-    turn: int,
-    w: Array,
-    lanes: int,
-    knots: CountArray,
-    cells: Array,
-    unknowns: int,
-) -> None:
-    """Guesses by the polynomial through rows before, in the place of the oldest node."""
-    nodes = topology.nodes
-    for k in range(unknowns):
-        guess, x = nodes[(ROLES - 1 - turn) % ROLES, k], nodes[(1 - turn) % ROLES, k]
-        d = nodes[(1 - turn) % ROLES, unknowns + k]
-        for i in range(lanes):
-            w[guess, i] = 0.0
-        for j in range(len(knots)):
-            value, rate = w[x, knots[j]], w[d, knots[j]]
-            for i in range(lanes):
-                w[guess, i] += cells[2 * j, i] * value + cells[2 * j + 1, i] * rate
-
-
-@njit_no_refcount
 def _is_smooth(
     topology: Topology,
     turn: int,
@@ -259,18 +168,6 @@ def _is_smooth(
     return rough == 0
 
 
-@njit_no_refcount
-def _keep_rows(
-    topology: Topology, turn: int, w: Array, lanes: int, row: int, unknowns: int, found: MarchResult
-) -> None:
-    """The lanes are rows, from that one on."""
-    m, trial = found.first, -turn % ROLES
-    for j in range(unknowns):
-        source = topology.nodes[trial, j]
-        for i in range(lanes):
-            found.unknowns[j, row + i, m] = w[source, i]
-
-
 @compiled
 def _solve_stretch(
     topology: Topology,
@@ -292,7 +189,7 @@ def _solve_stretch(
     """
     rows, n, nodes = table.rows, table.unknowns, topology.nodes
     size = nodes.shape[1]
-    standing, cells, knots = np.ones(LANES), np.empty((2 * _KNOTS, LANES)), _knots(width)
+    standing, cells, knots = np.ones(LANES), np.empty((2 * KNOTS, LANES)), choose_knots(width)
     turn, known = _find_nodes(topology, w, before, first, table)
     if known == 0:
         return first
@@ -311,13 +208,13 @@ def _solve_stretch(
         for i in range(lanes):
             w[t, i] = rows[first + i]
         if block == 0:
-            _predict_from_nodes(topology, turn, w, lanes, min(known, NODES - 1), n, cells)
+            predict_from_nodes(topology, turn, w, lanes, min(known, NODES - 1), n, cells)
         else:
             if block == 1:
-                _hermite_weights(
+                hermite_weights_of_lanes(
                     (knots - width) * gap, len(knots), np.arange(width) * gap, width, cells
                 )
-            _predict_from_rows(topology, turn, w, lanes, knots, cells, n)
+            predict_from_rows(topology, turn, w, lanes, knots, cells, n)
         count = correct_from_guess(topology, turn, w, standing, lanes, n)
         if count == 0:
             return first
@@ -325,102 +222,13 @@ def _solve_stretch(
             topology, turn, w, lanes, before, first == 0, scale, gap, table.steps[1]
         ):
             return first
-        _keep_rows(topology, turn, w, lanes, first, n, found)
+        keep_rows(topology, turn, w, lanes, first, n, found)
         for i in range(lanes):
             counts[first + i] = count
         _store_node(topology, turn, w, lanes - 1, before)
         turn = (turn + 1) % ROLES
         first, block = first + lanes, block + 1
     return first
-
-
-@njit_no_refcount
-def _prove_steps(
-    topology: Topology,
-    w: Array,
-    first: int,
-    table: InputTable,
-    scale: Array,
-    standing: Array,
-    found: MarchResult,
-    counts: CountArray,
-) -> bool:
-    """Prove rows from one on, each from the one before it; whether that is done.
-
-    While that one's error is not known it is taken to be :data:`_FAR`, and looked at afterwards.
-    """
-    nodes, n, m, rows = topology.nodes, len(scale), found.first, table.rows
-    last, lanes = nodes.shape[1] - 1, min(LANES, len(rows) - first)
-    for i in range(lanes):
-        w[nodes[0, last], i] = rows[first + i]
-        w[nodes[1, last], i] = rows[max(first + i - 1, 0)]
-    for k in range(n):
-        mine, near, source = nodes[2, k], nodes[1, k], found.unknowns[k]
-        for i in range(lanes):
-            w[mine, i] = source[first + i, m]
-        for i in range(lanes):
-            w[near, i] = source[max(first + i - 1, 0), m]
-        for i in range(lanes):
-            w[nodes[1, 2 * n + k], i] = _FAR * scale[k]
-    count = correct_and_judge(topology, 0, w, standing, False, lanes)
-    if not _all_good(topology, w, lanes):
-        return False
-    outside = 0
-    for k in range(n):
-        x, error, guess = nodes[0, k], nodes[0, 2 * n + k], nodes[2, k]
-        for i in range(lanes):
-            outside += not abs(w[x, i] - w[guess, i]) + w[error, i] <= _FAR * scale[k]
-    _keep_rows(topology, 0, w, lanes, first, n, found)
-    radius = topology.noted[RADIUS]
-    for i in range(lanes):
-        found.radius[first + i, m] = w[radius, i]
-        counts[first + i] += count
-    return outside == 0
-
-
-@njit_no_refcount
-def _joins_start(
-    topology: Topology,
-    w: Array,
-    start: Array,
-    rows: Array,
-    scale: Array,
-    found: MarchResult,
-    standing: Array,
-) -> bool:
-    """Whether the start (S,) is proved to lie on the branch of the row next to it."""
-    nodes, n = topology.nodes, len(scale)
-    last = nodes.shape[1] - 1
-    row = min(np.searchsorted(rows, start[-1]), len(rows) - 1)
-    if row > 0 and start[-1] - rows[row - 1] < rows[row] - start[-1]:
-        row -= 1
-    for k in range(n):
-        w[nodes[2, k], 0], w[nodes[1, k], 0] = start[k], found.unknowns[k, row, found.first]
-        w[nodes[1, 2 * n + k], 0] = _FAR * scale[k]
-    w[nodes[0, last], 0], w[nodes[1, last], 0] = start[-1], rows[row]
-    correct_and_judge(topology, 0, w, standing, False, 1)
-    return bool(w[topology.noted[GOOD], 0] > 0.5)
-
-
-@compiled
-def _prove_rows(
-    topology: Topology,
-    w: Array,
-    start: Array,
-    table: InputTable,
-    scale: Array,
-    found: MarchResult,
-    counts: CountArray,
-) -> bool:
-    """Whether all rows are proved, and to be on the branch of the start."""
-    for j in range(len(topology.weights)):
-        for i in range(LANES):  # the guess: the node before the last
-            w[topology.weights[j], i] = 1.0 if j == 2 else 0.0
-    standing = np.ones(LANES)
-    for first in range(0, len(table.rows), LANES):
-        if not _prove_steps(topology, w, first, table, scale, standing, found, counts):
-            return False
-    return _joins_start(topology, w, start, table.rows, scale, found, standing)
 
 
 @compiled_for(
@@ -489,7 +297,7 @@ def by_rows(
             scout, own, first, width, before, table, scale, gap, certify, found, counts
         )
         first, width = reached, width // 2
-    if certify and not _prove_rows(topology, w, start, table, scale, found, counts):
+    if certify and not prove_rows(topology, w, start, table, scale, found, counts):
         return LEFT
     for row in range(len(rows)):
         found.reached[row, found.first] = True

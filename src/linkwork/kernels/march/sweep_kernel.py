@@ -22,19 +22,18 @@ from linkwork.kernels.march.march_programs import WEIGHTS, march_programs
 from linkwork.kernels.march.one_design import Ready, RowsOfOne, SingleDesign
 from linkwork.kernels.march.start_positions import begin
 from linkwork.kernels.march.step_trial import Topology
+from linkwork.kernels.march.thread_shares import share_of_threads
 from linkwork.kernels.march.work_arrays import InputTable, MarchResult, Tasks
 from linkwork.kernels.program.code_cache import is_cached, load_compiled
 from linkwork.kernels.program.execution import Execution
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.printing import trial_source
-from linkwork.kernels.program.program import ROLES, SOURCES, Op, Program
+from linkwork.kernels.program.program import ROLES, registers_read
 
-__all__ = ["LaneRows", "RowsOfOne", "Steps", "SweepKernel"]
+__all__ = ["RowsOfOne", "Steps", "SweepKernel"]
 
 _FEW = 16  # designs in a part of which each goes with its rows side by side
-_PART = 4096  # designs that one thread works on at a time, at most
 _ROUGHLY = 1e-6  # weighted: a correction behind which a proof corrects once more
-_LEAST = 2  # times LANES: designs in a part where threads share them, at least
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,52 +60,6 @@ class Steps:
             first=size * self.first,
             largest=size * self.largest,
             smallest=size * self.smallest,
-        )
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class LaneRows:
-    """Where the march of D designs over R rows leaves what it finds.
-
-    ``v`` (n, R, D): unknowns, untouched where not reached. ``radius`` (R, D): of the proof,
-    weighted ((0, D) without). ``reached`` (R, D). ``found`` (D,): the start. ``stopped`` (2, D):
-    the last value of t downwards and upwards where a design could go no further, NaN where it went
-    through; ``last`` (2, S, D): the node there, see :meth:`SweepKernel.last_nodes`.
-    """
-
-    v: Array
-    radius: Array
-    reached: BoolArray
-    found: BoolArray
-    stopped: Array
-    last: Array
-
-    @classmethod
-    def over(cls, v: Array, radius: Array, kernel: SweepKernel) -> LaneRows:
-        """Nothing found yet; ``v`` and ``radius`` are written to."""
-        _, rows, count = v.shape
-        return cls(
-            v=v,
-            radius=radius,
-            reached=np.zeros((rows, count), dtype=bool),
-            found=np.zeros(count, dtype=bool),
-            stopped=np.full((2, count), np.nan),
-            last=np.empty((2, 2 * kernel.nodes.shape[1], count)),
-        )
-
-    def at(self, first: int) -> MarchResult:
-        """As the march sees it, designs from one on."""
-        return MarchResult(first, self.v, self.radius, self.reached, self.stopped, self.last)
-
-    def take(self, where: IndexArray) -> LaneRows:
-        """Some of the designs."""
-        return LaneRows(
-            v=self.v[:, :, where],
-            radius=self.radius[:, where],
-            reached=self.reached[:, where],
-            found=self.found[where],
-            stopped=self.stopped[:, where],
-            last=self.last[:, :, where],
         )
 
 
@@ -178,7 +131,7 @@ class SweepKernel:
         sections = self._sections
         ordered = [sections.predict, *sections.begin, *sections.prove, sections.judge]
         after = [*sections.iterate, *sections.prove, sections.judge]
-        kept = {*self.nodes[0].tolist(), *self.noted.tolist(), *_registers_read(after)}
+        kept = {*self.nodes[0].tolist(), *self.noted.tolist(), *registers_read(after)}
         return trial_source(
             [section.code for section in ordered],
             self.nodes.shape[1],
@@ -193,9 +146,9 @@ class SweepKernel:
         start: Array,
         rows: Array,
         steps: Steps,
-        found: LaneRows,
+        found: MarchResult,
         threads: int = 1,
-    ) -> None:
+    ) -> BoolArray:
         """March D designs through R rows.
 
         Parameters
@@ -206,20 +159,36 @@ class SweepKernel:
             Of the unknowns, at ``start`` (D,).
         rows : (R,)
             Increasing values of t.
-        found : LaneRows
-            Filled.
+        found : MarchResult
+            Filled, see :meth:`result`.
+
+        Returns
+        -------
+        (D,)
+            Designs whose start was found.
         """
         count, given = len(start), self.guess_nodes(guess, start)
         ready, table = self._ready(coefficients, count), self._table(rows, steps)
+        if count <= _FEW and len(rows) >= LANES:
+            return self._few(ready, coefficients, given, table, steps, found)
+        begun = np.zeros(count, dtype=bool)
 
         def one(part: slice) -> None:
-            self._part(ready.part(part), given[:, part], table, steps, found, part)
+            own = found._replace(first=part.start)
+            begun[part] = self._part(ready.part(part), given[:, part], table, steps, own)
 
-        if count <= _FEW and len(rows) >= LANES:
-            self._few(ready, coefficients, given, table, steps, found)
-            return
-        parts = _parts(count, threads)
+        parts = share_of_threads(count, threads)
         share_out(one, parts, min(threads, len(parts)))
+        return begun
+
+    def result(self, v: Array, radius: Array) -> MarchResult:
+        """Room for a march: unknowns v (n, R, D) and radii (R, D), (0, D) without proofs, are
+        written to where positions are found.
+        """
+        _, rows, count = v.shape
+        reached, end = np.zeros((rows, count), dtype=bool), np.full((2, count), np.nan)
+        last = np.empty((2, 2 * self.nodes.shape[1], count))
+        return MarchResult(0, v, radius, reached, end, last)
 
     def guess_nodes(self, guess: Array, start: Array) -> Array:
         """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""
@@ -227,13 +196,13 @@ class SweepKernel:
         node[: self.table.unknowns], node[-1] = guess, start
         return node
 
-    def last_nodes(self, found: LaneRows, way: int, where: IndexArray) -> LastNodes:
+    def last_nodes(self, found: MarchResult, way: int, where: IndexArray) -> LastNodes:
         """The nodes at which some designs stopped, downwards (0) or upwards (1)."""
         n, last = self.table.unknowns, found.last[way][:, where]
         w, s, x = (last[k * n : (k + 1) * n] for k in range(3))
         q, p = (last[self.nodes.shape[1] :][k * n : (k + 1) * n] for k in range(2))
         errors = x if self.certified else np.zeros_like(w)
-        return LastNodes(t=found.stopped[way, where], w=w, s=s, q=q, p=p, x=errors)
+        return LastNodes(t=found.end[way, where], w=w, s=s, q=q, p=p, x=errors)
 
     def _coefficient_registers(
         self, coefficients: Mapping[str, Array], count: int
@@ -274,14 +243,13 @@ class SweepKernel:
         given: Array,
         table: InputTable,
         steps: Steps,
-        found: LaneRows,
-        part: slice,
-    ) -> None:
+        found: MarchResult,
+    ) -> BoolArray:
         """Designs side by side."""
         space = self._space(steps)
         node, begun = self.start_nodes(ready, space, given)
-        found.found[part] = begun
-        _march_part(ready, space, node, begun, table, found.at(part.start))
+        _march_part(ready, space, node, begun, table, found)
+        return begun
 
     def _table(self, rows: Array, steps: Steps) -> InputTable:
         sizes = np.array([steps.first, steps.largest, steps.smallest])
@@ -294,20 +262,21 @@ class SweepKernel:
         given: Array,
         table: InputTable,
         steps: Steps,
-        found: LaneRows,
-    ) -> None:
+        found: MarchResult,
+    ) -> BoolArray:
         """One design after the other, its rows side by side; then those that this is not for."""
         alone, n = self._prepare_single(ready, coefficients, table, steps), self.table.unknowns
         counts = np.zeros(len(table.rows), dtype=np.int64)
+        done = np.zeros(given.shape[1], dtype=bool)
         for k in range(given.shape[1]):
             guess = np.append(given[:n, k], given[-1, k])
-            found.found[k] = alone.with_design(k).run(guess, found.at(k), counts)
-        left = ~found.found
-        if left.any():
-            space = self._space(steps)
-            node, begun = self.start_nodes(ready, space, given)
-            found.found[left] = begun[left]
-            _march_part(ready, space, node, begun & left, table, found.at(0))
+            done[k] = alone.with_design(k).run(guess, found._replace(first=k), counts)
+        if done.all():
+            return done
+        space = self._space(steps)
+        node, begun = self.start_nodes(ready, space, given)
+        _march_part(ready, space, node, begun & ~done, table, found)
+        return done | begun
 
     def prepare_single(
         self,
@@ -375,38 +344,9 @@ class SweepKernel:
         )
 
 
-def _parts(count: int, threads: int) -> list[slice]:
-    """Whole lanes of designs. Of several threads each takes half of its share of what is left, so
-    that the last parts are small and none waits long for the others.
-    """
-    parts, first = list[slice](), 0
-    while first < count:
-        size = _PART
-        if threads > 1:
-            lanes = -(-(count - first) // (LANES * 2 * threads))
-            size = min(_PART, max(_LEAST, lanes) * LANES)
-        parts.append(slice(first, min(first + size, count)))
-        first += size
-    return parts
-
-
 def _march_part(
     ready: Ready, space: Array, node: Array, begun: BoolArray, table: InputTable, kept: MarchResult
 ) -> None:
     tasks = Tasks.room(2 * len(begun), len(node))
     many = in_step(ready.topology, space, ready.design, node, begun, table, tasks, kept)
     march(ready.topology, space, ready.design, table, tasks, many, kept)
-
-
-def _registers_read(programs: Sequence[Program]) -> set[int]:
-    """Registers that programs read before they write them."""
-    read, written = set[int](), set[int]()
-    for program in programs:
-        for number, target, *sources in program.code.tolist():
-            op = Op(number)
-            count = SOURCES[op]
-            read.update(set(sources[:count]) - written)
-            if op in (Op.KEEP, Op.LESS):
-                read.update({target} - written)
-            written.update({target, sources[2]} if op is Op.SIN else {target})
-    return read

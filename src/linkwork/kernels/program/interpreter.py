@@ -19,6 +19,7 @@ __all__ = ["LANES", "run", "run_part"]
 LANES = 64
 
 
+# long: one branch for each instruction; a call for each would cost as much as the instruction.
 @njit_no_refcount
 def run_part(code: Code, first: int, end: int, w: Array, lanes: int) -> None:
     """Run some instructions of a program in the first lanes."""

@@ -7,7 +7,7 @@ recorded (:mod:`recorder`), given their registers (:mod:`lowering`) and run (:mo
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import TypeVar
@@ -17,7 +17,7 @@ import numpy as np
 from linkwork.foundation.aligned import allocate_aligned
 from linkwork.foundation.arrays import Array, IndexArray
 
-__all__ = ["ROLES", "SOURCES", "Code", "Op", "Program", "Registers"]
+__all__ = ["ROLES", "SOURCES", "Code", "Op", "Program", "Registers", "registers_read"]
 
 #: Roles that a node of a march takes in turn: the trial first, then the nodes behind it.
 ROLES = 5
@@ -115,3 +115,17 @@ class Program:
 
     code: Code
     height: int
+
+
+def registers_read(programs: Sequence[Program]) -> set[int]:
+    """The registers that programs read before they write them."""
+    read, written = set[int](), set[int]()
+    for program in programs:
+        for number, target, *sources in program.code.tolist():
+            op = Op(number)
+            count = SOURCES[op]
+            read.update(set(sources[:count]) - written)
+            if op in (Op.KEEP, Op.LESS):
+                read.update({target} - written)
+            written.update({target, sources[2]} if op is Op.SIN else {target})
+    return read

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, CountArray, IndexArray
+from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.kernels.march.position_programs import along_rows
@@ -20,8 +20,8 @@ from linkwork.kernels.program.execution import Execution
 from linkwork.motion.by_kernels.equations import own_coefficients, zero_names
 from linkwork.motion.by_kernels.kernels import kernel_of, row_program_of
 from linkwork.motion.drive import Drive
-from linkwork.motion.rows import SolvedRows
 from linkwork.numerics.continuation.branch_tracking import Node, Track
+from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["KernelRows", "kernel_rows"]
 
@@ -34,25 +34,18 @@ _SAME_POSITION = 1e-9  # weighted: positions nearer to each other are one
 class KernelRows:
     """Some rows of a table along a track.
 
-    ``where`` (R,): which rows they are. ``v``, ``first``, ``second`` (N, R); ``condition``,
-    ``residual``, ``iterations`` (R,); ``radius``, ``uniqueness_radius`` (R,), NaN without a proof.
-    ``checked`` (C,): rows of the table that have to be solved along the track, among them all that
-    are not here.
+    ``where`` (R,): which rows they are. ``checked`` (C,): rows of the table that have to be solved
+    along the track, among them all that are not here.
     """
 
     where: IndexArray
-    v: Array
-    first: Array
-    second: Array
-    condition: Array
-    residual: Array
-    iterations: CountArray
-    radius: Array
-    uniqueness_radius: Array
+    rows: SolvedRows
     checked: IndexArray
 
-    def put_into(self, found: SolvedRows, there: IndexArray, weights: Array, certify: bool) -> bool:
-        """Fill rows that are not there yet, if those that are checked are the same.
+    def put_into(
+        self, found: SolvedRows, there: IndexArray, weights: Array, certify: bool
+    ) -> SolvedRows | None:
+        """Rows with those filled that are not there yet; ``None`` if checked ones are not the same.
 
         Parameters
         ----------
@@ -65,28 +58,16 @@ class KernelRows:
         """
         mine = np.flatnonzero(np.isin(self.where, self.checked))
         place = there[self.where[mine]]
-        away = (np.abs(found.v[place] - self.v[:, mine].T) / weights).max(axis=1)
+        away = (np.abs(found.v[place] - self.rows.v[mine]) / weights).max(axis=1)
         same = (found.status[place] == Status.CONVERGED.code) & (away <= _SAME_POSITION)
         if certify:
             same &= found.certification[place] == Certification.CERTIFIED.code
-            same &= away + self.radius[mine] < found.uniqueness_radius[place]
-            same &= bool(np.isfinite(self.radius).all())
+            same &= away + self.rows.radius[mine] < found.uniqueness_radius[place]
+            same &= bool(np.isfinite(self.rows.radius).all())
         if not same.all():
-            return False
+            return None
         fresh = np.delete(np.arange(len(self.where)), mine)
-        rows = there[self.where[fresh]]
-        found.v[rows], found.first[rows] = self.v[:, fresh].T, self.first[:, fresh].T
-        found.second[rows] = self.second[:, fresh].T
-        found.status[rows] = Status.CONVERGED.code
-        for name in ("condition", "residual", "iterations"):
-            getattr(found, name)[rows] = getattr(self, name)[fresh]
-        if certify:
-            found.radius[rows], found.uniqueness_radius[rows] = (
-                self.radius[fresh],
-                self.uniqueness_radius[fresh],
-            )
-            found.certification[rows] = Certification.CERTIFIED.code
-        return True
+        return found.put(there[self.where[fresh]], self.rows.take(fresh))
 
 
 def kernel_rows(
@@ -122,16 +103,21 @@ def kernel_rows(
     moving = np.repeat(path.rate[:, None], len(rows), axis=1)
     unproved = np.full((0 if certify else 2, len(rows)), np.nan)
     condition, residual, radius, uniqueness_radius = np.concatenate([read[2 * n :], unproved])
+    proof = Certification.CERTIFIED if certify else Certification.NOT_ASKED
     return KernelRows(
         where=where,
-        v=v,
-        first=np.concatenate([read[:n], moving]),
-        second=np.concatenate([read[n : 2 * n], np.zeros_like(moving)]),
-        condition=condition,
-        residual=residual,
-        iterations=march.counts,
-        radius=radius,
-        uniqueness_radius=uniqueness_radius,
+        rows=SolvedRows(
+            v=v.T,
+            first=np.concatenate([read[:n], moving]).T,
+            second=np.concatenate([read[n : 2 * n], np.zeros_like(moving)]).T,
+            status=np.full(len(rows), Status.CONVERGED.code, dtype=np.int8),
+            condition=condition,
+            residual=residual,
+            iterations=march.counts,
+            certification=np.full(len(rows), proof.code, dtype=np.int8),
+            radius=radius,
+            uniqueness_radius=uniqueness_radius,
+        ),
         checked=np.setdiff1d(np.arange(len(t)), np.delete(where, nearest)),
     )
 

@@ -59,7 +59,7 @@ def _explain(
     model: Model, v: Array, status: Status, failed_block: int, options: NewtonOptions
 ) -> tuple[Status, Failure]:
     solver = model.compiled.solver
-    here = solver.solve(v[None, :], options).v[0]
+    here = solver.solve(v[None, :], options).v[0].copy()
     block = solver.blocks[failed_block]
     here[block.unknowns] = v[block.unknowns]
     miss = miss_of(block, here)

@@ -21,10 +21,10 @@ from linkwork.motion.tracking import leading_scale, track_to, turns_freely
 from linkwork.numerics.continuation.branch_tracking import (
     InputPath,
     Track,
-    TrackRows,
     node_at,
     rows_on_track,
 )
+from linkwork.numerics.rows import SolvedRows
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit
 from linkwork.results.position import Certificate
@@ -119,8 +119,8 @@ def _at_end(
     if certify and end.certification is Certification.CERTIFIED:
         last = track.nodes[-1] if end.side > 0 else track.nodes[0]
         rows = rows_on_track(solver, place.path, track, np.array([last.t]))
-        proofs = prove_rows(solver, place.path, track, rows, place.path.at(rows.t))
-        proved = proofs.up_to_ends and (laps is None or laps.proved)
+        _, to_ends = prove_rows(solver, place.path, track, rows, place.path.at(rows.t))
+        proved = to_ends and (laps is None or laps.proved)
         end = end if proved else end.demote(Certification.MOTION_NOT_PROVED)
     return SolvedPosition(
         v=v if laps is None else v + laps.gain,
@@ -149,17 +149,17 @@ def _turns_away(model: Model, way: float) -> list[int]:
 
 
 def _certificate(
-    model: Model, place: _PlaceOnTrack, rows: TrackRows, laps: Laps | None
+    model: Model, place: _PlaceOnTrack, rows: SolvedRows, laps: Laps | None
 ) -> Certificate:
     """Of the position and of the way to it."""
     asked = (place.asked * model.input_scale)[None, :]
-    proofs = prove_rows(model.compiled.solver, place.path, place.track, rows, asked)
-    proved = bool(np.isfinite(proofs.radius[0]))
-    certification = Certification.of_code(int(proofs.code[0]))
+    rows, _ = prove_rows(model.compiled.solver, place.path, place.track, rows, asked)
+    proved = bool(np.isfinite(rows.radius[0]))
+    certification = Certification.of_code(int(rows.certification[0]))
     if certification is Certification.CERTIFIED and laps is not None and not laps.proved:
         certification = Certification.MOTION_NOT_PROVED
     return Certificate(
         certification=certification,
-        radius=float(proofs.radius[0]) if proved else None,
-        unique_within=float(proofs.uniqueness_radius[0]) if proved else None,
+        radius=float(rows.radius[0]) if proved else None,
+        unique_within=float(rows.uniqueness_radius[0]) if proved else None,
     )

@@ -13,11 +13,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, CountArray, IndexArray, StatusArray
+from linkwork.foundation.arrays import Array, IndexArray, StatusArray
 from linkwork.foundation.status import CONVERGED, Status
 from linkwork.marching.loop import Attempt, StepBounds, march
 from linkwork.marching.step_size import by_error
-from linkwork.numerics.block_solver import BlockSolver, Rates
+from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["BOLD", "End", "InputPath", "Node", "Track", "TrackOptions", "follow", "rows_on_track"]
 
@@ -87,8 +88,8 @@ BOLD = TrackOptions(
 class Node:
     """A solved position on a track with its derivatives by t; ``v`` etc. are (N,).
 
-    ``condition``, ``nearness``: see :class:`Rates`. ``iterations``: of Newton-Raphson in the step
-    that arrived here.
+    ``condition``, ``nearness``: see :class:`SolvedRows`. ``iterations``: of Newton-Raphson in the
+    step that arrived here.
     """
 
     t: float
@@ -148,6 +149,16 @@ def node_at(solver: BlockSolver, path: InputPath, t: float, v: Array) -> Node:
     return _node(t, v, rates)
 
 
+def rows_of_nodes(nodes: Sequence[Node]) -> SolvedRows:
+    """Positions and derivatives of nodes."""
+    return SolvedRows(
+        t=np.array([node.t for node in nodes]),
+        v=np.stack([node.v for node in nodes]),
+        first=np.stack([node.first for node in nodes]),
+        second=np.stack([node.second for node in nodes]),
+    )
+
+
 def predict(here: Node, t: float) -> Array:
     """The second-order Taylor polynomial of a node at t, (N,)."""
     h = t - here.t
@@ -155,7 +166,7 @@ def predict(here: Node, t: float) -> Array:
     return value
 
 
-def _node(t: float, v: Array, rates: Rates, iterations: int = 0) -> Node:
+def _node(t: float, v: Array, rates: SolvedRows, iterations: int = 0) -> Node:
     return Node(
         t=t,
         v=v,
@@ -251,41 +262,7 @@ def _kind_of_end(solver: BlockSolver, start: Node, here: Node, scale: float) -> 
     return Status.OUT_OF_REACH if fast > 1e3 * max(usual, 1.0) else Status.LOST
 
 
-@dataclass(frozen=True, kw_only=True)
-class TrackRows:
-    """Positions at many values t (B,): as a block solution with rates, rows not found marked."""
-
-    t: Array
-    v: Array
-    status: StatusArray
-    iterations: CountArray
-    residual: Array
-    rates: Rates
-
-
-def concatenate_rows(pieces: Sequence[TrackRows]) -> TrackRows:
-    """Batches of rows as one."""
-
-    def stacked(of: Callable[[TrackRows], Array]) -> Array:
-        return np.concatenate([of(piece) for piece in pieces])
-
-    return TrackRows(
-        t=stacked(lambda p: p.t),
-        v=stacked(lambda p: p.v),
-        status=np.concatenate([p.status for p in pieces]),
-        iterations=np.concatenate([p.iterations for p in pieces]),
-        residual=stacked(lambda p: p.residual),
-        rates=Rates(
-            first=stacked(lambda p: p.rates.first),
-            second=stacked(lambda p: p.rates.second),
-            condition=stacked(lambda p: p.rates.condition),
-            nearness=stacked(lambda p: p.rates.nearness),
-            orientation=np.concatenate([p.rates.orientation for p in pieces]),
-        ),
-    )
-
-
-def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) -> TrackRows:
+def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) -> SolvedRows:
     """Positions at the values ``t`` (B,), all inside the track, as many lanes at once.
 
     Starts from quintic interpolation between the track's nodes. A row that ends elsewhere than
@@ -294,8 +271,8 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
     guess, left = _interpolate(track, t)
     guess[:, solver.unknowns :] = path.at(t)
     found = solver.solve(guess, replace(solver.options, max_steps=12, largest_turn=math.inf))
-    v, status = found.v, found.status.copy()
-    rates = solver.rates(v, path.rate)
+    v, status = found.v.copy(), found.status.copy()
+    rates = solver.rates(found.v, path.rate)
     weights = solver.variable_scale
     moved = np.abs((v - guess) / weights).max(axis=1)
     expected = np.stack([track.nodes[k].orientation for k in left])
@@ -313,7 +290,7 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
         residual[row] = solver.residual(arrived.v[None, :])[0]
     if doubtful.any():
         rates = solver.rates(v, path.rate)
-    return TrackRows(t=t, v=v, status=status, iterations=iterations, residual=residual, rates=rates)
+    return rates.with_columns(t=t, status=status, iterations=iterations, residual=residual)
 
 
 def _nearest(track: Track, left: int, t: float) -> Node:
@@ -323,14 +300,11 @@ def _nearest(track: Track, left: int, t: float) -> Node:
 
 def _interpolate(track: Track, t: Array) -> tuple[Array, IndexArray]:
     """Quintic Hermite values at t (B, N) and the index of the node at the left of each."""
-    nodes = track.nodes
-    times = np.array([node.t for node in nodes])
+    nodes = rows_of_nodes(track.nodes)
+    times, v, d1, d2 = nodes.t, nodes.v, nodes.first, nodes.second
     if len(nodes) == 1:
-        return np.repeat(nodes[0].v[None, :], len(t), axis=0), np.zeros(len(t), dtype=np.intp)
+        return np.repeat(v, len(t), axis=0), np.zeros(len(t), dtype=np.intp)
     left = np.clip(np.searchsorted(times, t, side="right") - 1, 0, len(nodes) - 2)
-    v = np.stack([node.v for node in nodes])
-    d1 = np.stack([node.first for node in nodes])
-    d2 = np.stack([node.second for node in nodes])
     h = (times[left + 1] - times[left])[:, None]
     s = (t[:, None] - times[left][:, None]) / h
     v0, v1 = v[left], v[left + 1]

@@ -1,20 +1,8 @@
-"""Locating the change point at which two branches cross, and the tangents of both.
-
-There D = [J, F_t] loses rank: a left null vector w has wᵀJ = 0 and wᵀF_t = 0. The extended system
-
-    F(x, t) + β c = 0,   J(x, t)ᵀ w = 0,   wᵀF_t(x, t) = 0,   wᵀw = 1
-
-for (x, t, β, w), with a fixed vector c near w, is regular at a simple crossing, where β = 0
-(Griewank & Reddien 1984, doi:10.1137/0721010). With a basis z1, z2 of D's null space the crossing
-tangents a z1 + b z2 solve A a² + 2 B ab + C b² = 0 with A = wᵀD²F[z1, z1], B = wᵀD²F[z1, z2],
-C = wᵀD²F[z2, z2].
-"""
+"""Locating the change point at which two branches cross, and the blocks that may have one."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -22,13 +10,13 @@ from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.rounding import EPSILON
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node
+from linkwork.numerics.continuation.crossing_system import CrossingSystem, Equations, KnownJet
 from linkwork.numerics.joined_blocks import JoinedBlocks, closure_of
 from linkwork.numerics.system import System
 
 __all__ = [
     "ChangePoint",
     "Crossing",
-    "KnownJet",
     "crossing_near",
     "locate_change_point",
     "locate_crossing",
@@ -36,7 +24,6 @@ __all__ = [
     "tangents_behind_kink",
 ]
 
-_STEPS = 12
 _SHARES = 17  # in which rates are led around a kink
 _FAR = 1e-3  # ratio of a block's singular values from which on it is far from a singular position
 _UNFOLDED = 1e-13  # |β| beyond which the branches pass each other without touching
@@ -72,23 +59,6 @@ class Crossing:
     directions: Array
     bracket: tuple[float, float]
     located: bool
-
-
-@dataclass(frozen=True)
-class KnownJet:
-    """What some equations take as known as a motion: y, y', y'' by t, (p,) each."""
-
-    at: Callable[[float], tuple[Array, Array, Array]]
-
-    @classmethod
-    def along(cls, path: InputPath) -> KnownJet:
-        """The inputs on a path."""
-        return cls(lambda t: (path.at(t), path.rate, np.zeros_like(path.rate)))
-
-    @classmethod
-    def resting(cls, y: Array, first: Array, second: Array) -> KnownJet:
-        """The same y, y', y'' whatever t is asked for."""
-        return cls(lambda t: (y, first, second))
 
 
 def locate_change_point(
@@ -185,7 +155,7 @@ def tangents_behind_kink(
         y, first, second = (
             (1.0 - share) * a + share * b for a, b in zip(before, after, strict=True)
         )
-        crossing = _Crossing(block.system, KnownJet.resting(y, first, second))
+        crossing = CrossingSystem(block.system, KnownJet.resting(y, first, second))
         w = np.linalg.svd(crossing.linear(x, point.t)[1])[0][:, -1]
         found = crossing.tangents(x, point.t, w)
         if found is None:
@@ -212,9 +182,9 @@ class _Located:
     other: Array
 
 
-def _locate(system: _Equations, known: KnownJet, x: Array, t: float, own: Array) -> _Located | None:
+def _locate(system: Equations, known: KnownJet, x: Array, t: float, own: Array) -> _Located | None:
     """The crossing near (x, t); ``own`` (n,) is the derivative of the branch that is followed."""
-    crossing = _Crossing(system, known)
+    crossing = CrossingSystem(system, known)
     found = crossing.solve(x, t)
     if found is None:
         return None
@@ -255,7 +225,9 @@ def crossing_near(solver: BlockSolver, path: InputPath, block: int, v: Array) ->
     system = JoinedBlocks(solver, closure_of(solver, block))
     moving = int(np.argmax(np.abs(path.rate)))
     t = float((v[solver.unknowns + moving] - path.origin[moving]) / path.rate[moving])
-    found = _Crossing(system, KnownJet.along(path)).solve(v[system.order[: system.unknowns]], t)
+    found = CrossingSystem(system, KnownJet.along(path)).solve(
+        v[system.order[: system.unknowns]], t
+    )
     if found is None or abs(found[3]) > _UNFOLDED:
         return None
     near = 1e-2 * float(solver.variable_scale[solver.unknowns + moving] / abs(path.rate[moving]))
@@ -337,105 +309,3 @@ def _near(system: System, v: Array) -> Array:
     changes: Array = np.abs(mixed / system.equation_scale).max(axis=1).reshape(n, count)
     largest: Array = changes.max(axis=1)
     return largest
-
-
-class _Equations(Protocol):
-    """What locating a crossing needs to know of equations: a part of a System."""
-
-    @property
-    def unknowns(self) -> int: ...
-    @property
-    def equation_scale(self) -> Array: ...
-    @property
-    def variable_scale(self) -> Array: ...
-    def jacobian(self, v: Array) -> Array: ...
-    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]: ...
-    def second_directional_derivative(self, v: Array, d: Array) -> Array: ...
-
-
-class _Crossing:
-    """The extended system of some equations, in scaled variables and equations."""
-
-    def __init__(self, system: _Equations, known: KnownJet) -> None:
-        self.system, self.known = system, known
-        self.n = system.unknowns
-        self.weights = system.variable_scale[: self.n]
-        self.scale = system.equation_scale
-
-    def _at(self, x: Array, t: float) -> tuple[Array, Array, Array]:
-        """v (1, N), scaled unit steps of the unknowns and of t, (n + 1, N), and y'' (p,)."""
-        y, first, second = self.known.at(t)
-        basis = np.zeros((self.n + 1, self.n + len(y)))
-        basis[: self.n, : self.n] = np.diag(self.weights)
-        basis[self.n, self.n :] = first
-        return np.concatenate([x, y])[None, :], basis, second
-
-    def linear(self, x: Array, t: float) -> tuple[Array, Array]:
-        """F (n,) and D (n, n + 1), scaled."""
-        v, basis, _ = self._at(x, t)
-        f, jacobian = self.system.residual_and_jacobian(v)
-        d = jacobian[0] @ basis.T / self.scale[:, None]
-        return f[0] / self.scale, d
-
-    def bend(self, x: Array, t: float, w: Array) -> Array:
-        """wᵀD²F over all pairs of scaled unit steps, (n + 1, n + 1)."""
-        size = self.n + 1
-        i, j = (index.ravel() for index in np.indices((size, size)))
-        v, basis, second = self._at(x, t)
-        lanes = np.repeat(v, size * size, axis=0)
-        a, b = basis[i], basis[j]
-        values = 0.25 * (
-            self.system.second_directional_derivative(lanes, a + b)
-            - self.system.second_directional_derivative(lanes, a - b)
-        )
-        matrix: Array = (values / self.scale @ w).reshape(size, size)
-        if second.any():  # what is known does not move at a constant rate
-            slope = self.system.jacobian(v)[0, :, self.n :]
-            matrix[self.n, self.n] += float(w @ (slope @ second / self.scale))
-        return matrix
-
-    def solve(self, x: Array, t: float) -> tuple[Array, float, Array, float, float] | None:
-        """(x, t, w, β) and the last change of t, by Newton-Raphson."""
-        n = self.n
-        _, d = self.linear(x, t)
-        w = np.linalg.svd(d)[0][:, -1]
-        c, beta, error = w.copy(), 0.0, np.inf
-        for _ in range(_STEPS):
-            f, d = self.linear(x, t)
-            h = self.bend(x, t, w)
-            matrix = np.zeros((2 * n + 2, 2 * n + 2))
-            matrix[:n, : n + 1] = d
-            matrix[:n, n + 1] = c
-            matrix[n : 2 * n + 1, : n + 1] = h
-            matrix[n : 2 * n + 1, n + 2 :] = d.T
-            matrix[2 * n + 1, n + 2 :] = 2.0 * w
-            right = np.concatenate([f + beta * c, d.T @ w, [w @ w - 1.0]])
-            try:
-                change = -np.linalg.solve(matrix, right)
-            except np.linalg.LinAlgError:
-                return None
-            if not np.isfinite(change).all():
-                return None
-            x = x + change[:n] * self.weights
-            t = t + float(change[n])
-            beta += float(change[n + 1])
-            w = w + change[n + 2 :]
-            last, error = error, abs(float(change[n]))
-            if error <= 2.0 * EPSILON * max(1.0, abs(t)) or (error >= last and last < 1e-10):
-                break
-        return x, t, w, beta, error
-
-    def tangents(self, x: Array, t: float, w: Array) -> tuple[Array, ...] | None:
-        """The directions of both branches in scaled unknowns and t, (n + 1,) each."""
-        _, d = self.linear(x, t)
-        null = np.linalg.svd(d)[2][-2:]
-        h = self.bend(x, t, w)
-        a, b, c = null[0] @ h @ null[0], null[0] @ h @ null[1], null[1] @ h @ null[1]
-        square = b * b - a * c
-        if square <= 0.0:
-            return None
-        root = np.sqrt(square)
-        # the two roots (p : q) of a p² + 2 b p q + c q², without cancellation
-        q = -(b + np.copysign(root, b))
-        pairs = ((q, a), (c, q)) if q != 0.0 else ((1.0, 0.0), (0.0, 1.0))
-        return tuple(p * null[0] + r * null[1] for p, r in pairs)

@@ -15,8 +15,9 @@ from linkwork.numerics.continuation.local_parametrization import (
     apart,
     whole_turns,
 )
-from linkwork.numerics.continuation.path_proof import PathPoints, ProvenPath, prove_path
+from linkwork.numerics.continuation.path_proof import ProvenPath, prove_path
 from linkwork.numerics.proof.position_proof import prove, reach
+from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["ProvenCurve", "leg_is_proved", "prove_curve", "same_solution"]
 
@@ -84,7 +85,7 @@ def leg_is_proved(leg: Leg) -> bool:
 def _proof_of(leg: Leg, most: int) -> ProvenPath:
     nodes = leg.nodes
     sign = np.sign(nodes[-1].t - nodes[0].t) or 1.0
-    points = PathPoints(
+    points = SolvedRows(
         t=sign * np.array([node.t for node in nodes]),
         v=np.stack([node.v for node in nodes]),
         first=sign * np.stack([node.first for node in nodes]),

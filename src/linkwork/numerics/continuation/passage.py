@@ -23,10 +23,10 @@ from linkwork.numerics.block_solver import Block, BlockSolver, linearise_block
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node, follow, node_at
 from linkwork.numerics.continuation.change_point import (
     ChangePoint,
-    KnownJet,
     locate_crossing,
     tangents_behind_kink,
 )
+from linkwork.numerics.continuation.crossing_system import KnownJet
 from linkwork.numerics.newton import newton
 
 __all__ = ["Passage", "pass_change_points"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -11,9 +10,8 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray, CountArray, IndexArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.foundation.status import CONVERGED
-from linkwork.marching.loop import Attempt, StepBounds, march
-from linkwork.numerics.block_solver import BlockSolver, Rates
-from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Watch, node_at, predict
+from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.continuation.branch_tracking import InputPath
 from linkwork.numerics.proof.kantorovich import Expansion
 from linkwork.numerics.proof.position_proof import (
     Proof,
@@ -23,38 +21,15 @@ from linkwork.numerics.proof.position_proof import (
     rounding_of_inputs,
     steps_connected,
 )
+from linkwork.numerics.rows import SolvedRows
 
-__all__ = ["PathPoints", "ProvenPath", "follow_with_proof", "prove_path"]
+__all__ = ["ProvenPath", "prove_path"]
 
 _ROUNDS = 45  # halvings of one step before it counts as not proved
 _MOST = 30_000  # positions solved in between for the proof of one path
 _MOST_EACH = 8  # and so many more for each of its own positions
 _PIECE = 1024  # positions proved together: arrays that fit the cache
 _LANES = 1024  # steps halved together
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class PathPoints:
-    """Positions along a path with their derivatives by t: t (K,), the others (K, N).
-
-    ``input_radius`` (K, p): how far the inputs may be from those in v, in their own units.
-    """
-
-    t: Array
-    v: Array
-    first: Array
-    second: Array
-    input_radius: Array
-
-    def take(self, index: IndexArray | slice) -> PathPoints:
-        """Some of them, in the order of ``index``."""
-        return PathPoints(
-            t=self.t[index],
-            v=self.v[index],
-            first=self.first[index],
-            second=self.second[index],
-            input_radius=self.input_radius[index],
-        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -94,7 +69,7 @@ def _connected_outwards(connected: BoolArray, anchor: int) -> BoolArray:
 def prove_path(
     solver: BlockSolver,
     path: InputPath,
-    points: PathPoints,
+    points: SolvedRows,
     *,
     anchor: int | None = None,
     most: int | None = None,
@@ -104,8 +79,8 @@ def prove_path(
 
     Parameters
     ----------
-    points : PathPoints
-        In the order of t.
+    points : SolvedRows
+        In the order of t, with ``first``, ``second`` and ``input_radius``.
     anchor : int, optional
         The point that the others have to be joined to: steps near it are proved first, and those
         beyond one that cannot be proved are left alone. Without it all steps count alike.
@@ -175,7 +150,7 @@ def _behind_first(p: Proof) -> Proof:
 def _piece(
     solver: BlockSolver,
     path: InputPath,
-    points: PathPoints,
+    points: SolvedRows,
     anchor: int | None,
     allowance: _Allowance,
 ) -> ProvenPath:
@@ -216,8 +191,8 @@ def _take_expansions(
 
 def _steps(
     solver: BlockSolver,
-    start: PathPoints,
-    goal: PathPoints,
+    start: SolvedRows,
+    goal: SolvedRows,
     near: Array,
     places: Sequence[Expansion | None] | None = None,
 ) -> BoolArray:
@@ -236,8 +211,8 @@ class _Open:
     and the number of the step of the path that they are a part of.
     """
 
-    left: PathPoints
-    right: PathPoints
+    left: SolvedRows
+    right: SolvedRows
     near: Array
     owner: IndexArray
 
@@ -251,8 +226,8 @@ class _Open:
 
     def with_(self, other: _Open) -> _Open:
         return _Open(
-            left=_concatenate_points(self.left, other.left),
-            right=_concatenate_points(self.right, other.right),
+            left=SolvedRows.concatenate([self.left, other.left]),
+            right=SolvedRows.concatenate([self.right, other.right]),
             near=np.concatenate([self.near, other.near]),
             owner=np.concatenate([self.owner, other.owner]),
         )
@@ -333,19 +308,9 @@ class _Halving:
         return halves[0].with_(halves[1])
 
 
-def _concatenate_points(a: PathPoints, b: PathPoints) -> PathPoints:
-    return PathPoints(
-        t=np.concatenate([a.t, b.t]),
-        v=np.concatenate([a.v, b.v]),
-        first=np.concatenate([a.first, b.first]),
-        second=np.concatenate([a.second, b.second]),
-        input_radius=np.concatenate([a.input_radius, b.input_radius]),
-    )
-
-
 def _between(
-    solver: BlockSolver, path: InputPath, left: PathPoints, right: PathPoints
-) -> tuple[PathPoints, BoolArray, list[Expansion | None]]:
+    solver: BlockSolver, path: InputPath, left: SolvedRows, right: SolvedRows
+) -> tuple[SolvedRows, BoolArray, list[Expansion | None]]:
     """Positions halfway in t, started from the quintic through both ends; which were found; what
     proofs take from them.
     """
@@ -356,58 +321,9 @@ def _between(
     guess[:, solver.unknowns :] = path.at(t)
     done = solver.solve(guess)
     linear = solver.linearise(done.v)
-    rates: Rates = solver.rates(done.v, path.rate, linear)
+    rates = solver.rates(done.v, path.rate, linear)
     input_radius = rounding_of_inputs(done.v, solver.unknowns)
-    points = PathPoints(
+    points = SolvedRows(
         t=t, v=done.v, first=rates.first, second=rates.second, input_radius=input_radius
     )
     return points, done.status == CONVERGED, expansions(solver, done.v, linear)
-
-
-_PROVED_GROWTH = 1.5  # of steps that are proved one by one
-
-
-def follow_with_proof(
-    solver: BlockSolver, path: InputPath, start: Node, goal: float, watch: Watch
-) -> list[Node]:
-    """The branch of ``start`` towards ``t = goal``, every step proved before the next is taken.
-
-    The step size is what the proof allows: many short steps near a crossing of branches, and none
-    that could come onto the other one. Ends where ``watch`` has seen enough or nothing is proved.
-    """
-    bounds = StepBounds(size=path.size, first=0.01, largest=math.inf, smallest=1e-13, attempts=2000)
-    nodes, _ = march(_ProvedTrial(solver, path, start), start, goal, bounds, watch)
-    return nodes
-
-
-class _ProvedTrial:
-    """A step that is taken only if it is proved."""
-
-    def __init__(self, solver: BlockSolver, path: InputPath, start: Node) -> None:
-        self.solver, self.path = solver, path
-        self.here = self._proof(start.v[None, :])
-
-    def _proof(self, v: Array) -> Proof:
-        return prove(self.solver, v, rounding_of_inputs(v, self.solver.unknowns))
-
-    def room(self, here: Node, sign: float) -> float:
-        """The proof bounds the step, nothing else."""
-        return math.inf
-
-    def attempt(self, here: Node, t: float) -> Attempt[Node]:
-        """Predict, correct, prove the position and the step to it."""
-        solver = self.solver
-        guess = predict(here, t)
-        guess[solver.unknowns :] = self.path.at(t)
-        found = solver.solve(guess[None, :])
-        if found.status[0] != CONVERGED:
-            return Attempt(None)
-        known = rounding_of_inputs(found.v, solver.unknowns)
-        proof = self._proof(found.v)
-        input_radius = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
-        reached = reach(solver, here.v[None, :], input_radius + 2.0 * known)
-        both = np.maximum(proof.error_bound, self.here.error_bound)
-        if not (proof.holds[0] and steps_connected(here.v[None, :], found.v, reached, both)[0]):
-            return Attempt(None)
-        self.here = proof
-        return Attempt(node_at(solver, self.path, t, found.v[0]), _PROVED_GROWTH)

@@ -34,7 +34,7 @@ from linkwork.numerics.continuation.local_parametrization import (
     Parametrizations,
     fastest_leader,
 )
-from linkwork.numerics.continuation.path_proof import follow_with_proof
+from linkwork.numerics.continuation.proved_tracking import follow_with_proof
 from linkwork.numerics.continuation.step_division import divide_step
 
 __all__ = ["TurnAhead", "TurningPoint", "turn_beyond", "turning_points"]

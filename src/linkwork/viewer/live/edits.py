@@ -15,9 +15,10 @@ from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.quantities import Quantity, quantity_named
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import requests as ask
+from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.palette import part_name, part_of
 
-__all__ = ["Before", "Followed", "applied"]
+__all__ = ["Before", "Followed", "applied", "edit_title"]
 
 _DRIVES = ("link", "joint", "slider", "cylinder", "variable")
 _RANGE = {"start": "from", "stop": "to", "step": "step", "speed": "speed"}
@@ -335,3 +336,18 @@ def _drop_loose_dimensions(text: TextEdits) -> None:
         for key in text.keys((table,)):
             if not any({canonical(p) for p in key.split()} <= points for points in links):
                 text.remove((table, key))
+
+
+def edit_title(edit: ask.Edit) -> str:
+    """A change in a few words, for the history."""
+    match edit:
+        case ask.SetNumber():
+            value = edit.value if isinstance(edit.value, str) else f"{edit.value:.12g}"
+            return f"{edit.name} = {value}"
+        case ask.MovePoint():
+            return f"move {edit.point}"
+        case ask.ChooseConfiguration():
+            return f"configuration {edit.name}".strip()
+        case _:
+            name = getattr(edit, "name", None) or getattr(edit, "point", "")
+            return f"{kind_of(type(edit)).replace('_', ' ')} {name}".strip()

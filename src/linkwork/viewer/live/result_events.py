@@ -19,24 +19,17 @@ from linkwork.results.motion import Motion
 from linkwork.results.nearest_assembly import LinkEnd, NearestAssembly
 from linkwork.results.position import Position
 from linkwork.viewer.live import events as tell
+from linkwork.viewer.live.history import History
 from linkwork.viewer.page_data import PageData
 
 __all__ = [
     "cannot_close",
-    "changeable_numbers",
     "configurations_found",
-    "driven_inputs",
-    "drives_of",
-    "form_of",
-    "links_of",
-    "loop_texts",
+    "file_state",
     "motion_found",
     "newton_shown",
-    "parts_of",
     "position_found",
     "problems_found",
-    "sketched_points",
-    "unknowns_of",
 ]
 
 Numbers = dict[str, float | None]
@@ -171,7 +164,7 @@ def problems_found(error: MechanismError, *, lines: bool = True) -> tell.Problem
     )
 
 
-def changeable_numbers(
+def _changeable_numbers(
     description: Description, kinds: Mapping[str, str]
 ) -> Iterator[tell.ChangeableNumber]:
     """All named numbers of a file, then the lengths measured in its sketch.
@@ -207,7 +200,7 @@ def _unit(description: Description, quantity: Quantity, kinds: Mapping[str, str]
     return description.length if kinds.get(quantity.key) == "length" else ""
 
 
-def unknowns_of(sheet: EquationSheet, description: Description) -> tuple[tell.Unknown, ...]:
+def _unknowns_of(sheet: EquationSheet, description: Description) -> tuple[tell.Unknown, ...]:
     """The unknowns with their guess, in file units."""
     units = {"angle": description.angle.value, "length": description.length}
     scale = {"angle": description.angle.radians}
@@ -222,7 +215,7 @@ def unknowns_of(sheet: EquationSheet, description: Description) -> tuple[tell.Un
     )
 
 
-def driven_inputs(sheet: EquationSheet, description: Description) -> tuple[tell.DrivenInput, ...]:
+def _driven_inputs(sheet: EquationSheet, description: Description) -> tuple[tell.DrivenInput, ...]:
     """The driven quantities and their ranges."""
     found = []
     for which, variable in zip(description.inputs, sheet.equations.inputs, strict=True):
@@ -243,7 +236,7 @@ def driven_inputs(sheet: EquationSheet, description: Description) -> tuple[tell.
     return tuple(found)
 
 
-def sketched_points(description: Description) -> dict[str, tuple[float, float]]:
+def _sketched_points(description: Description) -> dict[str, tuple[float, float]]:
     """The movable points of a sketch; none if they are given by equations."""
     if not isinstance(description, Linkage):
         return {}
@@ -251,20 +244,20 @@ def sketched_points(description: Description) -> dict[str, tuple[float, float]]:
     return {point: (float(z.real), float(z.imag)) for point, z in places.items()}
 
 
-def links_of(description: Description) -> tuple[tell.Link, ...]:
+def _links_of(description: Description) -> tuple[tell.Link, ...]:
     """The links of a file."""
     links: Mapping[str, tuple[str, ...]] = getattr(description, "links", {})
     return tuple(tell.Link(name=name, points=tuple(points)) for name, points in links.items())
 
 
-def parts_of(description: Description) -> tuple[str, ...]:
+def _parts_of(description: Description) -> tuple[str, ...]:
     """The names of the parts of a linkage other than points and links."""
     if not isinstance(description, Linkage):
         return ()
     return tuple(part.label for part in description.parts)
 
 
-def drives_of(sheet: EquationSheet, description: Description) -> tuple[tell.Drive, ...]:
+def _drives_of(sheet: EquationSheet, description: Description) -> tuple[tell.Drive, ...]:
     """Possible inputs: links, displacements and lengths of a linkage, otherwise any variable."""
     if isinstance(description, Linkage):
         named = [("link", name) for name in description.links if name != GROUND]
@@ -274,14 +267,14 @@ def drives_of(sheet: EquationSheet, description: Description) -> tuple[tell.Driv
     return tuple(tell.Drive(kind=kind, name=name) for kind, name in named)
 
 
-def loop_texts(sheet: EquationSheet) -> tuple[str, ...]:
+def _loop_texts(sheet: EquationSheet) -> tuple[str, ...]:
     """The equations in textbook notation."""
     plain = PlainText()
     loops = tuple(sheet.loop(loop, plain) for loop in sheet.equations.loops)
     return loops or tuple(f"{row} = 0" for row in sheet.real_rows(plain))
 
 
-def form_of(description: Description) -> str:
+def _form_of(description: Description) -> str:
     """The form of the file."""
     if isinstance(description, Linkage):
         return "points-and-links"
@@ -303,3 +296,38 @@ def _numbers(table: Mapping[str, float]) -> Numbers:
 def _points(table: Mapping[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
     """Points with finite coordinates."""
     return {p: (x, y) for p, (x, y) in table.items() if math.isfinite(x) and math.isfinite(y)}
+
+
+def file_state(
+    file: str,
+    text: str,
+    description: Description,
+    sheet: EquationSheet,
+    history: History,
+    *,
+    unsaved: bool,
+) -> tell.FileState:
+    """A file as the page edits it: its text, and the parts, numbers and equations read from it."""
+    kinds = {v.name: v.kind for v in sheet.equations.variables}
+    return tell.FileState(
+        file=file,
+        title=description.name,
+        text=text,
+        form=_form_of(description),
+        unsaved=unsaved,
+        undo=history.undo_what,
+        redo=history.redo_what,
+        length_unit=description.length,
+        angle_unit=description.angle.value,
+        configuration=description.configuration,
+        numbers=tuple(_changeable_numbers(description, kinds)),
+        unknowns=_unknowns_of(sheet, description),
+        inputs=_driven_inputs(sheet, description),
+        points=_sketched_points(description),
+        links=_links_of(description),
+        parts=_parts_of(description),
+        drives=_drives_of(sheet, description),
+        traceable=tuple(getattr(description, "points", ())),
+        traced=description.trace,
+        equations=_loop_texts(sheet),
+    )

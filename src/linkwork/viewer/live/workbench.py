@@ -16,7 +16,7 @@ from linkwork.results.motion import Motion
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
 from linkwork.viewer.live.alternative_starts import closing_input, sketch_at
-from linkwork.viewer.live.edits import Before, Followed, applied
+from linkwork.viewer.live.edits import Before, Followed, applied, edit_title
 from linkwork.viewer.live.history import History
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
 from linkwork.viewer.live.messages import kind_of
@@ -161,12 +161,12 @@ class Workbench:
         try:
             followed = applied(edit, drag.text, drag.before)
             text = drag.text.text
-            told = self._accepted(text, _words(edit), live=live)
+            told = self._accepted(text, edit_title(edit), live=live)
         except InputError:
             drag.text = TextEdits(self.text)  # without the traces of what failed
             raise
         if live:
-            drag.latest, drag.what = text, _words(edit)
+            drag.latest, drag.what = text, edit_title(edit)
         return [*_followed(edit, followed), *told]
 
     def _after_refusal(self, request: ask.Request) -> Events:
@@ -182,7 +182,7 @@ class Workbench:
         text, before = TextEdits(self.text), self._before()
         for edit in request.edits:
             applied(edit, text, before)
-        return self._accepted(text.text, "; ".join(map(_words, request.edits)))
+        return self._accepted(text.text, "; ".join(map(edit_title, request.edits)))
 
     @_handle.register
     def _(self, request: ask.AssembleAt) -> Events:
@@ -353,29 +353,13 @@ class Workbench:
         return [telling.cannot_close(nearest, message, remedies, elsewhere)]
 
     def _state(self) -> tell.FileState:
-        description, sheet = self._mechanism.description, self._mechanism.equations()
-        kinds = {v.name: v.kind for v in sheet.equations.variables}
-        return tell.FileState(
-            file=self._file.name,
-            title=description.name,
-            text=self.text,
-            form=telling.form_of(description),
+        return telling.file_state(
+            self._file.name,
+            self.text,
+            self._mechanism.description,
+            self._mechanism.equations(),
+            self._history,
             unsaved=self.unsaved,
-            undo=self._history.undo_what,
-            redo=self._history.redo_what,
-            length_unit=description.length,
-            angle_unit=description.angle.value,
-            configuration=description.configuration,
-            numbers=tuple(telling.changeable_numbers(description, kinds)),
-            unknowns=telling.unknowns_of(sheet, description),
-            inputs=telling.driven_inputs(sheet, description),
-            points=telling.sketched_points(description),
-            links=telling.links_of(description),
-            parts=telling.parts_of(description),
-            drives=telling.drives_of(sheet, description),
-            traceable=tuple(getattr(description, "points", ())),
-            traced=description.trace,
-            equations=telling.loop_texts(sheet),
         )
 
 
@@ -395,21 +379,6 @@ def _goes_on(request: ask.Request, drag: _Drag | None) -> bool:
     if drag is None or isinstance(request, ask.SolveAt | ask.ListConfigurations | ask.NewtonSteps):
         return True
     return isinstance(request, ask.EDITS) and _same_thing(request) == drag.kind
-
-
-def _words(edit: ask.Edit) -> str:
-    """A change in a few words, for the history."""
-    match edit:
-        case ask.SetNumber():
-            value = edit.value if isinstance(edit.value, str) else f"{edit.value:.12g}"
-            return f"{edit.name} = {value}"
-        case ask.MovePoint():
-            return f"move {edit.point}"
-        case ask.ChooseConfiguration():
-            return f"configuration {edit.name}".strip()
-        case _:
-            name = getattr(edit, "name", None) or getattr(edit, "point", "")
-            return f"{kind_of(type(edit)).replace('_', ' ')} {name}".strip()
 
 
 def _followed(edit: ask.Edit, followed: Followed) -> Events:

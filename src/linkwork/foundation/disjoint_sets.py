@@ -1,0 +1,29 @@
+"""Disjoint sets of numbered things, united two at a time (union-find)."""
+
+from __future__ import annotations
+
+__all__ = ["DisjointSets"]
+
+
+class DisjointSets:
+    """Sets of the numbers 0, 1, …; a set is named by its smallest number, its root."""
+
+    def __init__(self, count: int = 0) -> None:
+        self.above = list(range(count))
+
+    def add(self) -> int:
+        """The next number, in a set of its own."""
+        self.above.append(len(self.above))
+        return self.above[-1]
+
+    def root(self, k: int) -> int:
+        """The smallest number of the set that holds k."""
+        while self.above[k] != k:
+            k = self.above[k]
+        return k
+
+    def unite(self, a: int, b: int) -> bool:
+        """Make the sets of a and b one set; whether they were two."""
+        first, second = sorted((self.root(a), self.root(b)))
+        self.above[second] = first
+        return first != second

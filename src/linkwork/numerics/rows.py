@@ -1,0 +1,166 @@
+"""Solved rows: positions of one mechanism with everything that is known of each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NoReturn, dataclass_transform
+
+import numpy as np
+
+from linkwork.foundation.arrays import AnyArray, Array, CountArray, IndexArray, StatusArray
+from linkwork.foundation.certification import Certification
+from linkwork.foundation.status import Status
+
+__all__ = ["UNKNOWN", "SolvedRows"]
+
+
+#: A column that has not been computed: empty.
+UNKNOWN: Any = np.empty(0)
+
+
+@dataclass_transform(kw_only_default=True, frozen_default=True)
+class _Columns:
+    """Columns given by name, read-only; a column that is not given keeps its class's default.
+
+    A data class would set each of twenty columns one by one, which takes longer than a step of
+    Newton-Raphson on a small block.
+    """
+
+    def __init__(self, **columns: AnyArray) -> None:
+        for column in columns.values():
+            column.setflags(write=False)
+        vars(self).update(columns)
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise TypeError("solved rows are read-only: make others with set, put or with_columns")
+
+
+class SolvedRows(_Columns):
+    """B positions of one mechanism in internal units; every column is read-only.
+
+    A step of the solution computes some columns; the others are ``UNKNOWN``.
+
+    Parameters
+    ----------
+    v : (B, N)
+        Unknowns with the inputs behind, NaN where there is no position.
+    t : (B,)
+        Values of the path's parameter.
+    status, iterations, residual : (B,)
+        How Newton-Raphson ended; the largest scaled residual.
+    first_step, contraction : (B,)
+        Of Newton-Raphson: weighted size of the first correction; largest ratio of successive
+        corrections that were above rounding.
+    failed_block : (B,)
+        The block that did not converge, -1 where all did.
+    first, second : (B, N)
+        Derivatives by t, NaN where they do not exist.
+    condition, nearness : (B,)
+        Largest over the blocks of ‖J‖·‖J⁻¹‖ (largest norm, weighted); how near to a singular
+        position: the condition itself unless lengths differ much.
+    orientation : (B, blocks)
+        Sign of det J, 0 where J is singular.
+    input_radius : (B, p)
+        How far the inputs that are meant may be from those in v.
+    certification, radius, uniqueness_radius : (B,)
+        Codes of :class:`Certification`; a true position lies within the one radius, no other
+        within the other (weighted), NaN without a proof.
+    inputs : (B, p)
+        The inputs asked for, in file units.
+    branch, limit : (B,)
+        Names, or "".
+    """
+
+    v: Array
+    t: Array = UNKNOWN
+    status: StatusArray = UNKNOWN
+    iterations: CountArray = UNKNOWN
+    residual: Array = UNKNOWN
+    first_step: Array = UNKNOWN
+    contraction: Array = UNKNOWN
+    failed_block: CountArray = UNKNOWN
+    first: Array = UNKNOWN
+    second: Array = UNKNOWN
+    condition: Array = UNKNOWN
+    nearness: Array = UNKNOWN
+    orientation: StatusArray = UNKNOWN
+    input_radius: Array = UNKNOWN
+    certification: StatusArray = UNKNOWN
+    radius: Array = UNKNOWN
+    uniqueness_radius: Array = UNKNOWN
+    inputs: Array = UNKNOWN
+    branch: AnyArray = UNKNOWN
+    limit: AnyArray = UNKNOWN
+
+    def __len__(self) -> int:
+        return len(self.v)
+
+    @classmethod
+    def blank(
+        cls,
+        inputs: Array,
+        variables: int,
+        status: Status,
+        certification: Certification = Certification.NO_POSITION,
+    ) -> SolvedRows:
+        """Rows of a table without positions, all for one reason."""
+        count = len(inputs)
+        nothing, unknown = np.full((count, variables), np.nan), np.full(count, np.nan)
+        names = np.full(count, "", dtype=object)
+        return cls(
+            inputs=np.array(inputs, dtype=float),
+            v=nothing,
+            first=nothing,
+            second=nothing,
+            status=np.full(count, status.code, dtype=np.int8),
+            iterations=np.zeros(count, dtype=np.int64),
+            residual=unknown,
+            condition=unknown,
+            certification=np.full(count, certification.code, dtype=np.int8),
+            radius=unknown,
+            uniqueness_radius=unknown,
+            branch=names,
+            limit=names,
+        )
+
+    @property
+    def columns(self) -> dict[str, AnyArray]:
+        """The columns that have been computed, by name."""
+        return dict(vars(self))
+
+    def with_columns(self, **columns: AnyArray) -> SolvedRows:
+        """The rows with some columns added or replaced."""
+        return SolvedRows(**(vars(self) | columns))
+
+    def take(self, where: IndexArray | slice) -> SolvedRows:
+        """Some rows, in the order of ``where``."""
+        return SolvedRows(**{name: column[where] for name, column in vars(self).items()})
+
+    @classmethod
+    def concatenate(cls, parts: Sequence[SolvedRows]) -> SolvedRows:
+        """Rows one behind the other, with the columns that all parts have."""
+        columns = [part.columns for part in parts]
+        names = [name for name in columns[0] if all(name in other for other in columns)]
+        return cls(**{name: np.concatenate([c[name] for c in columns]) for name in names})
+
+    def put(self, where: IndexArray, others: SolvedRows) -> SolvedRows:
+        """The rows with some replaced by others one by one; columns unknown of those stay."""
+        changed = self.columns
+        for name in changed.keys() & others.columns.keys():
+            changed[name] = changed[name].copy()
+            changed[name][where] = getattr(others, name)
+        return SolvedRows(**changed)
+
+    def set(self, where: Any = slice(None), **values: Any) -> SolvedRows:
+        """The rows with values of some columns set at the rows ``where``."""
+        changed = self.columns
+        for name, value in values.items():
+            changed[name] = changed[name].copy()
+            changed[name][where] = value
+        return SolvedRows(**changed)
+
+    def demote(self, standing: Certification) -> SolvedRows:
+        """The rows with those that are certified on their branch limited to ``standing``."""
+        return self.set(
+            self.certification == Certification.CERTIFIED.code, certification=standing.code
+        )

@@ -1,0 +1,187 @@
+"""Quantities that are asked for by name: their unit, their kind and their values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from linkwork.expression.jets import Jet
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import UnknownNameError
+from linkwork.results.quantities.definition import (
+    UNKNOWN,
+    MechanismNames,
+    MotionQuantity,
+    MotionRows,
+    RowQuantity,
+    Solved,
+)
+from linkwork.results.quantity import Kind, Quantity, Rate
+
+__all__ = ["Asked", "AskedOfMotion", "Group"]
+
+
+class Group(Enum):
+    """Where a quantity comes from."""
+
+    INPUT = "input"
+    UNKNOWN = "unknown"
+    LINK = "link"
+    SLIDER = "slider"
+    OUTPUT = "output"
+    COORDINATE = "coordinate"
+    DERIVED = "derived"
+    EVIDENCE = "evidence"
+    POINT = "point"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Asked:
+    """A quantity of every row that was asked for by name.
+
+    Parameters
+    ----------
+    own : Quantity
+        Itself; of ``B.velocity`` the point.
+    group : Group
+    rate : Rate, optional
+        Which of its rates is meant.
+    row : RowQuantity, optional
+        How a derived quantity is evaluated; ``part`` has it.
+    """
+
+    names: MechanismNames
+    own: Quantity
+    group: Group
+    rate: Rate | None = None
+    row: RowQuantity | None = None
+    part: str = ""
+
+    @property
+    def name(self) -> str:
+        """The name as the mechanism spells it, with the rate."""
+        return self.own.name if self.rate is None else f"{self.own.name}.{self.rate.value}"
+
+    @property
+    def unit(self) -> str:
+        """Of its values, "" for none."""
+        units = self.names.units
+        if self.rate is None:
+            return units.of(self.own.kind)
+        return self.rate.unit(self.own.kind, units, self.names.by)
+
+    @property
+    def measure(self) -> str:
+        """What it measures, in a word; "" for a number."""
+        if self.own.kind is Kind.NUMBER:
+            return ""
+        return self.own.kind.value if self.rate is None else self.rate.measure
+
+    @property
+    def needs(self) -> int:
+        """How many derivatives of the positions its values take."""
+        own = self.row.needs if self.row else self.names.output_needs.get(self.own.name, 0)
+        return own + (self.rate.order if self.rate else 0)
+
+    def check_rate(self, speed: Array | float | None) -> None:
+        """Refuse a rate that is not known: of a derived quantity, or by time without a speed.
+
+        Raises
+        ------
+        UnknownNameError
+            With the name of the rate by the input.
+        """
+        if self.rate is None:
+            return
+        self.rate.check(self.own.name, speed)
+        if self.needs > 2:
+            raise UnknownNameError(
+                f'"{self.name}" is not known: positions have two derivatives, '
+                f'and "{self.own.name}" itself takes {self.needs - self.rate.order}'
+            )
+
+    def jet(self, solved: Solved) -> Jet:
+        """The quantity itself: values in the file's units, derivatives in radians and lengths."""
+        if self.row is None:
+            return solved.own(self.own.name)
+        with np.errstate(all="ignore"):
+            jet = self.row.evaluate(self.names, solved, self.part)
+        rates = (np.broadcast_to(rate, np.shape(jet.v)) for rate in (jet.d1, jet.d2))
+        return Jet(jet.v / self.names.units.scale(self.own.kind), *rates)
+
+    def values(self, solved: Solved, speed: Array | float | None) -> Array:
+        """What was asked for, the rate included."""
+        if self.group is Group.POINT:
+            assert self.rate is not None
+            place = solved.place(self.own.name)
+            x = self.rate.of(place.d1.real, place.d2.real, speed)
+            size: Array = np.hypot(x, self.rate.of(place.d1.imag, place.d2.imag, speed))
+            return size
+        jet = self.jet(solved)
+        return jet.v if self.rate is None else self.rate.of(jet.d1, jet.d2, speed)
+
+
+@dataclass(frozen=True, kw_only=True)
+class AskedOfMotion:
+    """A number of a whole motion that was asked for by name: ``dwell(s16, 0.5)``."""
+
+    names: MechanismNames
+    quantity: MotionQuantity
+    of: Asked
+    numbers: tuple[float, ...] = ()
+
+    @property
+    def unit(self) -> str:
+        """Of the number, "" for none."""
+        match self.quantity.measures:
+            case "input":
+                return self.names.units.of(self.names.inputs[self.names.lead])
+            case "quantity":
+                return self.names.units.length if self.quantity.of_point else self.of.unit
+            case _:
+                return ""
+
+    @property
+    def needs(self) -> int:
+        """How many derivatives of the positions it takes."""
+        return self.of.needs + self.quantity.needs
+
+    @property
+    def follows(self) -> bool:
+        """Whether it follows the course between rows, or the path of a point: not values alone."""
+        return self.quantity.of_point or self.quantity.needs > 0
+
+    def columns(self, solved: Solved) -> tuple[Array, Array, Array]:
+        """What it follows, with both derivatives by the leading input, in the file's units."""
+        if self.quantity.of_point:
+            place = solved.place(self.of.name)
+            return place.v, place.d1, place.d2  # type: ignore[return-value]  # complex
+        jet, scale = self.of.jet(solved), self.names.units.scale(self.of.own.kind)
+        return jet.v, jet.d1 / scale, jet.d2 / scale
+
+    def evaluate(
+        self, leading: Array, value: Array, first: Array = UNKNOWN, second: Array = UNKNOWN
+    ) -> Array:
+        """The number of every motion, (…,).
+
+        Parameters
+        ----------
+        leading : (R,)
+            The leading input, [rad] or [length].
+        value, first, second : (…, R)
+            See :meth:`columns`.
+        """
+        units, kind = self.names.units, self.names.inputs[self.names.lead]
+        rows = MotionRows(
+            input=leading,
+            value=value,
+            first=np.broadcast_to(first, value.shape),
+            second=np.broadcast_to(second, value.shape),
+            unit=units.scale(kind),
+            turn=FULL_TURN if kind is Kind.ANGLE else 0.0,
+        )
+        with np.errstate(all="ignore"):
+            return np.asarray(self.quantity.evaluate(rows, self.numbers), dtype=float)
