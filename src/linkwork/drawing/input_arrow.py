@@ -29,7 +29,7 @@ from linkwork.mechanism.skeleton import Bar, DrivenPart
 __all__ = ["input_arrows"]
 
 _SWEEP = math.radians(110)
-_LONGEST = 15.0  # distance of an arrow around a large ring, in pin radii
+_LONGEST = 15.0  # length of an arrow around a large ring, in pin radii
 _TURNED = 0.5  # penalty for rotating an arrow from its default position [1/rad]
 _WIDER = (1.0, 1.4)  # multiples of its default radius
 _AROUND_PLATE = (1.0, 1.4, 1.9)  # a plate around the pivot may cover the default position

@@ -27,7 +27,7 @@ __all__ = ["Distance", "LinkShape", "ShapeError", "VertexAngle", "place"]
 
 _AGREE = 1e-9
 _MOST_STEPS = 60
-_FIRST_STEPS = 6  # sufficient for most shapes
+_FIRST_STEPS = 6  # most shapes need four
 
 
 class ShapeError(Exception):

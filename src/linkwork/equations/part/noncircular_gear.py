@@ -27,7 +27,7 @@ from linkwork.mechanism.part.noncircular_gear import NoncircularGear
 __all__ = ["write"]
 
 _PIECES = 360  # of a formula or pitch curve, each a polynomial of degree five
-_HALVINGS = 24  # of a formula; at a kink no number suffices
+_HALVINGS = 24  # of the pieces of a formula; at a kink no number suffices
 _MOST_PIECES = 20_000
 _EXACT = 4e-15  # [rad] between a formula and its pieces, and in unit roundoffs:
 _ROUNDINGS = 2.0

@@ -14,7 +14,7 @@ from linkwork.results.motion import Motion
 
 __all__ = ["Iterations", "iterated"]
 
-_FEWEST, _MOST = 3, 8  # maximum iterations in a row of cells
+_FEWEST, _MOST = 3, 8  # iterations in a row of cells
 _SPARE = 1  # additional iterations, for changed dimensions
 _DONE = 1e-11  # weighted: a correction of this size is the last one needed
 _RIGHT = 1e-10  # weighted: tolerance between the cells and the position

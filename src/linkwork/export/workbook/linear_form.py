@@ -1,7 +1,7 @@
 """Real numbers with formulas: sums of weighted terms, simplified as they are built.
 
-A term is a formula without a numerical factor. Functions take and give radians here;
-``radians`` and ``degrees`` are functions among them, because cells hold angles in the file's unit.
+A term is a formula without a numerical factor. Functions use radians; ``radians`` and ``degrees``
+are functions too, because cells contain angles in the file's unit.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 __all__ = ["LinearForm", "call", "cosine", "product", "quotient", "sine"]
 
 _DEGREE = math.pi / 180.0
-_SHORT = 1e-13  # relative: a factor this near to a short number is that number
+_SHORT = 1e-13  # relative: nearer factors are rounded to a short number
 
 
 @dataclass(frozen=True)
@@ -27,17 +27,17 @@ class LinearForm:
 
     @classmethod
     def of(cls, node: Node) -> LinearForm:
-        """One term."""
+        """A form with one term."""
         return cls(0.0, ((node, 1.0),))
 
     @classmethod
     def named(cls, name: str) -> LinearForm:
-        """A cell by its key."""
+        """A form with the value of a cell, by key."""
         return cls.of(Name(name))
 
     @property
     def fixed(self) -> bool:
-        """Whether it is a plain number."""
+        """Whether it is a constant."""
         return not self.terms
 
     @property
@@ -58,7 +58,7 @@ class LinearForm:
         return LinearForm(self.constant + other.constant, kept)
 
     def times(self, factor: float) -> LinearForm:
-        """All weights multiplied."""
+        """The form with all weights multiplied."""
         if factor == 0.0:
             return LinearForm()
         scaled = tuple((node, weight * factor) for node, weight in self.terms)
@@ -86,7 +86,7 @@ class LinearForm:
         return found
 
     def per(self, unit: float) -> LinearForm | None:
-        """The form with all numbers divided by a unit, if they are short numbers then."""
+        """The form with all numbers divided by a unit, if the results are short numbers."""
         weights = [_short(weight / unit) for _, weight in self.terms]
         constant = _short(self.constant / unit)
         if constant is None or None in weights:
@@ -97,7 +97,7 @@ class LinearForm:
 
     @property
     def angle(self) -> Node:
-        """The formula of an angle in radians; ``radians(…)`` of what is short in degrees."""
+        """The formula of an angle in radians; ``radians(…)`` if it is shorter in degrees."""
         turned = self.per(1.0 / _DEGREE)
         if turned is not None and not self.fixed:
             return Call("degrees", (turned.node,))
@@ -112,7 +112,7 @@ class LinearForm:
 
     @property
     def in_degrees(self) -> Node:
-        """The formula of an angle in radians, in degrees."""
+        """The formula in degrees of an angle in radians."""
         in_file_unit = self.per(_DEGREE)
         return Call("degrees", (self.angle,)) if in_file_unit is None else in_file_unit.node
 
@@ -127,7 +127,7 @@ def _short(number: float) -> float | None:
 
 
 def product(a: LinearForm, b: LinearForm) -> LinearForm:
-    """a · b, numbers taken out."""
+    """a · b, with numerical factors combined."""
     if a.fixed:
         return b.times(a.constant)
     if b.fixed:
@@ -142,7 +142,7 @@ def _factored(form: LinearForm) -> tuple[Node, float]:
 
 
 def quotient(a: LinearForm, b: LinearForm) -> LinearForm:
-    """a / b; common factors are left out."""
+    """a / b, with common factors cancelled."""
     if b.fixed:
         return a.times(1.0 / b.constant)
     if a.zero:
@@ -161,7 +161,7 @@ def quotient(a: LinearForm, b: LinearForm) -> LinearForm:
 
 
 def _without(node: Node, factor: Node) -> LinearForm | None:
-    """A term without a factor; ``None`` if it has not got it."""
+    """A term without a factor; ``None`` if it does not contain the factor."""
     if node == factor:
         return LinearForm(1.0)
     match node:

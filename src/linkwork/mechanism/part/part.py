@@ -42,7 +42,7 @@ class Part:
     doc: ClassVar[str]
     keys: ClassVar[tuple[FileKey, ...]]
     kind: ClassVar[JointKind | None] = None
-    holders: ClassVar[str] = "joints"  # kind of the conflict if its fixed angle is contradicted
+    holders: ClassVar[str] = "joints"  # parts that may contradict an angle it fixes
 
     def __post_init__(self) -> None:
         """Convert lists to tuples, so that parts are comparable and immutable."""
