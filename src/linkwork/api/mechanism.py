@@ -85,6 +85,12 @@ class Mechanism(SolvableMechanism):
             If there is no position at this input value.
         UnknownNameError
             If a point or configuration does not exist.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> lw.example("four-bar").scene(at=60).caption
+        'crank = 60°'
         """
         position = self.solve(at, configuration=configuration, throw=True)
         chosen = options or drawing.SceneOptions()
@@ -287,5 +293,11 @@ class Mechanism(SolvableMechanism):
         ------
         InputError
             If the file cannot be written.
+
+        Examples
+        --------
+        >>> import linkwork as lw, pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     lw.example("four-bar").save(pathlib.Path(folder) / "bar.toml")
         """
         textfile.save(self.description, Path(path))

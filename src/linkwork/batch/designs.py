@@ -157,6 +157,14 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
     A design that cannot be built has a problem; no error is raised. The equations equal those of
     the design compiled separately, to rounding. If the mechanism names a configuration, all designs
     start from it: a search for this configuration in every design would take too long.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> from linkwork.batch import designs_of
+    >>> designs = designs_of(lw.example("four-bar"), {"O2 A": [38, 40, -1]})
+    >>> designs.problem.tolist(), designs.loops.shape[0]
+    ([0, 0, 1], 3)
     """
     model = mechanism if isinstance(mechanism, Model) else mechanism.model
     if not isinstance(dimensions, Mapping):
@@ -192,7 +200,7 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
 
 def _check_different(named: Mapping[str, Quantity]) -> None:
     if not named:
-        raise InputError("this family has no varied numbers: give a dimension and its values")
+        raise InputError("this family varies no numbers: give a dimension and its values")
     first: dict[Quantity, str] = {}
     for name, quantity in named.items():
         if first.setdefault(quantity, name) != name:

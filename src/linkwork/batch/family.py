@@ -36,6 +36,14 @@ class Family:
     Parameters
     ----------
     designs : Designs
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> family = lw.example("four-bar").family({"O2 A": [38, 40, 42]})
+    >>> motion = family.sweep()
+    >>> motion["rocker"].shape, bool(motion.certified.all())
+    ((3, 361), True)
     """
 
     def __init__(self, designs: Designs) -> None:

@@ -323,7 +323,7 @@ def _some(given: Mapping[str, Any]) -> Mapping[str, Any]:
     if not isinstance(given, Mapping):
         raise InputError(f"a plan needs a mapping of names and values, got {as_told(given)}")
     if not given:
-        raise InputError("this plan has no varied numbers: give a dimension and its values")
+        raise InputError("this plan varies no numbers: give a dimension and its values")
     return given
 
 
