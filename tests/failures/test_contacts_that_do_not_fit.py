@@ -189,7 +189,7 @@ def test_welds_around_a_ring_have_to_agree() -> None:
     (problem,) = caught.value.problems
     assert problem.key == ("welds", 2)
     assert problem.message == (
-        '"c" cannot keep its angle relative to "a": other joints turn it by 1° from there'
+        '"c" cannot keep its angle relative to "a": other joints change it by 1°'
     )
 
 
@@ -306,7 +306,7 @@ link = "first"
         ),
         (
             "table = [[0, 0], [90, -90], [80, -180], [270, -270], [360, -360]]",
-            "the first angle must rise, the second must fall",
+            "the first angle must increase, the second must decrease",
         ),
         (
             "pitch_curve = [[110, 0], [0, 50], [-50, 0], [0, -50]]",

@@ -102,7 +102,7 @@ CASES = {
     ),
     "points that are defined by each other": (
         changed(RAPIER, 'D = "B - b4*e^(i*θ14)"', 'D = "E - b4*e^(i*θ14)"'),
-        "1 problem in file.toml\n  line 41  points.D  is defined by itself: D → E → D",
+        "1 problem in file.toml\n  line 41  points.D  is defined in terms of itself: D → E → D",
     ),
     "a length as input without a range": (
         changed(RAPIER, 'variable = "θ12"\nfrom = 0\nto   = 360\nstep = 1', 'variable = "s16"'),

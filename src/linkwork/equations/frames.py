@@ -192,7 +192,7 @@ class _Orientation:
                 problems.add(
                     key,
                     f'"{kept[0]}" cannot keep its angle relative to "{kept[1]}": '
-                    f"other {part.holders} turn it by {degrees(gap):.6g}° from there",
+                    f"other {part.holders} change it by {degrees(gap):.6g}°",
                 )
         driven = {w.link for w in linkage.inputs if w.link}
         self._name: dict[str, str] = {}

@@ -150,7 +150,7 @@ def _read_points(
         if name in state:
             if state[name] == "open":
                 circle = " → ".join(spelling[n] for n in (*chain[chain.index(name) :], name))
-                problems.add(("points", spelling[name]), f"is defined by itself: {circle}")
+                problems.add(("points", spelling[name]), f"is defined in terms of itself: {circle}")
                 state[name] = "done"
             return
         state[name] = "open"

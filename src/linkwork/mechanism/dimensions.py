@@ -90,7 +90,7 @@ class Numbers:
             return
         if name in chain:
             cycle = [self.spelling[n] for n in [*chain[chain.index(name) :], name]]
-            self.wrong[name] = "is defined by itself: " + " → ".join(cycle)
+            self.wrong[name] = "is defined in terms of itself: " + " → ".join(cycle)
             return
         if len(chain) > _LONGEST_CHAIN:
             self.wrong[name] = f"depends on a chain of more than {_LONGEST_CHAIN} dimensions"

@@ -106,6 +106,6 @@ def _kind(kind: str, known: Sequence[PlotKind], what: str, elsewhere: str) -> Pl
         if which.value == kind:
             return which
     if kind in [which.value for which in PlotKind]:
-        raise InputError(f'there is no plot {what} of kind "{kind}": {elsewhere} makes it')
+        raise InputError(f'there is no plot {what} of kind "{kind}": use {elsewhere}')
     options = choices("kinds", [which.value for which in known], kind)
     raise UnknownNameError(f'there is no plot {what} of kind "{kind}" {options}')

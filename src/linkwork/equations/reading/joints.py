@@ -369,7 +369,7 @@ class _Joining:
                 raise NotRead(f'"{slide.variable}" slides in a loop of sliding joints')
         groups = {held.root(link) for link in links}
         if len(groups) > len({self.phase[link] for link in groups}):
-            raise NotRead("two links would stay parallel though no sliding joint holds them so")
+            raise NotRead("two links stay parallel without a sliding joint between them")
 
     def _ground(self) -> tuple[int, complex]:
         """The link without rotation at which the equations begin."""

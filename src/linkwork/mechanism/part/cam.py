@@ -284,7 +284,7 @@ class Cam(NamedPart):
         total = sum(overs)
         if not math.isnan(total) and abs(total - unit.turn) > AGREE * unit.turn:
             checks.add(
-                f"turn the cam by {total:.10g} altogether: a closed cam needs {unit.turn:.10g}",
+                f"turn the cam by {total:.10g} in total: a closed cam needs {unit.turn:.10g}",
                 "segments",
             )
         height = sum(lifts)

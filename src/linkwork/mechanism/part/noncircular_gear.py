@@ -125,7 +125,7 @@ class NoncircularGear(ArmPair):
         ]
         for k, (before, after) in enumerate(pairwise(pairs), 1):
             if after[0] <= before[0] or after[1] >= before[1]:
-                checks.add("the first angle must rise, the second must fall", "table", k)
+                checks.add("the first angle must increase, the second must decrease", "table", k)
         turn, over = checks.linkage.angle.turn, pairs[-1][0] - pairs[0][0]
         if abs(over - turn) > AGREE * turn:
             checks.add(f"covers {over:.10g}: one turn of the first wheel is {turn:g}", "table")

@@ -106,7 +106,7 @@ class Rack(NamedPart):
         elif self.center in linkage.points and self.center not in linkage.links.get(slider.on, ()):
             checks.add(
                 f'"{slider.on}", along which the rack slides, does not carry {self.center}: a '
-                "pinion that moves against the rack's guide rolls ([[rolling]])",
+                "pinion on another link is written as [[rolling]]",
                 "center",
             )
 
