@@ -89,7 +89,7 @@ class Path:
         return bool(t[-1] < t[0])
 
     def input_radius(self, start: Array) -> Array:
-        """Rounding error of requested inputs, and of those computed from ``start`` (D,), (p,)."""
+        """Error bounds of requested inputs, and of those computed from ``start`` (D,), (p,)."""
         t = self.model.rows[:, self.lead]
         gap = np.abs(self.model.rows - (self.origin + np.outer(t, self.rate))).max(axis=0)
         farthest = max(np.abs(t).max(), np.abs(start[np.isfinite(start)]).max(initial=0.0))
@@ -267,7 +267,7 @@ class March:
         limits: Array,
         smallest: float | None = None,
     ) -> None:
-        """Fill the rows that designs reach after whole turns, with correspondingly small steps."""
+        """Fill the rows reached after whole ``turns``, with steps down to ``smallest``."""
         moved = t + turns * FULL_TURN
         inside = (moved[:, None] >= limits[0]) & (moved[:, None] <= limits[1])
         those = np.flatnonzero((~reached[:, stopped] & inside).any(axis=0))

@@ -44,7 +44,7 @@ class DirectionForm:
         Unknown angles = ``angles`` · directions + ``shift`` · (known variables, 1).
     shift : (A, p + 1)
     tied : (A, D)
-        Rates of the angles by linear rows for unit rates of the ``free`` (D,) ones.
+        Turns of the angles per turn of the ``free`` (D,) ones, by linear rows.
     along : tuple of int
         The direction of each unknown length, -1 if it is known.
     """
