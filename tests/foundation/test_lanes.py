@@ -13,10 +13,11 @@ import pytest
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Node
 from linkwork.expression.values import value
-from linkwork.foundation import lanes
+from linkwork.foundation import elementwise
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import ExpressionError
-from linkwork.foundation.lanes import Consensus, NotElementwise
+from linkwork.foundation.lanes import LaneArithmetic, rest_of
+from linkwork.foundation.operand import NotElementwise
 from linkwork.mechanism.least_norm import full_rank, least_norm
 
 RNG = np.random.default_rng(9)
@@ -24,19 +25,19 @@ REAL = np.concatenate([RNG.normal(0, 3, 12), [0.0, -1.0, math.pi, -math.pi, 3 * 
 COMPLEX = REAL + 1j * np.roll(REAL, 5)
 
 FUNCTIONS: dict[str, tuple[Any, ...]] = {  # a function, and arrays
-    "vector": (lanes.vector, REAL, np.roll(REAL, 1)),
-    "phase": (lanes.phase, COMPLEX),
-    "turn": (lanes.cis, REAL),
-    "rect": (lanes.rect, REAL, np.roll(REAL, 1)),
-    "sqrt": (lanes.sqrt, np.abs(REAL)),
-    "exponential": (lanes.exponential, COMPLEX),
-    "hypot": (lanes.hypot, REAL, np.roll(REAL, 1)),
-    "copysign": (lambda x: lanes.copysign(2.0, x), REAL),
-    "remainder": (lambda x: lanes.remainder(x, 2 * math.pi), 3 * REAL),
-    "degrees": (lanes.degrees, REAL),
-    "largest": (lambda x, y: lanes.largest((x, 0.5, y)), REAL, np.roll(REAL, 1)),
-    "smallest": (lambda x, y: lanes.smallest((x, 0.5, y)), REAL, np.roll(REAL, 1)),
-    "choose": (lambda x, y: lanes.choose(x > y, x, 2.0 * y), REAL, np.roll(REAL, 1)),
+    "vector": (elementwise.vector, REAL, np.roll(REAL, 1)),
+    "phase": (elementwise.phase, COMPLEX),
+    "turn": (elementwise.cis, REAL),
+    "rect": (elementwise.rect, REAL, np.roll(REAL, 1)),
+    "sqrt": (elementwise.sqrt, np.abs(REAL)),
+    "exponential": (elementwise.exponential, COMPLEX),
+    "hypot": (elementwise.hypot, REAL, np.roll(REAL, 1)),
+    "copysign": (lambda x: elementwise.copysign(2.0, x), REAL),
+    "remainder": (lambda x: elementwise.remainder(x, 2 * math.pi), 3 * REAL),
+    "degrees": (elementwise.degrees, REAL),
+    "largest": (lambda x, y: elementwise.largest((x, 0.5, y)), REAL, np.roll(REAL, 1)),
+    "smallest": (lambda x, y: elementwise.smallest((x, 0.5, y)), REAL, np.roll(REAL, 1)),
+    "choose": (lambda x, y: elementwise.choose(x > y, x, 2.0 * y), REAL, np.roll(REAL, 1)),
     "power": (operator.pow, np.abs(REAL) + 0.1, np.roll(REAL, 1)),
     "divide": (operator.truediv, COMPLEX, COMPLEX[::-1] + 0.1),
     "round": (round, 2.5 * np.round(REAL)),
@@ -47,7 +48,7 @@ FUNCTIONS: dict[str, tuple[Any, ...]] = {  # a function, and arrays
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_functions_of_lanes_are_those_of_plain_numbers(name: str) -> None:
     function, *given = FUNCTIONS[name]
-    consensus = Consensus(len(given[0]))
+    consensus = LaneArithmetic(len(given[0]))
     together = function(*(consensus.lanes(values) for values in given)).values
     alone = [function(*(number.item() for number in row)) for row in zip(*given, strict=True)]
     np.testing.assert_allclose(together, alone, rtol=1e-15, atol=1e-15)
@@ -55,7 +56,7 @@ def test_functions_of_lanes_are_those_of_plain_numbers(name: str) -> None:
 
 
 def test_the_leader_decides_and_lanes_of_another_mind_leave() -> None:
-    consensus = Consensus(4, leader=1)
+    consensus = LaneArithmetic(4, leader=1)
     x = consensus.lanes(np.array([1.0, 2.0, 3.0, np.nan]))
     assert x < 2.5
     assert consensus.agreeing.tolist() == [True, True, False, False]
@@ -64,7 +65,7 @@ def test_the_leader_decides_and_lanes_of_another_mind_leave() -> None:
 
 
 def test_both_of_two_conditions_are_one_question() -> None:
-    consensus = Consensus(3)
+    consensus = LaneArithmetic(3)
     x = consensus.lanes(np.array([-1.0, 2.0, -3.0]))
     assert not (x < 0.0) & (x < -2.0)
     assert consensus.agreeing.tolist() == [True, True, False]
@@ -73,8 +74,8 @@ def test_both_of_two_conditions_are_one_question() -> None:
 
 
 def test_a_settled_number_sets_others_apart_without_making_them_leave() -> None:
-    consensus = Consensus(3)
-    assert lanes.uniform_value(consensus.lanes(np.array([2.0, 2.0, 3.0]))) == 2.0
+    consensus = LaneArithmetic(3)
+    assert elementwise.uniform_value(consensus.lanes(np.array([2.0, 2.0, 3.0]))) == 2.0
     assert consensus.apart.tolist() == [False, False, True]
     assert consensus.agreeing.all()
 
@@ -86,11 +87,11 @@ def test_a_settled_number_sets_others_apart_without_making_them_leave() -> None:
 )  # fmt: skip
 def test_what_wants_one_number_gets_none(use: Callable[[Any], object]) -> None:
     with pytest.raises(NotElementwise):
-        use(Consensus(3).lanes(np.array([1.0, 2.0, 3.0])))
+        use(LaneArithmetic(3).lanes(np.array([1.0, 2.0, 3.0])))
 
 
 def test_numpy_scalars_compute_with_lanes() -> None:
-    x = Consensus(2).lanes(np.array([1.0, 2.0]))
+    x = LaneArithmetic(2).lanes(np.array([1.0, 2.0]))
     three: Any = np.float64(3.0)
     unit: Any = np.complex128(1j)
     assert (three - x).values.tolist() == [2.0, 1.0]
@@ -109,7 +110,7 @@ def test_formulas_have_the_values_and_the_errors_that_they_have_alone(text: str)
     rows = [(1.0, 2.0), (2.5, -1.0), (-1.0, 0.5), (0.0, -2.0), (4.0, 0.0), (0.0, 0.0), (3.5, 3.0)]
     tree = parse(text)
     for leader in range(len(rows)):
-        consensus = Consensus(len(rows), leader=leader)
+        consensus = LaneArithmetic(len(rows), leader=leader)
         names = {
             name: consensus.lanes(np.array(column))
             for name, column in zip("ab", zip(*rows, strict=True), strict=True)
@@ -133,10 +134,10 @@ def _outcome(tree: Node, names: Mapping[str, Any], text: str) -> Any:
 
 
 def test_what_is_not_done_goes_on_with_the_leader_and_comes_back() -> None:
-    consensus = Consensus(5, leader=1)
+    consensus = LaneArithmetic(5, leader=1)
     x = consensus.lanes(np.array([1.0, 2.0, 3.0, 4.0, 5.0]))
     assert x < 4.5  # the last lane leaves
-    rest = lanes.rest_of(x < 2.5)
+    rest = rest_of(x < 2.5)
     assert rest is not None
     assert rest.lanes.tolist() == [1, 2, 3]
     part = rest.narrow(x)
@@ -146,7 +147,7 @@ def test_what_is_not_done_goes_on_with_the_leader_and_comes_back() -> None:
     assert whole.values.tolist() == [1.0, 20.0, 30.0, 40.0, 5.0]
     assert consensus.agreeing.tolist() == [True, True, True, False, False]
     assert rest.narrow(7.0) == 7.0
-    assert lanes.rest_of(True) is None
+    assert rest_of(True) is None
 
 
 def test_least_norm_solutions_in_lanes_are_those_of_each_lane() -> None:
@@ -154,7 +155,7 @@ def test_least_norm_solutions_in_lanes_are_those_of_each_lane() -> None:
     matrices[2, 2] = matrices[2, 0] + matrices[2, 1]  # dependent rows
     right = RNG.normal(size=(6, 3))
     right[2, 2] = right[2, 0] + right[2, 1]
-    consensus = Consensus(6)
+    consensus = LaneArithmetic(6)
     rows = [[consensus.lanes(matrices[:, i, j]) for j in range(5)] for i in range(3)]
     found: Sequence[Any] = least_norm(rows, [consensus.lanes(right[:, i]) for i in range(3)])
     for k in range(6):

@@ -20,7 +20,8 @@ from linkwork.equations.from_loops import read_loops, read_plain_equations
 from linkwork.equations.model import LoopEquations, Term
 from linkwork.foundation.arrays import AnyArray, Array, IndexArray
 from linkwork.foundation.errors import LinkworkError
-from linkwork.foundation.lanes import Consensus, NotElementwise, is_batched
+from linkwork.foundation.lanes import LaneArithmetic, is_batched
+from linkwork.foundation.operand import NotElementwise
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
@@ -104,7 +105,8 @@ class Builder:
 
     def _pass(self, rows: IndexArray, *, first: bool) -> IndexArray:
         """Build the designs with the leader's decisions; returns the others."""
-        consensus = Consensus(1 + len(rows), leader=0 if first else 1)
+        # lane 0 is the mechanism; later passes follow a design that disagreed with it
+        consensus = LaneArithmetic(1 + len(rows), leader=0 if first else 1)
         numbers = {
             quantity: consensus.lanes(
                 np.concatenate([[self._numbers_of_base[quantity]], values[rows]])
@@ -150,6 +152,7 @@ class Builder:
 
     def _write(self, rows: IndexArray, which: AnyArray, found: Coefficients) -> None:
         """Store the coefficients of the designs ``rows[which]``."""
+        # slices are written much faster than single elements
         whole = bool(which.all()) and len(rows) == rows[-1] - rows[0] + 1
         at: slice | IndexArray = slice(rows[0], rows[-1] + 1) if whole else rows[which]
         for name, values in _named(found).items():
@@ -210,9 +213,10 @@ def family_base(model: Model, varied: Sequence[Quantity]) -> tuple[Model, bool]:
     """
     description = model.description
     spoken = sum(which.speed is not None for which in description.inputs)
+    # released links and contradicting speeds depend on numbers, and are decided design by design
     if model.equations.surplus is not None or spoken > 1:
         return model, False
-    consensus = Consensus(1, widest=True)
+    consensus = LaneArithmetic(1, widest=True)
     numbers = {q: consensus.lanes(np.array([q.of(description)])) for q in varied}
     try:
         with np.errstate(all="ignore"):

@@ -13,7 +13,6 @@ from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, TurnArray
 from linkwork.motion.lock_step import lock_step
 from linkwork.motion.quantity_values import QuantityValues
-from linkwork.results.quantities.definition import Vector
 
 __all__ = ["DesignValues"]
 
@@ -72,6 +71,7 @@ class DesignValues(QuantityValues):
             return Jet(self.v[k], rates.first[k], rates.second[k])
         column = self.inputs[:, k - n] * self.model.input_scale[k - n]
         value = np.where(self.lost, np.nan, column[:, None])
+        # a row found whole turns away has other outputs, where angles enter without a sine
         if k == n and self.turns.any():
             value = value + self.turns * FULL_TURN
         if rates is None:
@@ -83,22 +83,21 @@ class DesignValues(QuantityValues):
         )
         return Jet(value, first, second)
 
-    def place(self, point: str) -> Vector:
+    def place(self, point: str) -> Jet:
         """A point by its exact name: its parent's position plus its own terms."""
         table = self.model.compiled.points
         number = {own: k for k, own in enumerate(table.names)}
         parent = self.equations.points[point].parent
         if parent is None:
             blanks = (np.where(self.lost, np.nan, 0.0), *self._blanks)
-            place = Vector(*(_as_complex(blank) for blank in blanks))
+            place = Jet(*(_as_complex(blank) for blank in blanks))
         else:
             place = self.place(parent)
         for term in np.flatnonzero(table.rows.row == number[point]):
-            own = self._term(int(term))
-            place = Vector(place.v + own.v, place.d1 + own.d1, place.d2 + own.d2)
+            place = place + self._term(int(term))
         return place
 
-    def _term(self, term: int) -> Vector:
+    def _term(self, term: int) -> Jet:
         """c s e^{iψ} with both derivatives."""
         rows = self.model.compiled.points.rows
         symbols = [x.symbol for x in self.equations.variables]
@@ -113,11 +112,12 @@ class DesignValues(QuantityValues):
         length = int(rows.length[term])
         if self.rates is None:
             value = value if length < 0 else value * self.variable(symbols[length]).v
-            return Vector(value, np.zeros((), dtype=complex), np.zeros((), dtype=complex))
+            return Jet(value, _NONE, _NONE)
         s = Jet.constant(1.0) if length < 0 else self.variable(symbols[length])
-        first = value * (s.d1 + 1j * s.v * turn.d1)
+        first = value * (s.d1 + 1j * s.v * turn.d1)  # derivative of eq. (1)
+        # eq. (3) with a = b
         second = s.d2 - s.v * turn.d1**2 + 1j * (2.0 * s.d1 * turn.d1 + s.v * turn.d2)
-        return Vector(value * s.v, first, value * second)
+        return Jet(value * s.v, first, value * second)
 
 
 def _as_complex(blank: Array) -> ComplexArray:

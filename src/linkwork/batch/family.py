@@ -140,6 +140,7 @@ class Family:
     def _part(self) -> int:
         """Number of designs reduced at a time, rates included."""
         model = self.designs.base
+        # unknowns and two derivatives, and what is computed of them
         each = 8 * len(model.rows) * (3 * len(model.equations.unknowns) + 1)
         return max(1, min(_PART, _PART_BYTES // each))
 
@@ -174,6 +175,7 @@ class Family:
             If a number of a motion or a quantity does not exist.
         """
         columns = list(_columns(wanted))
+        # the motion of no designs knows all names, at no cost
         nothing = self.take(slice(0)).sweep(certify=False)
         for column in columns:  # reject unknown names before any computation
             column.check(nothing)

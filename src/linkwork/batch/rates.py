@@ -12,7 +12,8 @@ from linkwork.batch.designs import Designs
 from linkwork.batch.rows import DesignRows
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError, LinkworkError
-from linkwork.foundation.lanes import Consensus, NotElementwise, is_batched
+from linkwork.foundation.lanes import LaneArithmetic, is_batched
+from linkwork.foundation.operand import NotElementwise
 from linkwork.foundation.status import Status
 from linkwork.kernels.march.closure import BlockPart
 from linkwork.kernels.march.position_programs import at_places
@@ -80,6 +81,7 @@ def design_rates(designs: Designs, rows: DesignRows, threads: int = 1) -> Design
         reading = _Reading.of(designs)
         program = rate_program(designs.base.compiled.table, reading.parts, reading.zeros)
         both = reading.run(program, rows, threads).reshape(both.shape)
+        # at dead points J is singular: rates are infinite or noise
         both[~np.isfinite(both)] = np.nan
     driven = np.ones((2, count, width), dtype=bool)
     for k, own in rows.own.items():
@@ -97,6 +99,7 @@ def design_evidence(designs: Designs, rows: DesignRows, threads: int = 1) -> Des
         program = evidence_program(base.compiled.table, reading.parts, lengths, reading.zeros)
         condition, residual = reading.run(program, rows, threads)
         found = rows.status == Status.CONVERGED.code
+        # of a position that exists; NaN is left for those that do not
         condition[found & ~np.isfinite(condition)] = np.inf
         condition[~found] = residual[~found] = np.nan
     for k, own in rows.own.items():
@@ -148,6 +151,7 @@ def design_speeds(designs: Designs) -> Array | None:
         return None
     found = np.full(len(designs), np.nan)
     fine = np.flatnonzero(designs.problem == 0)
+    # all at once where the formula of the speed is elementwise
     left = fine[_speeds_together(designs, fine, found)] if len(fine) else fine
     for k in left:
         with suppress(LinkworkError):  # a formula without a value for this design
@@ -162,7 +166,7 @@ def _speed_of(designs: Designs, description: Description) -> float:
 
 def _speeds_together(designs: Designs, fine: IndexArray, found: Array) -> BoolArray:
     """Fill in the speeds of valid designs; returns those to compute one by one."""
-    consensus = Consensus(len(fine))
+    consensus = LaneArithmetic(len(fine))
     columns = zip(designs.quantities, designs.dimensions.values(), strict=True)
     numbers = {quantity: consensus.lanes(values[fine]) for quantity, values in columns}
     try:

@@ -11,7 +11,7 @@ from linkwork.drawing.annotation import Annotation
 from linkwork.drawing.box import Box
 from linkwork.drawing.captions import printed_name
 from linkwork.drawing.label_placement import Choice, places_beside
-from linkwork.drawing.measures import Measures
+from linkwork.drawing.measures import COINCIDENT, Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Hatch, Polyline, Primitive, Role, xy
 from linkwork.drawing.trace_path import drawn_once, thinned
@@ -23,7 +23,6 @@ __all__ = ["centre_symbols", "centrode_symbols", "numbered"]
 _SUBSCRIPT = str.maketrans("0123456789,", "₀₁₂₃₄₅₆₇₈₉‚")
 _FAR = 0.35  # of the drawn size: centres further outside are counted, not drawn
 _OUTSIDE = 0.3  # of the drawn size: curves are cut off at this distance outside
-_SAME = 1e-6  # of the drawn size: nearer centres share a name
 
 
 def numbered(centres: Sequence[InstantCentre]) -> dict[str, int]:
@@ -45,7 +44,7 @@ def centre_symbols(centres: Sequence[InstantCentre], within: Box, measures: Meas
             far += 1
         else:
             name = _name(number[centre.links[0]], number[centre.links[1]], len(number))
-            _gather(groups, centre.place, name, _SAME * measures.size)
+            _gather(groups, centre.place, name, COINCIDENT * measures.size)
     drawn: list[Primitive] = []
     names: list[Choice] = []
     for place, together in groups:

@@ -11,7 +11,7 @@ from linkwork.drawing.captions import lead_text
 from linkwork.drawing.guide_symbols import guide_symbols, track_gaps, tracks
 from linkwork.drawing.label_placement import Choice, places_beside
 from linkwork.drawing.link_symbols import link_symbols, pin_symbols, tones
-from linkwork.drawing.measures import Measures
+from linkwork.drawing.measures import COINCIDENT, Measures
 from linkwork.drawing.part.index import part_symbols
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Polygon, Polyline, Primitive, Role, xy
@@ -23,7 +23,6 @@ __all__ = ["Further", "driven_point", "faint_symbols", "further_positions", "lim
 
 _FADE = 0.78  # fading of further positions
 _FADE_OF_LIMITS = 0.4
-_SAME = 1e-6  # of the largest travel: nearer positions are merged
 _LIMITS = {kind.word: kind for kind in (LimitKind.DEAD_POINT, LimitKind.CHANGE_POINT)}
 
 
@@ -51,7 +50,7 @@ def further_positions(pose: Pose, motion: Motion, count: int) -> list[Further]:
     if not len(found):
         return []
     places = np.stack([pose.paths[name][found] for name in pose.paths], axis=1)
-    near = _SAME * max(float(np.abs(places - places[0]).max()), 1e-300)
+    near = COINCIDENT * max(float(np.abs(places - places[0]).max()), 1e-300)
     limit = [_LIMITS.get(motion.limit[row]) for row in found]
     away = np.full(len(found), np.inf)
     shown: list[int] = []
@@ -119,7 +118,7 @@ def driven_point(pose: Pose) -> str:
         wanted += [end for s in skeleton.struts if s.name == part.name for end in s.between]
     wanted += skeleton.traced
     most = max(travel, key=lambda name: travel[name])
-    return next((name for name in wanted if travel[name] > _SAME * travel[most]), most)
+    return next((name for name in wanted if travel[name] > COINCIDENT * travel[most]), most)
 
 
 def _travel(path: ComplexArray) -> float:

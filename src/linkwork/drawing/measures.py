@@ -8,7 +8,11 @@ from dataclasses import dataclass
 
 from linkwork.drawing.box import Box
 
-__all__ = ["Measures"]
+__all__ = ["COINCIDENT", "Measures"]
+
+#: Relative to the size of a drawing, or to its longest vector: places as near as this are one.
+#: Rounding moves solved places far less, and a reader sees no difference below 1e-4.
+COINCIDENT = 1e-6
 
 _PIN_OF_SIZE = 0.0115  # pin radius over drawn size: a diameter of 10 points in a six-inch figure
 _SMALLEST_OF_SIZE = 0.0055  # minimum for a visible circle
@@ -40,6 +44,7 @@ class Measures:
         A mechanism with a single point counts as one unit long.
         """
         size = max(box.width, box.height) or 1.0
+        # points at the same place have no gap
         shortest = min((gap for gap in gaps if gap > 1e-6 * size), default=size)
         least, most = (
             share * size * math.sqrt(larger) for share in (_SMALLEST_OF_SIZE, _PIN_OF_SIZE)

@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from linkwork.drawing.measures import COINCIDENT
 from linkwork.drawing.pose import Pose
 from linkwork.results.vector_loop import LoopVector, VectorLoop
 
 __all__ = ["Edge", "polygon"]
 
-_SAME = 1e-6  # of the longest vector: nearer points coincide
 _NAMED = 0.1  # additional value for an end at a point in the loop's name
 _IN_TURN = 0.05  # additional value if this point is next in the name
 _MOST = 10  # maximum number of vectors to reorder: 2^10 partial sums from every point
@@ -51,7 +51,7 @@ def polygon(loop: VectorLoop, pose: Pose) -> list[Edge]:
     best, start = -1.0, 0j
     ordered = steps
     for place in _starts(loop, pose):
-        worth, order = _ordered(steps, place, loop, pose, _SAME * size)
+        worth, order = _ordered(steps, place, loop, pose, COINCIDENT * size)
         if worth > best + 1e-9:
             best, start, ordered = worth, place, order
     edges = []

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from linkwork.drawing.captions import printed_formula
 from linkwork.drawing.label_placement import Choice, places_along, places_within
-from linkwork.drawing.measures import Measures
+from linkwork.drawing.measures import COINCIDENT, Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Polyline, Primitive, Role, xy
 from linkwork.drawing.vector_polygon import Edge, polygon
@@ -19,7 +19,6 @@ from linkwork.results.vector_loop import LoopVector, VectorLoop
 
 __all__ = ["vector_edges", "vector_symbols"]
 
-_SAME = 1e-6  # of the drawn size: nearer points coincide
 _BESIDE = 1.3  # distance of arrows side by side, in pin radii
 _LONGEST_HEAD = 0.4  # of an arrow
 
@@ -38,7 +37,7 @@ def vector_edges(loops: Sequence[VectorLoop], pose: Pose) -> list[list[Edge]]:
     """The polygons of all loops, without vectors of length zero."""
     found = [polygon(loop, pose) for loop in loops]
     longest = max((abs(e.tip - e.tail) for edges in found for e in edges), default=0.0)
-    return [[e for e in edges if abs(e.tip - e.tail) > _SAME * longest] for edges in found]
+    return [[e for e in edges if abs(e.tip - e.tail) > COINCIDENT * longest] for edges in found]
 
 
 def vector_symbols(
@@ -80,7 +79,7 @@ def vector_symbols(
 
 def _same_line(one: _Arrow, other: _Arrow, measures: Measures) -> bool:
     """Whether two arrows overlap: both lie on the same line and share a part of it."""
-    near = _SAME * measures.size
+    near = COINCIDENT * measures.size
     length = abs(one.tip - one.tail)
     along = (one.tip - one.tail) / length
     tail, tip = ((z - one.tail) * along.conjugate() for z in (other.tail, other.tip))

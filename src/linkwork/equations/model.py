@@ -11,9 +11,9 @@ import numpy as np
 from linkwork.expression.tree import Node
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.elementwise import display_value
 from linkwork.foundation.errors import Problem
 from linkwork.foundation.frozen import FrozenDict
-from linkwork.foundation.lanes import display_value
 from linkwork.kernels.piecewise import Piecewise
 
 __all__ = [

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from linkwork.equations.frames import Frames, Place
 from linkwork.equations.model import LawEquation, LinearEquation, LoopEquation
 from linkwork.foundation.arrays import ComplexArray
-from linkwork.foundation.lanes import copysign, largest, uniform_value
+from linkwork.foundation.elementwise import copysign, largest, uniform_value
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Key, Problems
 
@@ -73,6 +73,7 @@ class PartRows:
         if length is not None:
             weights[length[0]] = length[1]
             now += length[1] * frames.start[length[0]]
+        # an open total is that of the sketch: gears can be meshed at any tooth
         constant = -now if total is None else constant - total
         self.linear.append(
             LinearEquation(

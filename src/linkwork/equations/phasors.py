@@ -13,10 +13,9 @@ from dataclasses import dataclass, field
 from linkwork.expression.grammar import CONSTANTS
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
 from linkwork.expression.values import value
-from linkwork.foundation import lanes
 from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.elementwise import cis, display_value, exponential, uniform_value, vector
 from linkwork.foundation.errors import ExpressionError, choices
-from linkwork.foundation.lanes import display_value, exponential, uniform_value, vector
 
 __all__ = ["Monomial", "PhasorReader"]
 
@@ -142,6 +141,7 @@ class PhasorReader:
 
     def _multiply(self, node: Binary) -> list[Monomial]:
         left, right = self._sum(node.left), self._sum(node.right)
+        # a constant sum in brackets stays one factor, as it was written
         if all(m.constant for m in left) and len(left) > 1:
             left = [_whole(left, node.left)]
         if all(m.constant for m in right) and len(right) > 1:
@@ -216,12 +216,12 @@ class PhasorReader:
                 turn += m.value.imag * self.unit.radians
         phase = tuple((name, weight) for name, weight in weights.items() if weight)
         if not phase:
-            return [Monomial(lanes.cis(turn), node)]
+            return [Monomial(cis(turn), node)]
         if turn == 0.0:
             return [Monomial(1.0 + 0j, None, (), phase)]
         angle = display_value(turn).real / self.unit.radians
         constant = Binary("^", Name("e", "e"), Binary("*", Name("i", "i"), Number(angle)))
-        return [Monomial(lanes.cis(turn), constant, (), phase)]
+        return [Monomial(cis(turn), constant, (), phase)]
 
     def _function(self, node: Call) -> list[Monomial]:
         for used in names_in(node):

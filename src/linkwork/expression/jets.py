@@ -6,6 +6,7 @@ formula without symbolic differentiation. Entries are arrays of one common shape
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -14,59 +15,89 @@ import numpy as np
 from linkwork.expression.grammar import CONSTANTS
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import AnyArray, Array
+from linkwork.foundation.operand import Arithmetic, Operand
 
 __all__ = ["Jet", "evaluate"]
 
 
-@dataclass(frozen=True)
-class Jet:
-    """A value and its first two derivatives along a direction; arrays of equal shape (…,)."""
+class _JetArithmetic(Arithmetic["Jet"]):
+    """Sums, products and powers with the product rule and the chain rule."""
 
-    v: Array
-    d1: Array
-    d2: Array
+    def plain(self, number: float) -> Jet:
+        """A value that does not change."""
+        zero = np.zeros(())
+        return Jet(np.asarray(number, dtype=float), zero, zero)
+
+    def add(self, x: Jet, y: Jet) -> Jet:
+        """x + y."""
+        return Jet(x.v + y.v, x.d1 + y.d1, x.d2 + y.d2)
+
+    def subtract(self, x: Jet, y: Jet) -> Jet:
+        """x - y."""
+        return Jet(x.v - y.v, x.d1 - y.d1, x.d2 - y.d2)
+
+    def negate(self, x: Jet) -> Jet:
+        """-x."""
+        return Jet(-x.v, -x.d1, -x.d2)
+
+    def multiply(self, x: Jet, y: Jet) -> Jet:
+        """x y."""
+        first = x.d1 * y.v + x.v * y.d1
+        return Jet(x.v * y.v, first, x.d2 * y.v + 2.0 * x.d1 * y.d1 + x.v * y.d2)
+
+    def divide(self, x: Jet, y: Jet) -> Jet:
+        """x / y."""
+        r = 1.0 / y.v
+        return x * y.chain(r, -(r**2), 2.0 * r**3)
+
+    def power(self, x: Jet, y: Jet) -> Jet:
+        """x to the power y: of a fixed exponent for any base, else for positive ones."""
+        if np.any(y.d1) or np.any(y.d2):
+            return _exp(y * _ln(x))
+        p = y.v
+        first = np.where(p == 0, 0.0, p * x.v ** np.where(p == 0, 1.0, p - 1.0))
+        flat = (p == 0) | (p == 1)
+        second = np.where(flat, 0.0, p * (p - 1.0) * x.v ** np.where(flat, 1.0, p - 2.0))
+        return x.chain(x.v**p, first, second)
+
+    def absolute(self, x: Jet) -> Jet:
+        """|x|; its slope is 0 where x is."""
+        return x.chain(np.abs(x.v), np.sign(x.v), np.zeros_like(x.v))
+
+
+_JETS = _JetArithmetic()
+
+
+@dataclass(frozen=True)
+class Jet(Operand):
+    """A value and its first two derivatives along a direction; arrays of equal shape (…,).
+
+    Real, or x + iy of a point in the plane.
+    """
+
+    arithmetic = _JETS
+    v: AnyArray
+    d1: AnyArray
+    d2: AnyArray
 
     @classmethod
     def constant(cls, value: float) -> Jet:
-        """The jet of a constant."""
-        zero = np.zeros(())
-        return cls(np.asarray(value, dtype=float), zero, zero)
+        """A value that does not change."""
+        return _JETS.plain(value)
 
     def chain(self, f: Array, f1: Array, f2: Array) -> Jet:
         """The jet of f(self), given f, f' and f'' at the value (Faà di Bruno to order two)."""
         return Jet(f, f1 * self.d1, f1 * self.d2 + f2 * self.d1**2)
 
-    def __add__(self, other: Jet) -> Jet:
-        return Jet(self.v + other.v, self.d1 + other.d1, self.d2 + other.d2)
-
-    def __sub__(self, other: Jet) -> Jet:
-        return Jet(self.v - other.v, self.d1 - other.d1, self.d2 - other.d2)
-
-    def __neg__(self) -> Jet:
-        return Jet(-self.v, -self.d1, -self.d2)
-
-    def __mul__(self, other: Jet) -> Jet:
-        return Jet(
-            self.v * other.v,
-            self.d1 * other.v + self.v * other.d1,
-            self.d2 * other.v + 2.0 * self.d1 * other.d1 + self.v * other.d2,
-        )
-
-    def __truediv__(self, other: Jet) -> Jet:
-        r = 1.0 / other.v
-        return self * other.chain(r, -(r**2), 2.0 * r**3)
-
-    def __pow__(self, other: Jet) -> Jet:
-        if not np.any(other.d1) and not np.any(other.d2):
-            return self._fixed_power(other.v)
-        return _exp(other * _ln(self))
-
-    def _fixed_power(self, p: Array) -> Jet:
-        first = np.where(p == 0, 0.0, p * self.v ** np.where(p == 0, 1.0, p - 1.0))
-        flat = (p == 0) | (p == 1)
-        second = np.where(flat, 0.0, p * (p - 1.0) * self.v ** np.where(flat, 1.0, p - 2.0))
-        return self.chain(self.v**p, first, second)
+    def direction(self) -> Jet:
+        """The angle of a vector x + iy [rad]; NaN for one of length 0."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rate = self.d1 / self.v
+            # the second derivative of log v; its imaginary part is that of the angle
+            bend = self.d2 / self.v - rate**2
+        angle = np.where(self.v == 0, np.nan, np.angle(self.v))
+        return Jet(angle, rate.imag, bend.imag)
 
 
 def _exp(x: Jet) -> Jet:
@@ -79,7 +110,7 @@ def _ln(x: Jet) -> Jet:
 
 
 def _log10(x: Jet) -> Jet:
-    return _ln(x) * Jet.constant(1.0 / np.log(10.0))
+    return _ln(x) * (1.0 / math.log(10.0))
 
 
 def _sqrt(x: Jet) -> Jet:
@@ -125,10 +156,6 @@ def _atan2(y: Jet, x: Jet) -> Jet:
     return Jet(np.arctan2(y.v, x.v), first, second)
 
 
-def _abs(x: Jet) -> Jet:
-    return x.chain(np.abs(x.v), np.sign(x.v), np.zeros_like(x.v))
-
-
 def _hypot(x: Jet, y: Jet) -> Jet:
     return _sqrt(x * x + y * y)
 
@@ -149,7 +176,7 @@ def _chosen(least: bool) -> Callable[..., Jet]:
 
 
 _PLAIN: dict[str, Callable[..., Jet]] = {
-    "sqrt": _sqrt, "exp": _exp, "ln": _ln, "log10": _log10, "abs": _abs, "hypot": _hypot,
+    "sqrt": _sqrt, "exp": _exp, "ln": _ln, "log10": _log10, "abs": abs, "hypot": _hypot,
     "min": _chosen(least=True), "max": _chosen(least=False),
 }  # fmt: skip
 _OF_ANGLE: dict[str, Callable[[Jet], Jet]] = {"sin": _sin, "cos": _cos, "tan": _tan}
@@ -188,9 +215,8 @@ def evaluate(node: Node, names: Mapping[str, Jet], unit: AngleUnit) -> Jet:
                     return left**right
         case Call():
             arguments = [evaluate(a, names, unit) for a in node.arguments]
-            scale = Jet.constant(unit.radians)
             if node.function in _OF_ANGLE:
-                return _OF_ANGLE[node.function](arguments[0] * scale)
+                return _OF_ANGLE[node.function](arguments[0] * unit.radians)
             if node.function in _TO_ANGLE:
-                return _TO_ANGLE[node.function](*arguments) / scale
+                return _TO_ANGLE[node.function](*arguments) / unit.radians
             return _PLAIN[node.function](*arguments)

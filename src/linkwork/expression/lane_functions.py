@@ -46,6 +46,6 @@ def applied(name: str, arguments: Sequence[float]) -> float:
     first = next(number for number in given if isinstance(number, Lanes))
     found = first.apply(FUNCTIONS[name], *given)
     wrong = ~np.isfinite(found.values)
-    if name in _PARTIAL and wrong.any() and first.consensus.decide(wrong):
+    if name in _PARTIAL and wrong.any() and first.arithmetic.decide(wrong):
         raise OverflowError if name == "exp" else ValueError
     return cast(float, found)

@@ -9,8 +9,9 @@ from linkwork.expression.grammar import CONSTANTS
 from linkwork.expression.lane_functions import applied
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.elementwise import as_float, finite, is_fractional
 from linkwork.foundation.errors import ExpressionError, choices
-from linkwork.foundation.lanes import as_float, finite, is_batched, is_fractional
+from linkwork.foundation.lanes import is_batched
 
 __all__ = ["value"]
 

@@ -7,71 +7,31 @@ it is another one leave the :class:`Consensus`. What is computed is right for th
 left; the others are built anew, with a leader of their own. So every design goes exactly the way
 that it would have gone alone.
 
-Lanes pass through functions that are annotated for ``float`` and ``complex``, as a number would.
-The functions below take plain numbers and lanes alike; a plain number takes the path it took before
-there were lanes. Everything else that wants a plain number (``float``, ``math``, arrays) gets a
-:class:`NotElementwise` from lanes.
+Lanes pass through functions that are annotated for ``float`` and ``complex``, as a number would;
+:mod:`~linkwork.foundation.elementwise` has functions for both. Everything else that wants a plain
+number (``float``, ``math``, arrays) gets a :class:`NotElementwise` from lanes.
 """
 
 from __future__ import annotations
 
-import cmath
-import math
-import operator
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, cast
 
 import numpy as np
 
-from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray
+from linkwork.foundation.arrays import AnyArray, BoolArray
+from linkwork.foundation.operand import Arithmetic, NotElementwise, Operand
 
 if TYPE_CHECKING:
     from typing import TypeGuard
 
-__all__ = [
-    "Consensus",
-    "Lanes",
-    "NotElementwise",
-    "Rest",
-    "Truths",
-    "as_float",
-    "choose",
-    "cis",
-    "copysign",
-    "degrees",
-    "display_value",
-    "everywhere",
-    "exponential",
-    "finite",
-    "hypot",
-    "is_batched",
-    "is_fractional",
-    "is_structurally_nonzero",
-    "largest",
-    "leader_value",
-    "phase",
-    "rect",
-    "remainder",
-    "remainders",
-    "rest_of",
-    "row_of",
-    "smallest",
-    "sqrt",
-    "uniform_value",
-    "vector",
-    "with_parts",
-]
-
+__all__ = ["Consensus", "LaneArithmetic", "Lanes", "Rest", "Truths", "is_batched", "rest_of"]
 
 _Number = TypeVar("_Number", float, complex)
 
 
-class NotElementwise(Exception):
-    """Something that is done with one number only was asked of many."""
-
-
-class Consensus:
-    """Which lanes went the leader's way.
+class Consensus(Arithmetic[Any]):
+    """An arithmetic of n lanes, and which of them went the leader's way.
 
     Parameters
     ----------
@@ -102,19 +62,23 @@ class Consensus:
         self.agreeing &= truths if answer else ~truths
         return answer
 
-    def settle(self, values: AnyArray) -> Any:
-        """The leader's value; lanes with another one stand apart."""
-        value = values[self.leader]
-        self.apart |= values != value
+    def settle(self, number: Any) -> Any:
+        """The leader's value of a number; lanes with another one stand apart."""
+        value = number.values[self.leader]
+        self.apart |= number.values != value
         return value.item()
 
     def lanes(self, values: AnyArray) -> float:
         """Values (n,) as one number."""
-        return cast(float, Lanes(values, self))
+        raise NotElementwise
 
-    def pick(self, values: AnyArray) -> Any:
+    def pick(self, values: AnyArray) -> float:
         """Values (n,) that are each one of two plain numbers as one number."""
         return self.lanes(values)
+
+    def apply(self, function: Callable[..., Any], *numbers: object) -> Lanes:
+        """A NumPy function of plain numbers and lanes, lane by lane."""
+        raise NotElementwise
 
 
 class Truths:
@@ -146,94 +110,40 @@ class Truths:
     __ror__ = __or__
 
 
-class Lanes:
+class Lanes(Operand):
     """One number, real or complex, in n designs: ``values`` (n,)."""
 
-    __slots__ = ("consensus", "values")
+    __slots__ = ("arithmetic", "values")
+    arithmetic: Consensus
 
-    def __init__(self, values: AnyArray, consensus: Consensus) -> None:
+    def __init__(self, values: AnyArray, arithmetic: Consensus) -> None:
         self.values = values
-        self.consensus = consensus
-
-    def like(self, values: AnyArray) -> Lanes:
-        """Other values of the same lanes."""
-        return Lanes(values, self.consensus)
+        self.arithmetic = arithmetic
 
     def apply(self, function: Callable[..., Any], *numbers: object) -> Lanes:
         """A NumPy function of plain numbers and lanes, lane by lane."""
-        return self.like(np.asarray(function(*map(_bare, numbers))))
-
-    def uniform_value(self) -> Any:
-        """The leader's number, which has to be that of all lanes."""
-        return self.consensus.settle(self.values)
+        return self.arithmetic.apply(function, *numbers)
 
     def holds(self, truths: BoolArray) -> Truths:
         """Whether something holds in the same lanes."""
-        return Truths(truths, self.consensus)
-
-    # Arithmetic
-
-    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **_: object) -> Any:
-        """NumPy scalars compute with lanes as floats do; arrays do not."""
-        arrays = any(isinstance(number, np.ndarray) for number in inputs)
-        if arrays or ufunc not in _OPERATORS or method != "__call__":
-            raise NotElementwise
-        return _OPERATORS[ufunc](*(n.item() if isinstance(n, np.generic) else n for n in inputs))
-
-    def __add__(self, other: object) -> Lanes:
-        return self.like(self.values + _bare(other))
-
-    def __radd__(self, other: object) -> Lanes:
-        return self.like(_bare(other) + self.values)
-
-    def __sub__(self, other: object) -> Lanes:
-        return self.like(self.values - _bare(other))
-
-    def __rsub__(self, other: object) -> Lanes:
-        return self.like(_bare(other) - self.values)
-
-    def __mul__(self, other: object) -> Lanes:
-        bare = _bare(other)
-        if not isinstance(bare, np.ndarray) and bare == 1:
-            return self
-        return self.like(self.values * bare)
-
-    __rmul__ = __mul__
-
-    def __truediv__(self, other: object) -> Lanes:
-        return self.like(self.values / _bare(other))
-
-    def __rtruediv__(self, other: object) -> Lanes:
-        return self.like(_bare(other) / self.values)
-
-    def __pow__(self, other: object) -> Lanes:
-        return _power(self, self.values, _bare(other))
-
-    def __rpow__(self, other: object) -> Lanes:
-        return _power(self, _bare(other), self.values)
-
-    def __neg__(self) -> Lanes:
-        return self.like(-self.values)
-
-    def __abs__(self) -> Lanes:
-        return self.like(np.abs(self.values))
+        return Truths(truths, self.arithmetic)
 
     def __round__(self) -> Lanes:
-        return self.like(np.rint(self.values))
+        return self.arithmetic.apply(np.rint, self)
 
     def conjugate(self) -> Lanes:
         """The complex conjugate."""
-        return self.like(self.values.conjugate())
+        return self.arithmetic.apply(np.conjugate, self)
 
     @property
     def real(self) -> Lanes:
         """The real part."""
-        return self.like(self.values.real)
+        return self.arithmetic.apply(np.real, self)
 
     @property
     def imag(self) -> Lanes:
         """The imaginary part."""
-        return self.like(self.values.imag)
+        return self.arithmetic.apply(np.imag, self)
 
     # Questions
 
@@ -256,7 +166,7 @@ class Lanes:
         return self.holds(self.values >= _bare(other))
 
     def __bool__(self) -> bool:
-        return self.consensus.decide(self.values != 0)
+        return self.arithmetic.decide(self.values != 0)
 
     # Text stands for the number of any lane
 
@@ -276,172 +186,75 @@ class Lanes:
     __floordiv__ = __mod__ = __rfloordiv__ = __rmod__ = __iter__ = _refuse
 
 
-_OPERATORS: dict[object, Callable[..., Any]] = {
-    np.add: operator.add, np.subtract: operator.sub, np.multiply: operator.mul,
-    np.true_divide: operator.truediv, np.power: operator.pow, np.equal: operator.eq,
-    np.not_equal: operator.ne, np.less: operator.lt, np.less_equal: operator.le,
-    np.greater: operator.gt, np.greater_equal: operator.ge,
-}  # fmt: skip
+class LaneArithmetic(Consensus):
+    """Computes with arrays, with the exceptions of plain numbers."""
+
+    def lanes(self, values: AnyArray) -> float:
+        """Values (n,) as one number."""
+        return cast(float, Lanes(values, self))
+
+    def apply(self, function: Callable[..., Any], *numbers: object) -> Lanes:
+        """A NumPy function of plain numbers and lanes, lane by lane."""
+        return Lanes(np.asarray(function(*map(_bare, numbers))), self)
+
+    def plain(self, number: Any) -> Lanes:
+        """The same number in all lanes, which NumPy spreads where it is used."""
+        return Lanes(number, self)
+
+    def add(self, x: Lanes, y: Lanes) -> Lanes:
+        """x + y."""
+        return Lanes(x.values + y.values, self)
+
+    def subtract(self, x: Lanes, y: Lanes) -> Lanes:
+        """x - y."""
+        return Lanes(x.values - y.values, self)
+
+    def multiply(self, x: Lanes, y: Lanes) -> Lanes:
+        """x y."""
+        factor: Any = y.values  # an array, or a plain number
+        if not isinstance(factor, np.ndarray) and factor == 1:
+            return x
+        return Lanes(x.values * factor, self)
+
+    def divide(self, x: Lanes, y: Lanes) -> Lanes:
+        """x / y."""
+        return Lanes(x.values / y.values, self)
+
+    def power(self, x: Lanes, y: Lanes) -> Lanes:
+        """x to the power y; raises what plain numbers raise."""
+        base, exponent = x.values, y.values
+        found = np.asarray(base**exponent)
+        wrong = ~np.isfinite(found)
+        if wrong.any():
+            if self.decide(wrong & np.broadcast_to(base == 0, wrong.shape)):
+                raise ZeroDivisionError
+            if self.decide(wrong & np.isfinite(base) & np.isfinite(exponent)):
+                raise OverflowError
+        return Lanes(found, self)
+
+    def negate(self, x: Lanes) -> Lanes:
+        """-x."""
+        return Lanes(-x.values, self)
+
+    def absolute(self, x: Lanes) -> Lanes:
+        """|x|."""
+        return Lanes(np.abs(x.values), self)
+
+
+_MANY = (Lanes, Truths)
 
 
 def _bare(number: object) -> Any:
-    if isinstance(number, Lanes | Truths):
+    if isinstance(number, _MANY):
         return number.values
     if isinstance(number, np.ndarray):
         raise NotElementwise  # its entries are no lanes
     return number
 
 
-def _power(own: Lanes, base: Any, exponent: Any) -> Lanes:
-    """base ** exponent with the exceptions of plain numbers."""
-    found = np.asarray(base**exponent)
-    wrong = ~np.isfinite(found)
-    if wrong.any():
-        if own.consensus.decide(wrong & np.broadcast_to(base == 0, wrong.shape)):
-            raise ZeroDivisionError
-        if own.consensus.decide(wrong & np.isfinite(base) & np.isfinite(exponent)):
-            raise OverflowError
-    return own.like(found)
-
-
 def is_batched(number: object) -> TypeGuard[Lanes]:
     """Whether a number is one of many designs."""
     return isinstance(number, Lanes)
-
-
-def _real(number: Lanes) -> float:
-    return cast(float, number)
-
-
-def _complex(number: Lanes) -> complex:
-    return cast(complex, number)
-
-
-def _first_of_many(numbers: Iterable[object]) -> Lanes | None:
-    return next((number for number in numbers if isinstance(number, Lanes)), None)
-
-
-# Functions of plain numbers and lanes
-
-
-def vector(x: float, y: float) -> complex:
-    """x + iy."""
-    lanes = _first_of_many((x, y))
-    if lanes is None:
-        return complex(x, y)
-    return _complex(lanes.apply(with_parts, x, y))
-
-
-def with_parts(x: Array, y: Array) -> ComplexArray:
-    """Arrays x + iy, signs of zeros kept."""
-    values = np.empty(np.broadcast_shapes(np.shape(x), np.shape(y)), dtype=complex)
-    values.real, values.imag = x, y
-    return values
-
-
-def phase(z: complex) -> float:
-    """The direction of a vector, in (-π, π]."""
-    if is_batched(z):
-        return _real(z.apply(np.angle, z))
-    return cmath.phase(z)
-
-
-def cis(angle: float) -> complex:
-    """e^(i angle)."""
-    if is_batched(angle):
-        return vector(_real(angle.apply(np.cos, angle)), _real(angle.apply(np.sin, angle)))
-    return cmath.exp(1j * angle)
-
-
-def exponential(z: complex) -> complex:
-    """e^z; raises OverflowError where it is too large, as ``cmath`` does."""
-    if not is_batched(z):
-        return cmath.exp(z)
-    found = z.apply(np.exp, z)
-    if (wrong := ~np.isfinite(found.values)).any() and z.consensus.decide(wrong):
-        raise OverflowError
-    return _complex(found)
-
-
-def rect(length: float, angle: float) -> complex:
-    """length · e^(i angle)."""
-    if _first_of_many((length, angle)) is None:
-        return cmath.rect(length, angle)
-    return length * cis(angle)
-
-
-def sqrt(x: float) -> float:
-    """The square root; NaN in lanes where it is not real."""
-    return _real(x.apply(np.sqrt, x)) if is_batched(x) else math.sqrt(x)
-
-
-def hypot(x: float, y: float) -> float:
-    """√(x² + y²)."""
-    lanes = _first_of_many((x, y))
-    if lanes is None:
-        return math.hypot(x, y)
-    return _real(lanes.apply(np.hypot, x, y))
-
-
-def copysign(size: float, sign: float) -> float:
-    """A plain size with the sign of a number."""
-    if is_batched(sign):
-        return _real(sign.apply(np.copysign, size, sign))
-    return math.copysign(size, sign)
-
-
-def remainder(x: float, period: float) -> float:
-    """x less whole periods, at most half a period in size; exact."""
-    if not is_batched(x):
-        return math.remainder(x, period)
-    return _real(x.apply(remainders, x, period))
-
-
-def remainders(x: Array, period: float) -> Array:
-    """:func:`remainder` of an array."""
-    rest = np.fmod(x, period)
-    size, odd = np.abs(rest), np.trunc(x / period) % 2 == 1
-    over = (size > period / 2) | ((size == period / 2) & odd)
-    return np.where(over, rest - np.copysign(period, rest), rest)
-
-
-def degrees(angle: float) -> float:
-    """Radians in degrees."""
-    if is_batched(angle):
-        return _real(angle * (180.0 / math.pi))
-    return math.degrees(angle)
-
-
-def finite(x: float) -> bool:
-    """Whether a number is neither NaN nor infinite."""
-    return cast(bool, x.holds(np.isfinite(x.values))) if is_batched(x) else math.isfinite(x)
-
-
-def is_fractional(x: float) -> bool:
-    """Whether a number is no whole number."""
-    if is_batched(x):
-        return cast(bool, x.holds(x.values != np.floor(x.values)))
-    return not float(x).is_integer()
-
-
-def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
-    """``yes`` where the condition holds, else ``no``; both are computed."""
-    truths: object = condition
-    if isinstance(truths, Truths):
-        lanes = _first_of_many((yes, no))
-        if lanes is None:
-            picked: _Number = truths.consensus.pick(np.where(truths.values, yes, no))
-            return picked
-        return cast(_Number, lanes.apply(np.where, truths, yes, no))
-    return yes if condition else no
-
-
-def everywhere(condition: bool) -> bool:
-    """Whether it holds in all lanes that are left: no lane leaves for it."""
-    truths: object = condition
-    if isinstance(truths, Truths):
-        return bool((truths.values | ~truths.consensus.agreeing).all())
-    return condition
 
 
 class Rest:
@@ -456,7 +269,7 @@ class Rest:
         wanted = ~done.values & self.whole.agreeing
         wanted[self.whole.leader] = False
         self.lanes = np.concatenate([[self.whole.leader], np.flatnonzero(wanted)])
-        self.part = Consensus(len(self.lanes))
+        self.part = LaneArithmetic(len(self.lanes))
 
     def narrow(self, number: _Number) -> _Number:
         """A number in these lanes."""
@@ -468,7 +281,7 @@ class Rest:
         """A number of all lanes with what has become of it in these."""
         values = np.array(np.broadcast_to(_bare(whole), self.whole.agreeing.shape))
         values[self.lanes] = _bare(part)
-        return cast(_Number, Lanes(values, self.whole))
+        return self.whole.lanes(values)
 
     def leave(self) -> None:
         """Lanes that went another way leave the whole."""
@@ -479,64 +292,3 @@ def rest_of(done: bool) -> Rest | None:
     """The lanes in which something is not done; ``None`` for a plain condition."""
     truths: object = done
     return Rest(truths) if isinstance(truths, Truths) else None
-
-
-def largest(numbers: Iterable[float], default: float = 0.0) -> float:
-    """The largest of numbers, lane by lane."""
-    return _extreme(list(numbers), default, most=True)
-
-
-def smallest(numbers: Iterable[float], default: float = 0.0) -> float:
-    """The smallest of numbers, lane by lane."""
-    return _extreme(list(numbers), default, most=False)
-
-
-def _extreme(numbers: list[float], default: float, *, most: bool) -> float:
-    lanes = _first_of_many(numbers)
-    if lanes is None:
-        return max(numbers, default=default) if most else min(numbers, default=default)
-    plain = [number for number in numbers if not is_batched(number)]
-    found: Any = (max(plain) if most else min(plain)) if plain else None
-    for number in numbers:
-        if is_batched(number):
-            better = np.fmax if most else np.fmin
-            found = number if found is None else lanes.apply(better, found, number)
-    return cast(float, found)
-
-
-def is_structurally_nonzero(x: complex) -> bool:
-    """Whether something of this size is there."""
-    return (is_batched(x) and x.consensus.widest) or bool(x)
-
-
-def display_value(x: complex) -> complex:
-    """The plain number by which something is shown."""
-    return complex(x.values[0]) if is_batched(x) else x
-
-
-def as_float(x: float) -> float:
-    """A float of any plain number; lanes as they are."""
-    if is_batched(x):
-        return _real(x)
-    return float(x)
-
-
-def leader_value(x: float) -> float:
-    """The leader's number."""
-    return cast(float, x.values[x.consensus.leader].item()) if is_batched(x) else x
-
-
-def uniform_value(x: float) -> float:
-    """A number that has to be one for all designs, as a weight of an angle."""
-    return cast(float, x.uniform_value()) if is_batched(x) else x
-
-
-def row_of(numbers: Iterable[float]) -> Array:
-    """Numbers as an array (k,); with lanes among them, of objects."""
-    found = list(numbers)
-    if _first_of_many(found) is None:
-        return np.array(found)
-    row = np.empty(len(found), dtype=object)
-    for k, number in enumerate(found):
-        row[k] = number
-    return cast(Array, row)

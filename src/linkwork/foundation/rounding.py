@@ -9,6 +9,8 @@ __all__ = [
     "ALMOST_REAL",
     "CLOSER_TANGENT",
     "EPSILON",
+    "EQUAL_ROWS",
+    "EXTENDED_EPSILON",
     "LARGEST_POLISH",
     "PROOF_SLACK",
     "RANK_TOLERANCE",
@@ -18,6 +20,8 @@ __all__ = [
 
 #: The distance from 1 to the next larger number, 2⁻⁵²: twice the unit roundoff.
 EPSILON = float(np.finfo(float).eps)
+#: The same of extended precision, where the processor computes with it.
+EXTENDED_EPSILON = float(np.finfo(np.longdouble).eps)
 #: The largest relative error of one rounded operation, 2⁻⁵³.
 UNIT_ROUNDOFF = EPSILON / 2.0
 #: A factor that covers the rounding of a proof's own bounds, which are sums of positive numbers.
@@ -32,6 +36,8 @@ LARGEST_POLISH = 1e-6
 #: A position belongs to a tangent of a crossing if its distance from that is at most this part of
 #: its distance from the other one.
 CLOSER_TANGENT = 0.1
+#: Relative to their size: rows of a motion that differ by less show one position, solved twice.
+EQUAL_ROWS = 1e-9
 #: A complex solution this near to its mirror image may be a real one.
 ALMOST_REAL = 1e-6
 #: The same of a multiple solution, whose path ends less precisely.

@@ -3,7 +3,7 @@
     f(x) = Σ_k c_k t^k + A sin(ω t + ψ),     t = x - b,  b ≤ x < next b
 
 Motion laws of cams and cubic splines are of this kind. A function either repeats itself after its
-period, or goes on straight beyond its ends.
+period, or continues as a straight line beyond its ends.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from math import comb
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.foundation.rounding import EXTENDED_EPSILON, UNIT_ROUNDOFF
 
 __all__ = ["Piecewise"]
 
@@ -49,7 +49,7 @@ class Piecewise:
         return float(self.breaks[-1] - self.breaks[0])
 
     def slope(self) -> Piecewise:
-        """The derivative as a function of its own; beyond open ends it goes on as a straight line.
+        """The derivative as a function; beyond open ends it continues as a straight line.
 
         Its slope is continuous only if the second derivative of this one is.
         """
@@ -133,7 +133,7 @@ class Piecewise:
         than 2 Σ|D| + Σ|J|/P and whose second derivative is Σ D/P, leaves none (P: all pieces).
         """
         exact = np.longdouble
-        unit = float(np.finfo(exact).eps)
+        unit = EXTENDED_EPSILON
         c, (a, w, p) = self.powers.astype(exact), self.sines.T.astype(exact)
         t = np.diff(self.breaks.astype(exact))
         degrees = np.arange(c.shape[1])

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TypeVar
 
+from linkwork.foundation.elementwise import phase, vector
 from linkwork.foundation.frozen import FrozenDict
-from linkwork.foundation.lanes import phase, vector
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number

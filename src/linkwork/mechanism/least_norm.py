@@ -43,7 +43,7 @@ def least_norm(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Seq
     x[regular] = (rows[regular].swapaxes(1, 2) @ y)[:, :, 0]
     others = np.flatnonzero(~regular & finite)
     x[others] = (np.linalg.pinv(a[others], rcond=_CUT) @ b[others][:, :, None])[:, :, 0]
-    return [lanes.consensus.lanes(column) for column in x.T]
+    return [lanes.arithmetic.lanes(column) for column in x.T]
 
 
 def full_rank(matrix: Sequence[Sequence[float]], tolerance: float) -> bool:

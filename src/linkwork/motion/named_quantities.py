@@ -11,7 +11,6 @@ from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.motion.model import Model
 from linkwork.motion.quantity_values import QuantityValues
-from linkwork.results.quantities.definition import Vector
 from linkwork.results.series import Series
 
 __all__ = ["Named", "RowValues", "name_series"]
@@ -54,10 +53,10 @@ class RowValues(QuantityValues):
         k = self.number[symbol]
         return Jet(*(part[:, k] for part in self.columns))
 
-    def place(self, point: str) -> Vector:
+    def place(self, point: str) -> Jet:
         """A point by its exact name, (B,)."""
         number, parts = self._places
-        return Vector(*(part[:, number[point]] for part in parts))
+        return Jet(*(part[:, number[point]] for part in parts))
 
     @cached_property
     def _places(self) -> tuple[dict[str, int], tuple[ComplexArray, ...]]:

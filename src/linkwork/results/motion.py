@@ -24,8 +24,7 @@ from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
 from linkwork.results.limit import Limit, LimitKind, OutputLimit
 from linkwork.results.quantities.asked import Asked, Group
-from linkwork.results.quantities.definition import Vector
-from linkwork.results.quantities.registry import Quantities
+from linkwork.results.quantities.registry import EVIDENCE, Quantities
 from linkwork.results.quantity import Rate, Units
 from linkwork.results.series import Series
 from linkwork.results.table import Table
@@ -142,15 +141,7 @@ class Motion:
     failure: Failure | None = None
 
     def __post_init__(self) -> None:
-        for field in (
-            "residual",
-            "iterations",
-            "condition",
-            "radius",
-            "unique_within",
-            "added",
-            "q",
-        ):
+        for field in (*EVIDENCE, "added", "q"):
             object.__setattr__(self, field, read_only(getattr(self, field)))
         inputs = {name: read_only(values) for name, values in self.inputs.items()}
         object.__setattr__(self, "inputs", FrozenDict(inputs))
@@ -261,10 +252,10 @@ class Motion:
         series = self.series(name)
         return Jet(series.value, series.first, series.second)
 
-    def place(self, point: str) -> Vector:
+    def place(self, point: str) -> Jet:
         """A point with both derivatives by its exact name."""
         x, y = self.points[point]
-        return Vector(x.value + 1j * y.value, x.first + 1j * y.first, x.second + 1j * y.second)
+        return Jet(x.value + 1j * y.value, x.first + 1j * y.first, x.second + 1j * y.second)
 
     @cached_property
     def found(self) -> BoolArray:

@@ -17,8 +17,7 @@ from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.failure import Failure
 from linkwork.results.quantities.asked import Group
-from linkwork.results.quantities.definition import Vector
-from linkwork.results.quantities.registry import Quantities
+from linkwork.results.quantities.registry import EVIDENCE, Quantities
 from linkwork.results.quantity import Units
 from linkwork.results.summary import Summary, driven_text
 
@@ -230,10 +229,10 @@ class Position:
         rates = (self.first.get(name, np.nan), self.second.get(name, np.nan))
         return Jet(*(np.asarray(part) for part in (value, *rates)))
 
-    def place(self, point: str) -> Vector:
+    def place(self, point: str) -> Jet:
         """A point with both derivatives by its exact name."""
         x, y = self.own(f"{point}.x"), self.own(f"{point}.y")
-        return Vector(*(a + 1j * b for a, b in ((x.v, y.v), (x.d1, y.d1), (x.d2, y.d2))))
+        return Jet(*(a + 1j * b for a, b in ((x.v, y.v), (x.d1, y.d1), (x.d2, y.d2))))
 
     def __repr__(self) -> str:
         return str(position_summary(self))
@@ -271,8 +270,11 @@ class Position:
             "condition": _null(self.condition),
             "certificate": {
                 "certified": self.certificate.certified,
-                "radius": self.certificate.radius,
-                "unique_within": _null_or_none(self.certificate.unique_within),
+                **{
+                    name: _null_or_none(getattr(self.certificate, name))
+                    for name in EVIDENCE
+                    if hasattr(self.certificate, name)
+                },
                 "reason": self.certificate.certification.value,
                 **({"redundant": dict(self.redundant)} if self.redundant else {}),
             },

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from linkwork.drawing.captions import printed_formula
+from linkwork.drawing.measures import COINCIDENT
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.vector_polygon import polygon
 from linkwork.foundation.arrays import ComplexArray
@@ -17,8 +18,6 @@ from linkwork.viewer.page_data import PackedColumn, VectorData
 
 __all__ = ["loop_arrows"]
 
-_SAME = 1e-6  # relative to the longest vector: points closer than this coincide
-
 
 def loop_arrows(loops: Sequence[MovingLoop], motion: Motion, pack: Pack) -> Iterator[VectorData]:
     """Every vector once, head to tail around its loop, in the order chosen for the first row."""
@@ -28,7 +27,7 @@ def loop_arrows(loops: Sequence[MovingLoop], motion: Motion, pack: Pack) -> Iter
     pose = Pose.at_row(motion, row)
     ways = {name: motion.trace(name) for name in motion.points}
     sizes = [np.nanmax(np.abs(v.values)) for loop in loops for v in (*loop.left, *loop.right)]
-    near = _SAME * float(max(sizes, default=0.0))
+    near = COINCIDENT * float(max(sizes, default=0.0))
     known: list[tuple[str, ComplexArray]] = []
     for number, loop in enumerate(loops, 1):
         for name, tail, tip in _around(loop, row, pose, ways, near):

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from linkwork.foundation.arrays import BoolArray, ComplexArray, CountArray
+from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.results.motion import Motion
 
 __all__ = ["falling", "play_order"]
 
-_SAME = 1e-9  # of the path length of all points: nearer positions are equal
 _MEETING = 1.5  # in multiples of the largest step: runs with nearer ends are joined
 
 
@@ -83,7 +83,7 @@ def _passed_once(order: CountArray, places: ComplexArray) -> BoolArray:
     there = places[order]
     span = float(np.abs(there - there[0]).max())
     kept = np.ones(len(order), dtype=bool)
-    for k in np.flatnonzero(np.abs(np.diff(there, axis=0)).max(axis=1) <= _SAME * span):
+    for k in np.flatnonzero(np.abs(np.diff(there, axis=0)).max(axis=1) <= EQUAL_ROWS * span):
         kept[k if order[k] > order[k + 1] else k + 1] = False
     return kept
 

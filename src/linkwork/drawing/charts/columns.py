@@ -25,13 +25,10 @@ TIME = "time"
 #: Text columns of a table.
 _TEXTS = ("status", "certified", "branch", "limit")
 
-#: Scale and style of numbers about a position.
+#: Scale and style of evidence not drawn as lines over a logarithmic axis.
 _EVIDENCE: Mapping[str, tuple[Scale, Pen]] = {
     "residual": (Scale.ROUNDING, Pen.DOTS),
     "iterations": (Scale.COUNT, Pen.DOTS),
-    "condition": (Scale.LOG, Pen.LINE),
-    "radius": (Scale.LOG, Pen.LINE),
-    "unique_within": (Scale.LOG, Pen.LINE),
 }
 
 
@@ -130,7 +127,7 @@ def column_of(motion: Motion, name: str) -> Column:
 
 def _evidence(motion: Motion, asked: Asked) -> Column:
     """A number about the positions found."""
-    scale, pen = _EVIDENCE.get(asked.name, (Scale.LINEAR, Pen.LINE))
+    scale, pen = _EVIDENCE.get(asked.name, (Scale.LOG, Pen.LINE))
     shown = motion.found
     if asked.name == "condition":  # infinite at dead points, up to rounding
         shown = shown & ~np.isin(motion.limit, ("dead point", "change point"))

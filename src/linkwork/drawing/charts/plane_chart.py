@@ -24,7 +24,7 @@ __all__ = ["hodograph_chart", "path_chart"]
 
 _NO_AXIS = Axis(label="")
 _APART = 0.09  # of the larger side: minimum distance of the texts of stations
-_SAME = 1e-3  # of the larger side: nearer stations are merged
+_HIDDEN = 1e-3  # of the larger side: nearer dots cover each other
 _STATIONS = 8  # approximate number for an input that is not an angle
 _USUAL = 80  # percentile of the values used as reference
 _BEYOND, _SHOWN = 4.0, 2.0  # multiples of the reference: unbounded curves, and their shown range
@@ -210,7 +210,7 @@ class _Room:
         dots: list[complex] = []
         for k, text in _stations(motion):
             here = complex(path[k])
-            if not self.shows(here) or any(abs(here - d) < _SAME * self.size for d in dots):
+            if not self.shows(here) or any(abs(here - d) < _HIDDEN * self.size for d in dots):
                 continue
             dots.append(here)
             away = _outwards(path, k, middle)

@@ -15,6 +15,7 @@ from linkwork.drawing.charts.transmission_chart import transmission_chart
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.results.circuits import Circuits
 from linkwork.results.motion import Motion
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
 __all__ = ["CIRCUIT_KINDS", "MOTION_KINDS", "PlotKind", "circuits_plot", "motion_plot"]
 
@@ -26,7 +27,7 @@ class PlotKind(Enum):
     POLAR = "polar"
     PATH = "path"
     HODOGRAPH = "hodograph"
-    TRANSMISSION = "transmission"
+    TRANSMISSION = TRANSMISSION_ANGLE.word
     CIRCUITS = "circuits"
     BRANCHES = "branches"
 

@@ -18,6 +18,7 @@ from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import find_spelling
 from linkwork.mechanism.dyad import Dyad, dyads_of
 from linkwork.results.motion import Motion
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
 __all__ = ["transmission_chart"]
 
@@ -92,7 +93,7 @@ def _column(motion: Motion, pins: Mapping[str, Dyad], name: str) -> Column:
     if pin not in pins and name in motion.points:
         known = choices("pins with a known transmission angle", pins, name)
         raise UnknownNameError(f'the transmission angle at "{name}" is not known {known}')
-    column = column_of(motion, f"{pin}.transmission" if pin in pins else name)
+    column = column_of(motion, f"{pin}.{TRANSMISSION_ANGLE.word}" if pin in pins else name)
     if not column.turn:
         raise UnknownNameError(
             f'"{name}" is not an angle {choices("pins", pins, name)}; name a pin between two '

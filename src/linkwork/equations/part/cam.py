@@ -15,7 +15,7 @@ from linkwork.equations.outline import Outline
 from linkwork.equations.part.curve import add_law, on_outline
 from linkwork.equations.part_rows import PartRows
 from linkwork.expression.tree import Name
-from linkwork.foundation.lanes import uniform_value
+from linkwork.foundation.elementwise import uniform_value
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Key
 from linkwork.mechanism.part.cam import Cam

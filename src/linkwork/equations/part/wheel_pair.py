@@ -6,7 +6,8 @@ import math
 from fractions import Fraction
 
 from linkwork.equations.part_rows import PartRows
-from linkwork.foundation.lanes import choose, is_batched, leader_value, uniform_value
+from linkwork.foundation.elementwise import choose, leader_value, uniform_value
+from linkwork.foundation.lanes import is_batched
 from linkwork.mechanism.description import Key
 from linkwork.mechanism.part.wheel_pair import WheelPair
 

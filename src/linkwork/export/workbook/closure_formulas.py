@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from linkwork.equations.compiling import coordinate_name
 from linkwork.equations.model import LinearEquation, RealEquation, Term
 from linkwork.export.workbook.cell_formula import CellFormula
-from linkwork.export.workbook.linear_form import LinearForm, cosine, product, sine
+from linkwork.export.workbook.linear_form import LinearForm, cosine, sine
 from linkwork.export.workbook.traced_equations import TracedEquations, forms_of
 from linkwork.expression.derivative import derivative
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
@@ -106,12 +106,12 @@ class ClosureFormulas:
         if not form.fixed and _size(form.node) <= _MOST_NODES and _plain(form.node):
             return form
         weight = -1.0 if isinstance(form.node, Negative) else 1.0
-        node = form.times(weight).node
+        node = (form * weight).node
         if node not in self.coefficients:
             key = f"coefficient {len(self.coefficients) + 1}"
             formula = CellFormula(node)
             self.coefficients[node] = Coefficient(key=key, wanted=wanted, formula=formula)
-        return LinearForm.named(self.coefficients[node].key).times(weight)
+        return LinearForm.named(self.coefficients[node].key) * weight
 
     def _parts(self, term: Term) -> tuple[LinearForm, LinearForm]:
         """Real and imaginary part of a term's coefficient."""
@@ -127,7 +127,7 @@ class ClosureFormulas:
         """Σ weight θ in radians."""
         total = LinearForm()
         for symbol, weight in term.phase:
-            total += LinearForm.named(symbol).times(weight * self._units[symbol])
+            total += LinearForm.named(symbol) * (weight * self._units[symbol])
         return total
 
     def _vector(
@@ -139,11 +139,10 @@ class ClosureFormulas:
             re, im = -im, re
         angle = self._turn(term)
         c, s = cosine(angle), sine(angle)
-        x = product(re, c) - product(im, s)
-        y = product(re, s) + product(im, c)
+        x, y = re * c - im * s, re * s + im * c
         if length and term.length is not None:
             own = LinearForm.named(term.length)
-            x, y = product(own, x), product(own, y)
+            x, y = own * x, own * y
         return x, y
 
     def _slope(self, term: Term, symbol: str) -> tuple[LinearForm, LinearForm]:
@@ -151,7 +150,7 @@ class ClosureFormulas:
         weight = dict(term.phase).get(symbol, 0.0)
         x, y = LinearForm(), LinearForm()
         if weight:
-            x, y = (part.times(weight) for part in self._vector(term, turned=True))
+            x, y = (part * weight for part in self._vector(term, turned=True))
         if term.length == symbol:
             along = self._vector(term, length=False)
             x, y = x + along[0], y + along[1]
@@ -196,7 +195,7 @@ class ClosureFormulas:
         constant = self._coefficient(forms_of(line.constant)[0], f"{line.label}_constant")
         total = constant
         for symbol, weight in line.terms:
-            total += LinearForm.named(symbol).times(weight * self._units[symbol])
+            total += LinearForm.named(symbol) * (weight * self._units[symbol])
         weights = dict(line.terms)
         return Row(
             name=name,
@@ -243,7 +242,7 @@ class ClosureFormulas:
         total = forms_of(angle.constant)[0]
         if angle.variable is not None:
             symbol = canonical(angle.variable)
-            total += LinearForm.named(symbol).times(self._units[symbol])
+            total += LinearForm.named(symbol) * self._units[symbol]
         return CellFormula(total.in_degrees if self._angle is AngleUnit.DEGREE else total.node)
 
 

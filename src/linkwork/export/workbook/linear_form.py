@@ -7,21 +7,69 @@ are functions too, because cells contain angles in the file's unit.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
+from linkwork.foundation.operand import Arithmetic, Operand
 
-__all__ = ["LinearForm", "call", "cosine", "product", "quotient", "sine"]
+__all__ = ["LinearForm", "call", "cosine", "sine"]
 
 _DEGREE = math.pi / 180.0
 _SHORT = 1e-13  # relative: nearer factors are rounded to a short number
 
 
+class _FormArithmetic(Arithmetic["LinearForm"]):
+    """Takes numbers out of products, and common factors out of quotients."""
+
+    def plain(self, number: float) -> LinearForm:
+        """A number."""
+        return LinearForm(number)
+
+    def add(self, x: LinearForm, y: LinearForm) -> LinearForm:
+        """x + y, like terms joined."""
+        weights = dict(x.terms)
+        for node, weight in y.terms:
+            weights[node] = weights.get(node, 0.0) + weight
+        kept = tuple((node, weight) for node, weight in weights.items() if weight)
+        return LinearForm(x.constant + y.constant, kept)
+
+    def negate(self, x: LinearForm) -> LinearForm:
+        """-x."""
+        return _weigh(x, -1.0)
+
+    def multiply(self, x: LinearForm, y: LinearForm) -> LinearForm:
+        """x y."""
+        if y.fixed:
+            return _weigh(x, y.constant)
+        if x.fixed:
+            return _weigh(y, x.constant)
+        (left, one), (right, other) = _factored(x), _factored(y)
+        node = Binary("^", left, Number(2.0)) if left == right else Binary("*", left, right)
+        return _weigh(LinearForm.of(node), one * other)
+
+    def divide(self, x: LinearForm, y: LinearForm) -> LinearForm:
+        """x / y."""
+        if y.fixed:
+            return _weigh(x, 1.0 / y.constant)
+        if x.zero:
+            return x
+        below, weight = _factored(y)
+        reduced = [_without(node, below) for node, _ in x.terms]
+        if not x.constant and None not in reduced:
+            parts = zip(reduced, x.terms, strict=True)
+            return sum(
+                (_weigh(form, own / weight) for form, (_, own) in parts if form is not None),
+                LinearForm(),
+            )
+        above, own = _factored(x)
+        return _weigh(LinearForm.of(Binary("/", above, below)), own / weight)
+
+
 @dataclass(frozen=True)
-class LinearForm:
+class LinearForm(Operand):
     """``Σ weight · term + constant``; terms differ and no weight is 0."""
 
+    arithmetic = _FormArithmetic()
     constant: float = 0.0
     terms: tuple[tuple[Node, float], ...] = ()
 
@@ -49,26 +97,6 @@ class LinearForm:
     def single(self) -> tuple[Node, float] | None:
         """Its only term with its weight; ``None`` for a sum and for a number."""
         return self.terms[0] if len(self.terms) == 1 and self.constant == 0.0 else None
-
-    def __add__(self, other: LinearForm) -> LinearForm:
-        weights = dict(self.terms)
-        for node, weight in other.terms:
-            weights[node] = weights.get(node, 0.0) + weight
-        kept = tuple((node, weight) for node, weight in weights.items() if weight)
-        return LinearForm(self.constant + other.constant, kept)
-
-    def times(self, factor: float) -> LinearForm:
-        """The form with all weights multiplied."""
-        if factor == 0.0:
-            return LinearForm()
-        scaled = tuple((node, weight * factor) for node, weight in self.terms)
-        return LinearForm(self.constant * factor, scaled)
-
-    def __neg__(self) -> LinearForm:
-        return self.times(-1.0)
-
-    def __sub__(self, other: LinearForm) -> LinearForm:
-        return self + -other
 
     @property
     def node(self) -> Node:
@@ -117,6 +145,13 @@ class LinearForm:
         return Call("degrees", (self.angle,)) if in_file_unit is None else in_file_unit.node
 
 
+def _weigh(form: LinearForm, factor: float) -> LinearForm:
+    if factor == 0.0:
+        return LinearForm()
+    scaled = tuple((node, weight * factor) for node, weight in form.terms)
+    return LinearForm(form.constant * factor, scaled)
+
+
 def _weighted(node: Node, weight: float) -> Node:
     return node if weight == 1.0 else Binary("*", Number(weight), node)
 
@@ -126,38 +161,8 @@ def _short(number: float) -> float | None:
     return near if abs(number - near) <= _SHORT * abs(number) else None
 
 
-def product(a: LinearForm, b: LinearForm) -> LinearForm:
-    """a · b, with numerical factors combined."""
-    if a.fixed:
-        return b.times(a.constant)
-    if b.fixed:
-        return a.times(b.constant)
-    (left, one), (right, other) = _factored(a), _factored(b)
-    node = Binary("^", left, Number(2.0)) if left == right else Binary("*", left, right)
-    return LinearForm.of(node).times(one * other)
-
-
 def _factored(form: LinearForm) -> tuple[Node, float]:
     return form.single or (form.node, 1.0)
-
-
-def quotient(a: LinearForm, b: LinearForm) -> LinearForm:
-    """a / b, with common factors cancelled."""
-    if b.fixed:
-        return a.times(1.0 / b.constant)
-    if a.zero:
-        return a
-    below, weight = _factored(b)
-    reduced = [_without(node, below) for node, _ in a.terms]
-    if not a.constant and None not in reduced:
-        parts = (
-            form.times(own / weight)
-            for form, (_, own) in zip(reduced, a.terms, strict=True)
-            if form is not None
-        )
-        return _sum(parts)
-    above, own = _factored(a)
-    return LinearForm.of(Binary("/", above, below)).times(own / weight)
 
 
 def _without(node: Node, factor: Node) -> LinearForm | None:
@@ -172,13 +177,6 @@ def _without(node: Node, factor: Node) -> LinearForm | None:
         case Binary("^") if node.left == factor and node.right == Number(2.0):
             return LinearForm.of(factor)
     return None
-
-
-def _sum(parts: Iterable[LinearForm]) -> LinearForm:
-    total = LinearForm()
-    for part in parts:
-        total += part
-    return total
 
 
 def call(function: str, *arguments: LinearForm) -> LinearForm:

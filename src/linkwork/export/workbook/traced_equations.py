@@ -13,8 +13,8 @@ from linkwork.export.workbook.linear_form import LinearForm
 from linkwork.export.workbook.traced_number import Trace, TracedNumber
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, Node, names_in
-from linkwork.foundation.lanes import NotElementwise
 from linkwork.foundation.names import GROUND, canonical
+from linkwork.foundation.operand import NotElementwise
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.linkage import Linkage

@@ -1,13 +1,14 @@
-"""Recording arithmetic: what is computed, before it is known by which interpreter or compiler."""
+"""Recording arithmetic, for any interpreter or compiler."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from linkwork.foundation.operand import Arithmetic, Operand
 from linkwork.kernels.program.program import Op
 
 __all__ = ["Recorder", "Value"]
@@ -15,48 +16,21 @@ __all__ = ["Recorder", "Value"]
 _SYMMETRIC = frozenset({Op.ADD, Op.MUL, Op.MAX, Op.MIN, Op.AND})
 
 
-@dataclass(frozen=True, eq=False)
-class Value:
-    """A number in the making; arithmetic with it is recorded."""
+class Value(Operand):
+    """A number in the making; arithmetic with it is recorded under its ``number``."""
 
-    recorder: Recorder
-    number: int
+    __slots__ = ("arithmetic", "number")
+    arithmetic: Recorder
 
-    def __add__(self, other: Value | float) -> Value:
-        return self.recorder.add(self, other)
-
-    def __radd__(self, other: float) -> Value:
-        return self.recorder.add(self, other)
-
-    def __sub__(self, other: Value | float) -> Value:
-        return self.recorder.subtract(self, other)
-
-    def __rsub__(self, other: float) -> Value:
-        return self.recorder.subtract(other, self)
-
-    def __mul__(self, other: Value | float) -> Value:
-        return self.recorder.multiply(self, other)
-
-    def __rmul__(self, other: float) -> Value:
-        return self.recorder.multiply(self, other)
-
-    def __truediv__(self, other: Value | float) -> Value:
-        return self.recorder.divide(self, other)
-
-    def __rtruediv__(self, other: float) -> Value:
-        return self.recorder.divide(other, self)
-
-    def __neg__(self) -> Value:
-        return self.recorder.negate(self)
-
-    def __abs__(self) -> Value:
-        return self.recorder.absolute(self)
+    def __init__(self, recorder: Recorder, number: int) -> None:
+        self.arithmetic = recorder
+        self.number = number
 
 
 _Key = tuple[Op, tuple[int, ...], object]
 
 
-class Recorder:
+class Recorder(Arithmetic[Value]):
     """Records arithmetic on values; equal computations are done once, zeros and ones not at all."""
 
     def __init__(self) -> None:
@@ -65,6 +39,10 @@ class Recorder:
         self.payload: list[object] = []  # the name of an input, the value of a constant
         self.writes: dict[str, int] = {}
         self._known: dict[_Key, int] = {}
+
+    def plain(self, number: float) -> Any:
+        """A number as it is: it is recorded only where an operation keeps it."""
+        return number
 
     def _new(self, op: Op, *arguments: int, payload: object = None) -> Value:
         if op in _SYMMETRIC:
@@ -80,7 +58,7 @@ class Recorder:
         return Value(self, number)
 
     def input(self, name: str) -> Value:
-        """What a named register held before the program ran."""
+        """The value of a named register before the program ran."""
         return self._new(Op.INPUT, payload=name)
 
     def constant(self, value: float) -> Value:
@@ -103,7 +81,7 @@ class Recorder:
         return held if self.ops[x.number] is Op.CONSTANT and isinstance(held, float) else None
 
     def is_zero(self, x: Value | float) -> bool:
-        """Whether something is the constant 0."""
+        """Whether a number is the constant 0."""
         return self._number(x) == 0.0
 
     def _negated(self, x: Value) -> Value | None:

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
+from linkwork.foundation.elementwise import largest
 from linkwork.foundation.file_keys import Flag, Key, Text
-from linkwork.foundation.lanes import largest
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.figures import Figure, Mesh, Outlines
 from linkwork.mechanism.joint import JointKind
@@ -81,6 +81,7 @@ class Gear(WheelPair):
             return
         distance = self.distance(checks.linkage)
         wanted = self.modules_apart(*map(checks.linkage.numbers, self.radii))
+        # circles in mesh touch; belts only have to clear each other
         if abs(distance - wanted) > AGREE * largest((distance, wanted)):
             how = "differ by" if self.internal else "add up to"
             checks.add(

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
+from linkwork.foundation.elementwise import vector
 from linkwork.foundation.errors import choices
 from linkwork.foundation.file_keys import Key as FileKey, ListOf, Number as NumberKey, Text
-from linkwork.foundation.lanes import vector
 from linkwork.foundation.names import free_name
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.description import Key, Problems
@@ -47,6 +47,7 @@ class Part:
     def __post_init__(self) -> None:
         """Convert lists to tuples, so that parts are comparable and immutable."""
         for field, entry in vars(self).items():
+            # the class is frozen: only this way may it set its own fields
             object.__setattr__(self, field, _frozen(entry))
 
     @classmethod
@@ -87,6 +88,7 @@ class Part:
     @property
     def mobility(self) -> int:
         """Its contribution to Grübler's count: f - 3 for a joint of f freedoms, 3 for a link."""
+        # a joint of f freedoms removes 3 - f
         joint = 0 if self.kind is None else self.kind.freedom - 3
         return joint + 3 * len(self.ends)
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
+from linkwork.foundation.elementwise import largest
 from linkwork.foundation.file_keys import Key, ListOf, Number as NumberKey, Text
-from linkwork.foundation.lanes import largest
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Disc
@@ -132,6 +132,7 @@ class WheelPair(ArmPair):
             return linkage.numbers(self.radii[0]), linkage.numbers(self.radii[1])
         assert self.teeth is not None
         first, second = map(linkage.numbers, self.teeth)
+        # teeth fix only the ratio; the distance of the centres fixes the size
         module = self.distance(linkage) / self.modules_apart(first, second)
         return module * first, module * second
 

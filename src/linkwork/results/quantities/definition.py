@@ -10,8 +10,9 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.expression.jets import Jet
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.mechanism.dyad import Dyad, dyads_of
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.quantity import Kind, Units
@@ -23,12 +24,9 @@ __all__ = [
     "MotionRows",
     "RowQuantity",
     "Solved",
-    "Vector",
     "cubic",
     "folded",
 ]
-
-_SAME = 1e-9  # relative: what differs by less is the same
 
 #: The derivative of a quantity whose derivative would need a third one of the positions.
 UNKNOWN = np.array(np.nan)
@@ -71,26 +69,6 @@ class MechanismNames:
         return dyads_of(self.skeleton)
 
 
-@dataclass(frozen=True)
-class Vector:
-    """A vector x + iy in the plane with its derivatives by the leading input, shape S each."""
-
-    v: ComplexArray
-    d1: ComplexArray
-    d2: ComplexArray
-
-    def __sub__(self, other: Vector) -> Vector:
-        return Vector(self.v - other.v, self.d1 - other.d1, self.d2 - other.d2)
-
-    def direction(self) -> Jet:
-        """The angle of the vector with its derivatives [rad]; NaN for a vector of length 0."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            rate = self.d1 / self.v
-            bend = self.d2 / self.v - rate**2
-        angle = np.where(self.v == 0, np.nan, np.angle(self.v))
-        return Jet(angle, rate.imag, bend.imag)
-
-
 class Solved(Protocol):
     """Solved positions as arrays of one shape S: one position, the rows of a motion, of a family.
 
@@ -100,8 +78,8 @@ class Solved(Protocol):
     def own(self, name: str) -> Jet:
         """A quantity of the mechanism's own by its exact name; values in the file's units."""
 
-    def place(self, point: str) -> Vector:
-        """A point by its exact name."""
+    def place(self, point: str) -> Jet:
+        """A point by its exact name, as x + iy."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,9 +152,10 @@ class MotionRows:
     def cycle(self) -> BoolArray:
         """Which motions come back after one turn of the input, at the last row, (…,)."""
         span = self.input[-1] - self.input[0]
-        around = self.turn > 0.0 and abs(abs(span) - self.turn) <= _SAME * self.turn
+        # a turn in radians is no float, and rows come from degrees
+        around = self.turn > 0.0 and abs(abs(span) - self.turn) <= EQUAL_ROWS * self.turn
         size = np.fmax.reduce(np.abs(self.value), axis=-1)
-        same = np.abs(self.value[..., -1] - self.value[..., 0]) <= _SAME * size
+        same = np.abs(self.value[..., -1] - self.value[..., 0]) <= EQUAL_ROWS * size
         found: BoolArray = around & same & np.isfinite(self.value).all(axis=-1)
         return found
 
@@ -184,7 +163,7 @@ class MotionRows:
     def moves(self) -> BoolArray:
         """Which motions change the quantity by more than rounding, (…,)."""
         high, low = (each.reduce(self.value, axis=-1) for each in (np.fmax, np.fmin))
-        found: BoolArray = high - low > _SAME * np.fmax(np.abs(high), np.abs(low))
+        found: BoolArray = high - low > EQUAL_ROWS * np.fmax(np.abs(high), np.abs(low))
         return found
 
 
@@ -200,6 +179,7 @@ def cubic(s: Array | float, ends: tuple[Array, Array], slopes: tuple[Array, Arra
 def folded(angle: Jet, period: float) -> Jet:
     """The size of an angle that is the same after a period: from 0 to half of it [rad]."""
     rest = angle.v - period * np.round(angle.v / period)
+    # where the angle is zero its size has a corner, and no derivative
     side = np.sign(rest)
     return Jet(np.abs(rest), side * angle.d1, side * angle.d2)
 

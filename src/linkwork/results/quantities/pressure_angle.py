@@ -23,14 +23,13 @@ from linkwork.results.quantities.definition import (
     MechanismNames,
     RowQuantity,
     Solved,
-    Vector,
     folded,
 )
 from linkwork.results.quantity import Kind
 
 __all__ = ["PRESSURE_ANGLE"]
 
-_QUARTER = Jet.constant(np.pi / 2)
+_QUARTER = np.pi / 2  # between a line and its normal
 
 
 def _followers(names: MechanismNames) -> dict[str, Follower]:
@@ -61,7 +60,7 @@ def _angle(names: MechanismNames, solved: Solved, part: str) -> Jet:
         dyad = _blocks(names)[part]
         force = (solved.place(dyad.pin) - solved.place(dyad.arms[0])).direction()
         way = _line(names, solved, part)
-    return folded(force - way, np.pi)
+    return folded(force - way, np.pi)  # eq. (58)
 
 
 def _line(names: MechanismNames, solved: Solved, guide: str) -> Jet:
@@ -70,15 +69,16 @@ def _line(names: MechanismNames, solved: Solved, guide: str) -> Jet:
     return (end - start).direction()
 
 
-def _sliding(names: MechanismNames, solved: Solved, follower: Follower) -> Vector:
+def _sliding(names: MechanismNames, solved: Solved, follower: Follower) -> Jet:
     """The velocity of the follower's point against the cam, by the input."""
     outlines = names.skeleton.of(CamOutline)
     cam = next(outline for outline in outlines if outline.name == follower.name)
     turning = solved.own(cam.link)
     arm = solved.place(follower.point) - solved.place(cam.center)
+    # less the velocity of the cam's own point at the same place
     rate = arm.d1 - 1j * turning.d1 * arm.v
     bend = arm.d2 - 1j * (turning.d2 * arm.v + turning.d1 * arm.d1)
-    return Vector(rate, bend, UNKNOWN.astype(complex))
+    return Jet(rate, bend, UNKNOWN)
 
 
 PRESSURE_ANGLE = (

@@ -21,7 +21,7 @@ from linkwork.foundation.angles import FULL_TURN
 from linkwork.results.quantities.definition import MechanismNames, RowQuantity, Solved, folded
 from linkwork.results.quantity import Kind
 
-__all__ = ["TRANSMISSION"]
+__all__ = ["TRANSMISSION", "TRANSMISSION_ANGLE"]
 
 
 def _pins(names: MechanismNames) -> Mapping[str, Kind]:
@@ -35,18 +35,18 @@ def _angle(names: MechanismNames, solved: Solved, pin: str) -> Jet:
     if dyad.guide is None:
         other = (solved.place(dyad.arms[1]) - place).direction()
     else:
+        # the block passes its force on across its line
         start, end = (solved.place(point) for point in dyad.guide.line)
-        other = (end - start).direction() + Jet.constant(np.pi / 2)
-    return folded(one - other, FULL_TURN)
+        other = (end - start).direction() + np.pi / 2
+    return folded(one - other, FULL_TURN)  # eq. (57)
 
 
-TRANSMISSION = (
-    RowQuantity(
-        word="transmission",
-        about="transmission angle at the pin, 0 to half a turn",
-        kind=Kind.ANGLE,
-        needs=0,
-        of=_pins,
-        evaluate=_angle,
-    ),
+TRANSMISSION_ANGLE = RowQuantity(
+    word="transmission",
+    about="transmission angle at the pin, 0 to half a turn",
+    kind=Kind.ANGLE,
+    needs=0,
+    of=_pins,
+    evaluate=_angle,
 )
+TRANSMISSION = (TRANSMISSION_ANGLE,)

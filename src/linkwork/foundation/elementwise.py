@@ -1,0 +1,224 @@
+"""Functions of plain numbers and of numbers of many designs alike.
+
+A plain number takes the path that it took before there were lanes.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Iterable
+from typing import Any, TypeVar, cast
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.lanes import Lanes, Truths, is_batched
+
+__all__ = [
+    "as_float",
+    "choose",
+    "cis",
+    "copysign",
+    "degrees",
+    "display_value",
+    "everywhere",
+    "exponential",
+    "finite",
+    "hypot",
+    "is_fractional",
+    "is_structurally_nonzero",
+    "largest",
+    "leader_value",
+    "phase",
+    "rect",
+    "remainder",
+    "remainders",
+    "row_of",
+    "smallest",
+    "sqrt",
+    "uniform_value",
+    "vector",
+    "with_parts",
+]
+
+_Number = TypeVar("_Number", float, complex)
+_Function = Callable[..., Any]
+
+
+def _first_of_many(numbers: Iterable[object]) -> Lanes | None:
+    for number in numbers:
+        if isinstance(number, Lanes):
+            return number
+    return None
+
+
+def _apply(of_arrays: _Function, of_numbers: _Function, *numbers: object) -> Any:
+    """A function of arrays where a number is one of many designs, else one of plain numbers."""
+    lanes = _first_of_many(numbers)
+    return of_numbers(*numbers) if lanes is None else lanes.apply(of_arrays, *numbers)
+
+
+def vector(x: float, y: float) -> complex:
+    """x + iy."""
+    return cast(complex, _apply(with_parts, complex, x, y))
+
+
+def with_parts(x: Array, y: Array) -> ComplexArray:
+    """Arrays x + iy, signs of zeros kept."""
+    values = np.empty(np.broadcast_shapes(np.shape(x), np.shape(y)), dtype=complex)
+    values.real, values.imag = x, y
+    return values
+
+
+def phase(z: complex) -> float:
+    """The direction of a vector, in (-π, π]."""
+    return cast(float, _apply(np.angle, cmath.phase, z))
+
+
+def cis(angle: float) -> complex:
+    """e^(i angle)."""
+    if is_batched(angle):
+        return vector(_apply(np.cos, math.cos, angle), _apply(np.sin, math.sin, angle))
+    return cmath.exp(1j * angle)
+
+
+def exponential(z: complex) -> complex:
+    """e^z; raises OverflowError where it is too large, as ``cmath`` does."""
+    if not is_batched(z):
+        return cmath.exp(z)
+    found = z.apply(np.exp, z)
+    if (wrong := ~np.isfinite(found.values)).any() and z.arithmetic.decide(wrong):
+        raise OverflowError
+    return cast(complex, found)
+
+
+def rect(length: float, angle: float) -> complex:
+    """length · e^(i angle)."""
+    if _first_of_many((length, angle)) is None:
+        return cmath.rect(length, angle)
+    return length * cis(angle)
+
+
+def sqrt(x: float) -> float:
+    """The square root; NaN in lanes where it is not real."""
+    return cast(float, _apply(np.sqrt, math.sqrt, x))
+
+
+def hypot(x: float, y: float) -> float:
+    """√(x² + y²)."""
+    return cast(float, _apply(np.hypot, math.hypot, x, y))
+
+
+def copysign(size: float, sign: float) -> float:
+    """A plain size with the sign of a number."""
+    return cast(float, _apply(np.copysign, math.copysign, size, sign))
+
+
+def remainder(x: float, period: float) -> float:
+    """x less whole periods, at most half a period in size; exact."""
+    return cast(float, _apply(remainders, math.remainder, x, period))
+
+
+def remainders(x: Array, period: float) -> Array:
+    """:func:`remainder` of an array."""
+    rest = np.fmod(x, period)
+    size, odd = np.abs(rest), np.trunc(x / period) % 2 == 1
+    over = (size > period / 2) | ((size == period / 2) & odd)
+    return np.where(over, rest - np.copysign(period, rest), rest)
+
+
+def degrees(angle: float) -> float:
+    """Radians in degrees."""
+    return cast(float, angle * (180.0 / math.pi)) if is_batched(angle) else math.degrees(angle)
+
+
+def finite(x: float) -> bool:
+    """Whether a number is neither NaN nor infinite."""
+    return cast(bool, x.holds(np.isfinite(x.values))) if is_batched(x) else math.isfinite(x)
+
+
+def is_fractional(x: float) -> bool:
+    """Whether a number is no whole number."""
+    if is_batched(x):
+        return cast(bool, x.holds(x.values != np.floor(x.values)))
+    return not float(x).is_integer()
+
+
+def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
+    """``yes`` where the condition holds, else ``no``; both are computed."""
+    truths: object = condition
+    if isinstance(truths, Truths):
+        lanes = _first_of_many((yes, no))
+        if lanes is None:
+            picked: _Number = truths.consensus.pick(np.where(truths.values, yes, no))
+            return picked
+        return cast(_Number, lanes.apply(np.where, truths, yes, no))
+    return yes if condition else no
+
+
+def everywhere(condition: bool) -> bool:
+    """Whether it holds in all lanes that are left: no lane leaves for it."""
+    truths: object = condition
+    if isinstance(truths, Truths):
+        return bool((truths.values | ~truths.consensus.agreeing).all())
+    return condition
+
+
+def largest(numbers: Iterable[float], default: float = 0.0) -> float:
+    """The largest of numbers, lane by lane."""
+    return _extreme(list(numbers), default, most=True)
+
+
+def smallest(numbers: Iterable[float], default: float = 0.0) -> float:
+    """The smallest of numbers, lane by lane."""
+    return _extreme(list(numbers), default, most=False)
+
+
+def _extreme(numbers: list[float], default: float, *, most: bool) -> float:
+    lanes = _first_of_many(numbers)
+    if lanes is None:
+        return max(numbers, default=default) if most else min(numbers, default=default)
+    plain = [number for number in numbers if not is_batched(number)]
+    found: Any = (max(plain) if most else min(plain)) if plain else None
+    for number in numbers:
+        if is_batched(number):
+            better = np.fmax if most else np.fmin
+            found = number if found is None else lanes.apply(better, found, number)
+    return cast(float, found)
+
+
+def is_structurally_nonzero(x: complex) -> bool:
+    """Whether something of this size is there."""
+    return (is_batched(x) and x.arithmetic.widest) or bool(x)
+
+
+def display_value(x: complex) -> complex:
+    """The plain number by which something is shown."""
+    return complex(x.values[0]) if is_batched(x) else x
+
+
+def as_float(x: float) -> float:
+    """A float of any plain number; lanes as they are."""
+    return cast(float, x) if is_batched(x) else float(x)
+
+
+def leader_value(x: float) -> float:
+    """The leader's number."""
+    return cast(float, x.values[x.arithmetic.leader].item()) if is_batched(x) else x
+
+
+def uniform_value(x: float) -> float:
+    """A number that has to be one for all designs, as a weight of an angle."""
+    return cast(float, x.arithmetic.settle(x)) if is_batched(x) else x
+
+
+def row_of(numbers: Iterable[float]) -> Array:
+    """Numbers as an array (k,); with lanes among them, of objects."""
+    found = list(numbers)
+    if _first_of_many(found) is None:
+        return np.array(found)
+    row = np.empty(len(found), dtype=object)
+    for k, number in enumerate(found):
+        row[k] = number
+    return cast(Array, row)

@@ -1,0 +1,132 @@
+"""Overloaded arithmetic, in one place: ``a * b + 2`` means what the operands' arithmetic computes.
+
+:class:`Operand` has the operators, and nothing else in the package has them. What they do is up to
+an :class:`Arithmetic`, of which there are five: numbers of many designs
+(:mod:`~linkwork.foundation.lanes`), values with two derivatives (:mod:`linkwork.expression.jets`),
+formulas of cells, numbers with such formulas (both in ``linkwork.export.workbook``), and programs
+for kernels (``linkwork.kernels.program.recorder``).
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from typing import Any, Generic, Self, TypeVar
+
+import numpy as np
+
+__all__ = ["Arithmetic", "NotElementwise", "Operand"]
+
+T = TypeVar("T")
+
+_PLAIN = (int, float, complex, np.number)
+
+
+class NotElementwise(TypeError):
+    """An arithmetic was asked for an operation, or given an operand, that it does not know."""
+
+
+class Arithmetic(Generic[T]):
+    """Computes with operands of one kind; refuses the operations that it does not define."""
+
+    def operand(self, number: object) -> T:
+        """The second operand of an operation: one of this arithmetic, or a plain number.
+
+        Raises
+        ------
+        NotElementwise
+            For anything else, as an array or an operand of another arithmetic.
+        """
+        if isinstance(number, Operand):
+            if number.arithmetic is self:
+                return number  # type: ignore[return-value]  # its own are of type T
+        elif isinstance(number, _PLAIN):
+            return self.plain(number)
+        raise NotElementwise
+
+    def plain(self, number: Any) -> T:
+        """A plain number as an operand."""
+        raise NotElementwise
+
+    def add(self, x: T, y: T) -> T:
+        """x + y."""
+        raise NotElementwise
+
+    def subtract(self, x: T, y: T) -> T:
+        """x - y."""
+        return self.add(x, self.negate(y))
+
+    def multiply(self, x: T, y: T) -> T:
+        """x y."""
+        raise NotElementwise
+
+    def divide(self, x: T, y: T) -> T:
+        """x / y."""
+        raise NotElementwise
+
+    def power(self, x: T, y: T) -> T:
+        """x to the power y."""
+        raise NotElementwise
+
+    def negate(self, x: T) -> T:
+        """-x."""
+        raise NotElementwise
+
+    def absolute(self, x: T) -> T:
+        """|x|."""
+        raise NotElementwise
+
+
+class Operand:
+    """A number with which one computes as with floats; ``arithmetic`` says how."""
+
+    __slots__ = ()
+    arithmetic: Arithmetic[Self]
+
+    def __add__(self, other: object) -> Self:
+        return self.arithmetic.add(self, self.arithmetic.operand(other))
+
+    def __sub__(self, other: object) -> Self:
+        return self.arithmetic.subtract(self, self.arithmetic.operand(other))
+
+    def __rsub__(self, other: object) -> Self:
+        return self.arithmetic.subtract(self.arithmetic.operand(other), self)
+
+    def __mul__(self, other: object) -> Self:
+        return self.arithmetic.multiply(self, self.arithmetic.operand(other))
+
+    def __truediv__(self, other: object) -> Self:
+        return self.arithmetic.divide(self, self.arithmetic.operand(other))
+
+    def __rtruediv__(self, other: object) -> Self:
+        return self.arithmetic.divide(self.arithmetic.operand(other), self)
+
+    def __pow__(self, other: object) -> Self:
+        return self.arithmetic.power(self, self.arithmetic.operand(other))
+
+    def __rpow__(self, other: object) -> Self:
+        return self.arithmetic.power(self.arithmetic.operand(other), self)
+
+    def __neg__(self) -> Self:
+        return self.arithmetic.negate(self)
+
+    def __abs__(self) -> Self:
+        return self.arithmetic.absolute(self)
+
+    __radd__ = __add__
+    __rmul__ = __mul__
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **_: object) -> Any:
+        """NumPy scalars compute with operands as floats do; arrays do not."""
+        arrays = any(isinstance(number, np.ndarray) for number in inputs)
+        if arrays or ufunc not in _OPERATORS or method != "__call__":
+            raise NotElementwise
+        return _OPERATORS[ufunc](*(n.item() if isinstance(n, np.generic) else n for n in inputs))
+
+
+_OPERATORS: dict[object, Callable[..., Any]] = {
+    np.add: operator.add, np.subtract: operator.sub, np.multiply: operator.mul,
+    np.true_divide: operator.truediv, np.power: operator.pow, np.equal: operator.eq,
+    np.not_equal: operator.ne, np.less: operator.lt, np.less_equal: operator.le,
+    np.greater: operator.gt, np.greater_equal: operator.ge,
+}  # fmt: skip
