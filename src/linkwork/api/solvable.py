@@ -368,7 +368,7 @@ class SolvableMechanism(DescribedMechanism):
             As in :meth:`sweep`.
         """
         motion = self.sweep(configuration=configuration, certify=certify, progress=progress)
-        # a motion between dead points is shown there and back, along the circuit
+        # a motion between dead points is shown back and forth, along the circuit
         if motion.found.all() or not motion.found.any():
             return motion
         return self.sweep(

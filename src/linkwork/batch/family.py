@@ -175,7 +175,7 @@ class Family:
             If a number of a motion or a quantity does not exist.
         """
         columns = list(_columns(wanted))
-        # the motion of no designs knows all names, at no cost
+        # a motion without designs has all names, at no cost
         nothing = self.take(slice(0)).sweep(certify=False)
         for column in columns:  # reject unknown names before any computation
             column.check(nothing)

@@ -52,7 +52,7 @@ def lead_to_rows(
         given[f"u{j}.spread"] = 4.0 * UNIT_ROUNDOFF * (np.abs(own[:, j]) + np.abs(rate[:, j]))
     v, radius = np.empty((n, 2, count)), np.empty((2 if kernel.certified else 0, count))
     found = kernel.result(v, radius)
-    # each design has a path of its own, from its start (0) to its row (1)
+    # each design has its own path, from its start (0) to its row (1)
     ends = np.array([0.0, 1.0])
     kernel.run(given, designs.start[which, :n].T, np.zeros(count), ends, Steps(), found, threads)
     return np.where(found.reached[1], v[:, 1], np.nan), nearest

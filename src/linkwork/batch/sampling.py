@@ -150,7 +150,7 @@ class _Grid(Plan):
 
     def _column(self, column: int, k: int) -> Array:
         levels, rows = self.levels[column], self._rows(k)
-        # the last name changes fastest, as digits do
+        # the last name changes fastest, like the last digit
         repeats = math.prod(len(later) for later in self.levels[column + 1 :])
         number = np.arange(rows.start, rows.stop) // repeats % len(levels)
         values: Array = levels[number]

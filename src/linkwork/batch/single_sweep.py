@@ -70,7 +70,7 @@ def _note_way(
         return
     found.limits[:, k], found.limit_kinds[:, k] = ends_as_limits(ends)
     if base.equations.inputs[0].kind == "angle":
-        # a row found on the other way around holds an input whole turns away
+        # a row reached in the other direction has an input whole turns away
         gap = (rows.v[:, len(found.v)] - base.rows[:, 0]) / FULL_TURN
         found.turns[:, k] = np.round(np.where(np.isnan(gap), 0.0, gap))
 

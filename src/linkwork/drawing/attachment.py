@@ -100,7 +100,7 @@ class Frames:
         looks the same.
         """
         middle = shape.mean(axis=1, keepdims=True)
-        # direction and origin are sought one after the other, not in pairs: quicker
+        # searching direction and origin separately is faster than in pairs
         for turn in _ordered(self.turns, first):
             if not _constant(self.local(Frame(turn=turn), shape - middle, rows), size, closed):
                 continue
@@ -121,7 +121,7 @@ def _constant(local: ComplexArray, size: float, closed: bool = False) -> bool:
         return True
     if not closed:
         return False
-    # the corner nearest to the first one of the first row is numbered first
+    # start at the corner nearest to the first one of the first row
     corner = np.abs(local - local[0, 0]).argmin(axis=1)
     count = local.shape[1]
     again = np.take_along_axis(local, (corner[:, None] + np.arange(count)) % count, axis=1)

@@ -225,7 +225,7 @@ def _line(
         for z in (span.start, span.end)
     ]
     middle = start + share * (end - start)
-    # a number in the line needs room for itself and both arrow heads
+    # a number in the line needs space for itself and both arrow heads
     fits = min(share, 1.0 - share) * length > room + 1.5 * head
     for tail, tip in ((middle - room * along, start), (middle + room * along, end)):
         inner = tail if fits else middle

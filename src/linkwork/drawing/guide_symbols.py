@@ -174,7 +174,7 @@ def _rail_side(pose: Pose, points: Sequence[str], along: complex, measures: Meas
     ])  # fmt: skip
     depths = depths[np.isfinite(depths)]
     if upright:
-        # an upright line has no side below: hatching lies away from the links, on the average
+        # an upright line has no lower side: hatch the side away from the links on average
         return -below if np.mean(depths) > 0.01 * measures.size else below
     # Without a motion, hatch above only if a link is steeply below the line.
     clear = 0.0 if pose.paths else 0.5 * max(abs(pose.points[name] - start) for name in others)
@@ -250,7 +250,7 @@ def _slot_end(measures: Measures) -> float:
 def _slot(track: Track, measures: Measures) -> Iterator[Primitive]:
     """Two parallel lines with round ends around the travel of the pin."""
     width = measures.slot
-    # a fixed slot is drawn longer, as rails are
+    # a fixed slot is drawn longer, like rails
     reach = _slot_end(measures) + (3 * measures.pin if track.fixed else 0.0)
     over = (reach - width) * track.along
     start, end = track.start - over, track.end + over

@@ -196,7 +196,7 @@ def _about_round(
         for share in (0.6, 0.45, 0.75):
             if half_width < (1 - share) * radius or 1.2 * half_width < share * radius:
                 yield centre + share * radius * way, 0.1 * k
-        # how far a box reaches in a direction: its support function
+        # extent of a box in a direction: its support function
         clear = abs(way.real) * half_width + abs(way.imag) * 0.5 * height + 1.6 * measures.pin
         yield centre + (radius + clear) * way, _FURTHER + 0.1 * k
 
@@ -253,7 +253,7 @@ def placed(choices: Sequence[Choice], drawn: Iterable[Primitive]) -> list[Text]:
     for _ in range(4):
         before = dict(taken)
         for k in order:
-            # in the first sweep only the names placed so far are in the way
+            # in the first sweep only names placed so far are obstacles
             others = np.array([edges[j][place] for j, place in taken.items() if j != k])
             cost = fixed[k] + _NAME_ON_NAME * _overlaps(edges[k], others.reshape(-1, 4))
             taken[k] = int(np.argmin(cost))

@@ -10,8 +10,8 @@ from linkwork.drawing.box import Box
 
 __all__ = ["COINCIDENT", "Measures"]
 
-#: Relative to the size of a drawing, or to its longest vector: places as near as this are one.
-#: Rounding moves solved places far less, and a reader sees no difference below 1e-4.
+#: Relative to the size of a drawing, or to its longest vector: nearer points coincide.
+#: Rounding errors are much smaller, and differences below 1e-4 are not visible.
 COINCIDENT = 1e-6
 
 _PIN_OF_SIZE = 0.0115  # pin radius over drawn size: a diameter of 10 points in a six-inch figure

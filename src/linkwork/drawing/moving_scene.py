@@ -101,7 +101,7 @@ class MovingScene:
         box = self.scene.box
         rows = np.flatnonzero(self.found)
         for part in self.parts:
-            # names may be cut off at the edge: the picture must not jump for their sake
+            # names may be clipped at the edge, so that the picture does not jump
             if part.frame == STILL or isinstance(part.shape, Text):
                 continue
             if part.frame is None:
@@ -161,7 +161,7 @@ def moving_scene(
     frames = Frames.of(motion, pose)
     shown = dict(keyed(drawn_symbols(pose, measures)))
     carried = None if like is None else _carried(like)
-    # other symbols than before: nothing corresponds
+    # different symbols: no correspondence
     if carried is None or carried.keys() != shown.keys():
         like = carried = None
     if carried is None and sampled:
@@ -175,7 +175,7 @@ def moving_scene(
     row = int(rows[0])
     if like is None:
         parts += _arrows(pose, measures, motion.speed, frames, parts)
-        # names come last: they avoid all that moves
+        # names come last, since they avoid all moving parts
         moving = MovingScene(
             scene=_scene(motion, parts, measures, box),
             row=row,

@@ -90,7 +90,7 @@ def _one_attached(
     measures: Measures,
 ) -> Moving:
     found = [corners(one) for one in along.values()]
-    # a shape missing in some rows, or with other corners, cannot be rigid
+    # a shape missing in some rows, or with other corners, is not rigid
     alike = len(along) == len(rows) and len({len(one) for one in found}) == 1
     if alike and same_sizes(along.values(), measures.size):
         frame = frames.holding(

@@ -36,7 +36,7 @@ def tooth_outline(disc: Disc) -> ComplexArray:
     """
     assert disc.teeth is not None
     module = 2.0 * disc.radius / disc.teeth
-    # a ring is the gap of its gear: tips and roots change places
+    # a ring is the complement of its gear: tips and roots are exchanged
     up, down = (DEDENDUM, ADDENDUM) if disc.ring else (ADDENDUM, DEDENDUM)
     root, tip = disc.radius - down * module, disc.radius + up * module
     base = disc.radius * math.cos(_PRESSURE)
@@ -88,5 +88,5 @@ def _meshing(pose: Pose, one: Disc, phase: float, other: Disc) -> float:
         line = line if one.ring else line + math.pi
         return line - (line - phase) * one.teeth / other.teeth
     passed = (line - phase) * one.teeth / math.tau
-    # where one has a tooth at the point of contact, the other has a gap
+    # at the contact, one gear has a tooth and the other a gap
     return line + math.pi - (0.5 - passed) * math.tau / other.teeth

@@ -87,7 +87,7 @@ def _seen(disc: Disc, measures: Measures) -> bool:
     """Whether teeth are known and large enough to be visible."""
     if disc.teeth is None or disc.teeth < _FEWEST:
         return False
-    # the pitch against the pin: smaller teeth run together in print
+    # pitch relative to the pin: smaller teeth merge in print
     return math.tau * disc.radius / disc.teeth >= 1.2 * measures.pin
 
 

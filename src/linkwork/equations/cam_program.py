@@ -29,7 +29,7 @@ def program(segments: Sequence[tuple[str, float, float]]) -> Piecewise:
     stretch = 2.0 * math.pi / sum(over for _, over, _ in segments)
     last = max((k for k, (_, _, lift) in enumerate(segments) if lift), default=-1)
     for number, (law, given, rise) in enumerate(segments):
-        # the last rise closes the motion: sums of given lifts are rounded
+        # the last rise closes the motion, since sums of given lifts are rounded
         over, lift = given * stretch, -height if number == last else rise
         begin = breaks[-1]
         done = 0.0
@@ -122,8 +122,8 @@ class FollowerPath:
             raise Undercut(float(phi[still[0]]))
         surface: ComplexArray = (w - (d.conj() * z1).imag / turned * d) * back  # eq. (67)
         ways = ((np.roll(surface, -1) - np.roll(surface, 1)) * (d * back).conj()).real
-        # the contact runs along the face in one direction, but where it turns back the envelope is
-        # cut
+        # the contact moves along the face in one direction; where it reverses, the envelope is
+        # undercut
         majority = np.sign(np.median(ways))
         wrong = np.flatnonzero(ways * majority <= 0.0)
         if len(wrong):

@@ -67,7 +67,7 @@ class PointTable:
         parts = self.rows.jet(v, first, second)
         for child, parent in self.levels:
             for part in parts:
-                # level by level: the parents are whole already
+                # level by level: the parents are complete
                 part[:, child] += part[:, parent]
         return parts
 
@@ -137,7 +137,7 @@ def _plain_scales(equations: LoopEquations, functions: Sequence[FormulaRow]) -> 
     variable changes by its scale; 1 if the guess gives none.
     """
     variables = np.abs(equations.start)
-    # a guess of zero says nothing about the size of a variable
+    # a guess of zero gives no scale of a variable
     variables[variables == 0.0] = 1.0
     sizes = []
     for row in functions:

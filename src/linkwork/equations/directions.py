@@ -134,7 +134,7 @@ class DirectionForm:
         ones = np.ones((len(x), 1))
         angles = psi @ self.angles.T + np.concatenate([known, ones], axis=1) @ self.shift.T
         away = angles[:, self.free] - near[self.turning][self.free]
-        # whole turns of the free angles; the tied ones turn with them
+        # whole turns of the free angles; dependent ones follow
         turns = np.floor((away + np.pi) / (2.0 * np.pi))
         found = np.zeros((len(x), self.table.unknowns))
         found[:, self.turning] = angles - 2.0 * np.pi * (turns @ self.tied.T)
@@ -288,7 +288,7 @@ def _directions(sums: Array) -> tuple[list[tuple[float, ...]], IndexArray]:
     # in the order of the angles, independent of the order of the terms
     found = sorted({row for row in rows if any(row)}, reverse=True)
     place = {row: k for k, row in enumerate(found)}
-    # its direction would be needed as U and as V
+    # its direction would be needed in U and V
     if any(tuple(-w for w in row) in place for row in found):
         raise NoDirectionForm("contain an angle both forwards and backwards")
     number = np.array([place.get(row, -1) for row in rows], dtype=np.intp)
@@ -302,7 +302,7 @@ def _inverse(directions: list[tuple[float, ...]], angles: int) -> Array:
     if len(directions) < angles:
         raise NoDirectionForm("do not determine an angle")
     matrix = np.array(directions, dtype=float).reshape(angles, angles)
-    # only a unimodular matrix has an inverse of whole numbers
+    # only a unimodular matrix has an integer inverse
     if angles and abs(abs(float(np.linalg.det(matrix))) - 1.0) > 1e-9:
         raise NoDirectionForm("contain angles with ratios other than 1, as gears do")
     inverse = np.linalg.inv(matrix)

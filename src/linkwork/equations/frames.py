@@ -202,7 +202,7 @@ class _Orientation:
             named = self._name.get(root)
             if body == GROUND or not self._turns(body):
                 continue
-            # the input has to be a variable of its own
+            # the input must be a separate variable
             if named is None or (body in driven and named not in driven):
                 self._name[root] = body
         self._ground = self.root(GROUND)
@@ -248,5 +248,5 @@ def _tidy(angle: float) -> float:
     """The angle in (-π, π], rounded to a multiple of a right angle if very near."""
     reduced = remainder(angle, 2 * math.pi)
     square = round(reduced / (math.pi / 2)) * math.pi / 2
-    # a right angle that is off by a rounding would leave a tiny term in every equation
+    # a right angle with rounding error would leave a tiny term in every equation
     return choose(abs(reduced - square) < 1e-15, square, reduced)

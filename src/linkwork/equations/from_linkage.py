@@ -80,7 +80,7 @@ class _LoopWriter:
         self._check_connected(structure)
         self.problems.raise_any(where)
         self._check_determined(structure)
-        # only once: links that are released already did not help
+        # only once: further releases would not help
         if self.problems and not self.released:
             without = self._without_surplus(structure, {v.symbol for v in unknowns})
             if without is not None:
@@ -321,7 +321,7 @@ def _crossings(walk: tuple[Node, ...], order: Mapping[str, int]) -> list[tuple[s
         if node[0] == "body"
     ]
     lowest = min(range(len(found)), key=lambda k: order[found[k][1]])
-    # ground closes the loop: textbooks end it there
+    # ground closes the loop, as in textbooks
     found = found[lowest + 1 :] + found[: lowest + 1]
     if len(found) > 2 and order[found[0][1]] > order[found[-2][1]]:
         backwards = [(end, body, start) for start, body, end in reversed(found)]

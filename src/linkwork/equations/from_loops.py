@@ -108,7 +108,7 @@ def _term(m: Monomial, text: str) -> Term:
     if shown is not None and abs(seen.real) <= 1e-15 * abs(seen.imag):
         found, rest = _without_i(shown)
         if found:
-            # a factor i is shown as a right angle
+            # a factor i is displayed as a right angle
             shown, turn = rest, math.pi / 2
     return Term(
         value=m.value,

@@ -46,7 +46,7 @@ class ParametrizedTable:
 
     def with_parameter(self, lead: int) -> Parametrization | None:
         """The equations with one variable known; ``None`` if it does not determine the others."""
-        # a curve changes its leader many times, but between few variables
+        # a curve changes its parameter many times, but among few variables
         if lead not in self._leads:
             self._leads[lead] = self._parametrize(lead)
         return self._leads[lead]

@@ -61,7 +61,7 @@ def released_links(
         size = np.linalg.norm(stress, axis=0)
         if size.max() <= _STRESSED * largest:
             break
-        # links that are loaded much alike: the one named last is the one added to the others
+        # among links with similar force, the last in the file is the redundant one
         chosen = int(np.flatnonzero(size >= _ALIKE * size.max())[-1])
         found.append(bars[chosen])
         direction = stress[:, chosen] / size[chosen]

@@ -96,7 +96,7 @@ def _tokens(text: str) -> list[_Token]:
         c, column = text[k], k + 1
         if c.isspace():
             k += 1
-        # a point alone begins no number
+        # a single point does not begin a number
         elif c in "0123456789." and text[k : k + 2].strip("."):
             end = _number_end(text, k)
             found.append(_Token("number", text[k:end], column))

@@ -109,7 +109,7 @@ class Chain:
         became = {link: link for link in self.links} | dict(self.united)
         for first, second in pairs:
             one, other = became[first], became[second]
-            # the ground keeps its name; otherwise the link that comes first does
+            # the merged link has the name of the ground, otherwise of the first link
             if other == self.ground or (
                 one != self.ground and self.links.index(other) < self.links.index(one)
             ):

@@ -94,7 +94,7 @@ class Numbers:
             cycle = [self.spelling[n] for n in [*chain[chain.index(name) :], name]]
             self.wrong[name] = "is defined in terms of itself: " + " → ".join(cycle)
             return
-        # this resolver recurses: Python's limit must not be reached
+        # the evaluation is recursive: stay below Python's limit
         if len(chain) > _LONGEST_CHAIN:
             self.wrong[name] = f"depends on a chain of more than {_LONGEST_CHAIN} dimensions"
             return

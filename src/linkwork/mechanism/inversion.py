@@ -129,7 +129,7 @@ class _Inverting:
         } | dict(own)
         self.fixed = list(linkage.links[self.link])
         fixed, (origin, second) = linkage.shapes.local[GROUND], linkage.links[GROUND][:2]
-        # angles on the frame are counted from its first two points, in the ground from the x axis
+        # angles on the frame are measured from its first two points, on ground from the x axis
         self.turn = cmath.phase(fixed[second] - fixed[origin])
 
     def _axis(self) -> complex:
@@ -172,7 +172,7 @@ class _Inverting:
                 name: inverted_output(linkage, formula, frame)
                 for name, formula in linkage.outputs.items()
             },
-            # points of the new ground stand still and have no path
+            # points of the new ground are fixed and have no path
             "trace": tuple(point for point in linkage.trace if point not in self.fixed),
             # the sketch is an assembled position: it selects the configuration
             "configuration": "",
@@ -215,7 +215,7 @@ class _Inverting:
             length = _distance(linkage, first, point)
             for key in (f"{first} {point}", f"{point} {first}"):
                 given = linkage.lengths.get(key)
-                # a formula keeps the length tied to the dimensions; a number would repeat the
+                # a formula keeps the dependence on dimensions; a number would duplicate the
                 # coordinates
                 if isinstance(given, str) and _same(linkage, given, length):
                     length = given

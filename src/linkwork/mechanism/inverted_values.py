@@ -64,7 +64,7 @@ def inverted_input(linkage: Linkage, which: Input, frame: Frame) -> Input:
     other = frame.name if against == GROUND else against
     speed = linkage.speed(which)
     if link == frame.ground:
-        # the old ground turns the other way round, seen from the driven link
+        # relative to the driven link, the old ground turns in the opposite direction
         back = None if speed is None else -speed
         against_it = replace(which, link=other, joint=None, relative_to=None, speed=back)
         return _ranged(linkage, against_it, -1.0, turn)

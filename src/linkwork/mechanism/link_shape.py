@@ -99,7 +99,7 @@ class VertexAngle:
     def error(self, z: Mapping[str, complex]) -> float:
         """Disagreement with placed points [rad], within half a turn."""
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
-        # the difference is taken as a rotation: no jump at half a turn
+        # the difference as a rotation has no jump at half a turn
         return phase(rays * cis(-self.angle)) if rays else math.inf
 
     def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
@@ -339,7 +339,7 @@ def _gauss_newton(
         done = largest(abs(error) for error in errors) <= 1e-14
         if everywhere(done):
             break
-        # in a family most designs need few steps: the rest goes on alone
+        # in a family most designs need few steps: the others continue separately
         if k == first and (rest := rest_of(done)) is not None:
             return _gone_on(z, rows, steps - k, rest)
         step = least_norm(_slopes(z, rows), errors)

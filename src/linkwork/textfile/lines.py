@@ -143,7 +143,7 @@ class _Scanner:
         path = (*path, last)
         if many:
             self.note(path, token)
-            # places in a list are counted from 0
+            # indices in a list count from 0
             self.counts[path] = self.counts.get(path, -1) + 1
             # keys below the header belong to the entry just begun
             path = (*path, self.counts[path])

@@ -70,7 +70,7 @@ class Structure:
     def _unknown_key(self, name: str, present: set[str], known: list[str], path: Path) -> None:
         table = _table_text(path)
         forms = FORMS if self.form in FORMS else ()
-        # a key of another kind of file is no spelling mistake
+        # a key of another kind of file is not a spelling mistake
         others = [form for form in forms if name in _names_in_form(form, path)]
         free = [key for key in known if key not in present]
         if others and not path:

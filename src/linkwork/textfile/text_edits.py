@@ -33,7 +33,7 @@ class TextEdits:
 
         self._bom = _BOM if text.startswith(_BOM) else ""
         plain = text.removeprefix(_BOM)
-        # only a file that has CRLF throughout is written so again
+        # CRLF is kept only if the file uses it throughout
         self._line_end = "\r\n" if plain.count("\r\n") == plain.count("\n") > 0 else "\n"
         self._document: Any = tomlkit.parse(plain.replace("\r\n", "\n"))
 
@@ -75,7 +75,7 @@ class TextEdits:
         place = self._found(path)
         if place is not None:
             holder, key = place
-            # replacing the value in place keeps the comment behind it
+            # replacing the value in place keeps the comment after it
             holder[key] = _as_before(holder[key], entry)
             return
         holder = self._document

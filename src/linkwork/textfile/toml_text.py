@@ -76,7 +76,7 @@ def text_of(data: bytes, name: str) -> str:
     """
     if len(data) > LARGEST:
         _refuse(name, _too_large(len(data)))
-    # byte order marks of UTF-16, as Windows editors write them
+    # byte order marks of UTF-16, written by Windows editors
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         _refuse(name, "is UTF-16 text: save it as UTF-8", 1)
     try:
@@ -148,7 +148,7 @@ def _explained(message: str, text: str) -> tuple[str, int]:
     if twice := _TWICE.fullmatch(what):
         what = f"the table [{twice[1].replace(_SEPARATOR, '.')}] occurs twice"
     if place is None or place[1] is None:
-        # the parser gives no place for the end of the text: the last line with content is meant
+        # the parser gives no line for the end of the text: use the last line with content
         line = max((k for k, row in enumerate(rows, 1) if row.strip()), default=1)
         return f"is not TOML: {what} (at the end){_hint(what, rows[line - 1], None)}", line
     line, column = int(place[1]), int(place[2])

@@ -69,13 +69,13 @@ def _replace(target: Path, data: bytes) -> None:
         with beside.open("xb") as file:
             file.write(data)
             file.flush()
-            # the data must be on the disk before the name points to it
+            # the data must be on disk before the file is renamed
             os.fsync(file.fileno())
         if target.exists():
-            # a new file has the default permissions: those of the old one are kept
+            # keep the permissions of the old file
             beside.chmod(target.stat().st_mode & 0o777)
         os.replace(beside, target)
-    except BaseException:  # also on Ctrl-C no temporary file is left
+    except BaseException:  # remove the temporary file, also after Ctrl-C
         beside.unlink(missing_ok=True)
         raise
 

@@ -75,7 +75,7 @@ def write_whole(path: Path, data: bytes) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(path.name + PARTIAL)
     part.write_bytes(data)
-    # renaming is atomic: a reader never sees half a file
+    # renaming is atomic: readers never see incomplete files
     os.replace(part, path)
 
 
@@ -103,7 +103,7 @@ def _sum(path: Path) -> list[int] | None:
     size = total = 0
     try:
         with path.open("rb") as file:
-            # piece by piece: a file may be larger than memory
+            # in pieces: a file may be larger than memory
             while piece := file.read(1 << 20):
                 size += len(piece)
                 total = zlib.crc32(piece, total)

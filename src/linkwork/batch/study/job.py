@@ -108,7 +108,7 @@ def compute_part(job: Job, values: Mapping[str, Array | float]) -> Part:
         )
     family = family_of(_model(job.description), values)
     built = family.designs.problem == 0
-    # one thread: the processes of a study share the cores already
+    # one thread, since the processes of a study already share the cores
     motion = family.sweep(certify=job.certify, threads=1, device=job.device)
     measured = Measured(motion)
     passes = {name: built & condition.holds(measured) for name, condition in job.filters.items()}
@@ -129,7 +129,7 @@ def compute_part(job: Job, values: Mapping[str, Array | float]) -> Part:
     return Part(arrays=arrays, rows=_rows(motion.status[built]), problems=_problems(family))
 
 
-# a worker gets many parts of one study, and a model takes long to build
+# a worker computes many parts of one study, and building a model takes long
 @lru_cache(maxsize=2)
 def _model(description: Description) -> Model:
     return as_described(description)

@@ -62,7 +62,7 @@ class Store:
         for path, data in files.items():
             write_whole(self.path / path, data)
         write_entry(
-            # after the files: an entry without its files would be trusted by the next run
+            # after the files: the next run would accept an entry without files
             self.path,
             Entry.of_files(k, designs, files, rows=part.rows, problems=part.problems),
         )
@@ -137,7 +137,7 @@ def _make(path: Path, files: Mapping[str, bytes]) -> None:
     """Create a store without chunks, in one step."""
     if not path.parent.is_dir():
         raise InputError(f'cannot write "{path}": there is no folder "{path.parent}"')
-    # on the same file system, so that renaming it is one step
+    # on the same file system, so that renaming is atomic
     part = path.with_name(f".{path.name}.{os.getpid()}{PARTIAL}")
     shutil.rmtree(part, ignore_errors=True)
     for name, data in files.items():
@@ -151,7 +151,7 @@ def _take_away(path: Path) -> None:
     """Delete a store in one step: remaining parts would be resumed."""
     aside = path.with_name(f".{path.name}.{os.getpid()}.old{PARTIAL}")
     with _lock_store(path):
-        # renamed before it is deleted: an interruption leaves no half store under its name
+        # renamed before deletion: an interruption leaves no incomplete store of this name
         os.rename(path, aside)
     shutil.rmtree(aside)
 
@@ -159,7 +159,7 @@ def _take_away(path: Path) -> None:
 def _check_same(study: Study, path: Path) -> None:
     """Reject the store of another study."""
     there = attributes_of(path)[_IDENTITY]
-    # as JSON reads it again: tuples are lists there
+    # as read back from JSON: tuples become lists
     here = json.loads(json.dumps(study.identity))
     if told := "\n".join(_differences(there, here)):
         raise InputError(
@@ -178,7 +178,7 @@ def _differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> Iterator[
             continue
         if key == "mechanism":
             old, new = _first_change(old, new)
-        # other names: the values are of no interest then
+        # different names: values need not be compared
         elif key == "dimensions" and [n for n, _ in old] != [n for n, _ in new]:
             old, new = ([name for name, _ in each] for each in (old, new))
         elif key in ("dimensions", "input", "reductions", "filters"):

@@ -199,5 +199,5 @@ def usual_chunk(count: int, rows: int, columns: int) -> int:
     # 8 bytes for each float64
     fitting = max(_CHUNK_BYTES // (8 * rows * columns), 1)
     shared = max(-(-count // _CHUNKS_WANTED), _SMALLEST_CHUNK)
-    # a power of two: chunks fill the lanes of the kernels without a rest
+    # a power of two: chunks fill the lanes of the kernels exactly
     return 1 << (min(fitting, shared, _LARGEST_CHUNK).bit_length() - 1)

@@ -153,7 +153,7 @@ def _output(name: str, arrays: Any, entries: list[Entry]) -> OutputSummary:
     # two passes, since the ends of the bins are known only after the first
     for values in _values(name, arrays, entries):
         count += values.size
-        # one chunk after the other: the store may be larger than memory
+        # chunk by chunk: the store may be larger than memory
         total += float(values.sum())
         least = min(least, float(values.min(initial=np.inf)))
         most = max(most, float(values.max(initial=-np.inf)))

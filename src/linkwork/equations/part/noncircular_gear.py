@@ -109,7 +109,7 @@ def _law(gear: NoncircularGear, linkage: Bodies) -> tuple[Fraction, Piecewise]:
     over = float(jet.v[-1] - jet.v[0])
     # the closing error of a curve's points is distributed over the turn
     ratio = _ratio(over, "pitch_curve", _NEARLY)
-    # the curve was closed nearly; the law has to be exact
+    # the curve closes only approximately; the law must close exactly
     jet = jet * (float(ratio) * math.tau / over)
     return ratio, _through(phi, jet, float(ratio))
 
@@ -133,7 +133,7 @@ def _pieces_of_formula(law: str, phi: Array, linkage: Bodies) -> tuple[Fraction,
         coarse = (off > _EXACT + _ROUNDINGS * EPSILON * rounding).any(axis=1)
         if not coarse.any():
             return ratio, rest
-        # the middle one of the places inside a piece
+        # the middle of the points inside a piece
         halves = inside[coarse, 1]
         if len(phi) + len(halves) > _MOST_PIECES:
             break

@@ -283,7 +283,7 @@ class Cam(NamedPart):
                 checks.add("must be 0: a dwell has no rise", "segments", k, "lift")
             overs.append(over)
             lifts.append(lift)
-        # NaN where a number is wrong already, which is reported
+        # NaN for invalid numbers, which are reported already
         total = sum(overs)
         if not math.isnan(total) and abs(total - unit.turn) > AGREE * unit.turn:
             checks.add(

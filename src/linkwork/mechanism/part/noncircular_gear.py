@@ -112,7 +112,7 @@ class NoncircularGear(ArmPair):
         try:
             value(parse(law), {**known, "phi": 0.0}, checks.linkage.angle, law)
         except ExpressionError as error:
-            # a wrong dimension is reported at its own place
+            # an invalid dimension is reported at its own key
             if not checks.linkage.numbers.wrong:
                 checks.add(str(error), "law")
 

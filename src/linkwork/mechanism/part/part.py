@@ -47,7 +47,7 @@ class Part:
     def __post_init__(self) -> None:
         """Convert lists to tuples, so that parts are comparable and immutable."""
         for field, entry in vars(self).items():
-            # the class is frozen: only this way may it set its own fields
+            # the class is frozen: fields can only be set this way
             object.__setattr__(self, field, _frozen(entry))
 
     @classmethod

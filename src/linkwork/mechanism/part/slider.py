@@ -96,13 +96,13 @@ class Slider(GuidePart):
         if len(self.points) == 2:
             own = phase(local[self.points[1]] - local[self.points[0]])
             d, e, a, b = (linkage.sketched(p) for p in (*self.points, *self.line))
-            # two points on a line leave two directions half a turn apart: that of the sketch is
-            # taken
+            # two points on a line allow two directions half a turn apart: use that of the
+            # sketch
             along = ((e - d) * (b - a).conjugate()).real >= 0
             return line - own + choose(along, 0.0, math.pi)
         if self.angle is not None:
             return line + linkage.numbers(self.angle) * linkage.angle.radians
-        # a block of one point has no direction of its own: it takes that of the line
+        # a one-point block has no direction: use that of the line
         if self.link != GROUND and len(linkage.links[self.link]) < 2:
             return line
         a, b = (linkage.sketched(p) for p in self.line)

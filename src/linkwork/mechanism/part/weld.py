@@ -83,7 +83,7 @@ class Weld(Part):
                 "they are welded",
                 "links",
             )
-        # their angles are unknowns of their own; other links are directed by two points
+        # their angles are separate unknowns; other links have a direction by two points
         directed = {GROUND, *turning_links(checks.linkage)}
         for name, points in zip(self.links, (first, second), strict=True):
             if len(points) < 2 and name not in directed:

@@ -71,7 +71,7 @@ def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
         text.put(("lengths", measured), edit.value)
         return Followed()
     written = quantity.written(description)
-    # a number in place of a formula would silently cut its tie to the dimensions
+    # a number in place of a formula would silently remove the dependence on dimensions
     if isinstance(written, str) and not isinstance(edit.value, str) and not edit.any_formula:
         raise InputError(
             f'"{quantity.name}" is the formula {written}: change a dimension in '
@@ -142,7 +142,7 @@ def _(edit: ask.MovePoint, text: TextEdits, before: Before) -> Followed:
         for key, number in getattr(linkage, table).items():
             if point not in key.split():
                 continue
-            # a formula keeps its tie to the dimensions
+            # a formula keeps its dependence on dimensions
             if isinstance(number, str) or not edit.lengths_follow:
                 stayed.append(key)
                 continue

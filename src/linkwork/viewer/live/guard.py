@@ -95,9 +95,9 @@ class Guard:
             return Refusal(status=404, message="there is nothing here")
         offered = list(subprotocols)
         tokens = [offer.removeprefix(_TOKEN) for offer in offered if offer.startswith(_TOKEN)]
-        # compared in constant time, so that the time of an answer reveals nothing of the token
+        # constant-time comparison: response times must not reveal the token
         known = [hmac.compare_digest(token.encode(), self.token.encode()) for token in tokens]
-        # a browser cannot send headers of its own with a WebSocket: the token comes as a
+        # browsers cannot send custom headers with a WebSocket: the token is a
         # subprotocol
         if SUBPROTOCOL not in offered or known != [True]:
             return Refusal(status=403, message="the token is missing or wrong")

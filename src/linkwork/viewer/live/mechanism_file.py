@@ -103,7 +103,7 @@ class MechanismFile:
                 "or save again and overwrite it"
             )
         save_text(text, self._path)
-        # this program's own writing is no news
+        # changes by this program are not reported
         self._stamp = self._stamp_now()
         self.accept(text)
 
@@ -119,7 +119,7 @@ class MechanismFile:
             number = "" if k == 1 else f"-{k}"
             beside = self._path.with_name(f"{self._path.stem}.unsaved{number}.toml")
             try:
-                # "x" fails if the file exists, also if it was made a moment ago
+                # "x" fails if the file exists, even if just created
                 with beside.open("x", encoding="utf-8", newline="") as file:
                     file.write(text)
                 return beside

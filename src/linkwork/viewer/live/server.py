@@ -144,7 +144,7 @@ class LiveServer:
             await send({"type": "websocket.close"})  # not accepted: the answer is 403
             return
         await send({"type": "websocket.accept", "subprotocol": SUBPROTOCOL})
-        # one page at a time: two could undo each other
+        # one page at a time: two pages could conflict
         if self._page is not None:
             message = encoded(Refused(message=_OCCUPIED_MESSAGE))
             await send({"type": "websocket.send", "text": message})
@@ -162,7 +162,7 @@ class LiveServer:
     async def _receive(self, receive: Receive, telling: asyncio.Queue[str]) -> None:
         """Receive requests until the page disconnects."""
         while True:
-            # not reading from the socket holds the page back
+            # the page waits while the socket is not read
             while max(self._desk.waiting, telling.qsize()) > _MOST_WAITING:
                 await asyncio.sleep(0.02)
             message = await receive()
@@ -189,7 +189,7 @@ class LiveServer:
             return
         messages = [encoded(event, number) for event in events]
         try:
-            # queues of asyncio may be used from their own thread only
+            # asyncio queues may only be used from their thread
             loop.call_soon_threadsafe(self._put, messages)
         except RuntimeError:  # the event loop is closed: no receiver
             return
@@ -243,7 +243,7 @@ def _uvicorn(app: Callable[..., Any]) -> Any:
         server_header=False,
         date_header=False,
         ws_max_size=LARGEST_MESSAGE,
-        # on one machine compression costs more time than it saves
+        # on one machine, compression takes more time than it saves
         ws_per_message_deflate=False,
         limit_concurrency=_MOST_CONNECTIONS,
         h11_max_incomplete_event_size=_LARGEST_HEAD,

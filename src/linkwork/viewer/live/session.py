@@ -91,8 +91,8 @@ class Desk:
         while getattr(request, "live", False) and self._waiting:
             if not _replaces(self._waiting[0][0], request):
                 break
-            # a point that is dragged sends places faster than they are solved: only the last
-            # matters
+            # a dragged point sends positions faster than they are solved: use only the
+            # last
             request, number = self._waiting.popleft()
         return request, number
 
